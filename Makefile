@@ -1,0 +1,35 @@
+# make tutorial: both lectures, typed into the REPL. make test: everything. The first call of either makes the environment.
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+
+.PHONY: tutorial test bench golden lint soak clean
+
+tutorial: $(READY)
+	@$(BIN)/python tutorials/lectures.py --png turtle.png
+
+test: $(READY)
+	@$(BIN)/ruff check src tests benchmarks tutorials
+	@$(BIN)/python -m pytest
+
+golden: $(READY)
+	@$(BIN)/python tests/golden/score.py
+
+bench: $(READY)
+	@for file in benchmarks/*_bench.py; do echo "== $$file"; $(BIN)/python $$file; done
+
+soak: $(READY)
+	@CRAMHY_SOAK=1 $(BIN)/python -m pytest
+
+lint: $(READY)
+	@$(BIN)/ruff check src tests benchmarks tutorials
+
+$(READY): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "cramhy needs Python 3.11 or later; try make PYTHON=python3.11")'
+	@echo "Making the environment in .venv (once) ..."
+	@$(PYTHON) -m venv .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $(READY)
+
+clean:
+	rm -rf .venv .pytest_cache .hypothesis

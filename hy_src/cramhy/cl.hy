@@ -1,0 +1,424 @@
+"The macros of Common Lisp, except those of places (setf, push, ...), which are in the runtime's `places.py`, and LOOP.
+
+Each is what the standard says that it expands into; see the section of ANSI in its comment where that is not plain."
+
+(require cramhy.operators [defoperator])
+(import cramhy.operators *)
+
+(setv package "COMMON-LISP")
+
+;; ---------------------------------------------------------------------------------------------------------------- choice
+
+(defoperator when [test #* body]
+  `(if ~test (progn ~@body) nil))
+
+(defoperator unless [test #* body]
+  `(if ~test nil (progn ~@body)))
+
+(defn clause-body [body]
+  (if (= (len body) 1) (get body 0) `(progn ~@body)))
+
+(defoperator cond [#* clauses]
+  (setv form None)
+  (for [clause (reversed clauses)]
+    (setv #(test #* body) clause)
+    (setv form (cond
+                 (not body) `(or ~test ~form)
+                 (is test True) (clause-body body)
+                 True `(if ~test ~(clause-body body) ~form))))
+  form)
+
+(defn key-test [variable keys]
+  "The test of a `case` clause: `keys` is one object or a list of them."
+  (setv items (if (or (listp keys) (is keys None)) (elements keys) [keys]))
+  (match (len items)
+    0 None
+    1 `(eql ~variable (quote ~(get items 0)))
+    _ `(or ~@(lfor item items `(eql ~variable (quote ~item))))))
+
+(defn type-test [variable type]
+  `(typep ~variable (quote ~type)))
+
+(defn otherwise? [key]
+  (or (is key True) (is key (sym "OTHERWISE"))))
+
+(defn choose [variable clauses test default]
+  "Nested conditionals for the clauses of `case` and its relatives."
+  (setv form default)
+  (for [#(index clause) (reversed (list (enumerate clauses)))]
+    (setv #(keys #* body) clause)
+    (setv form (if (and (otherwise? keys) (= index (- (len clauses) 1)) (is default None))
+                   (clause-body (or body [None]))
+                   `(if ~(test variable keys) ~(clause-body (or body [None])) ~form))))
+  form)
+
+(defn all-keys [clauses]
+  (list-from (sum (lfor clause clauses (if (listp clause.car) (elements clause.car) [clause.car])) [])))
+
+(defoperator case [key #* clauses]
+  (setv variable (gensym "KEY"))
+  `(let [[~variable ~key]] ~(choose variable clauses key-test None)))
+
+(defoperator ecase [key #* clauses]
+  (setv variable (gensym "KEY"))
+  `(let [[~variable ~key]]
+     ~(choose variable clauses key-test `(%case-failure ~variable "ECASE" (quote ~(all-keys clauses))))))
+
+(defoperator ccase [place #* clauses]
+  (setv variable (gensym "KEY") again (gensym "AGAIN"))
+  `(block ~again
+     (tagbody
+       ~again
+       (let [[~variable ~place]]
+         (return-from ~again
+           ~(choose variable clauses key-test
+              `(progn (setf ~place (%ask-for-value ~variable "CCASE" (quote ~(all-keys clauses)))) (go ~again))))))))
+
+(defoperator typecase [key #* clauses]
+  (setv variable (gensym "KEY"))
+  `(let [[~variable ~key]] ~(choose variable clauses type-test None)))
+
+(defoperator etypecase [key #* clauses]
+  (setv variable (gensym "KEY"))
+  `(let [[~variable ~key]]
+     ~(choose variable clauses type-test
+        `(%case-failure ~variable "ETYPECASE" (quote ~(list-from (lfor clause clauses clause.car)))))))
+
+(defoperator ctypecase [place #* clauses]
+  (setv variable (gensym "KEY") again (gensym "AGAIN"))
+  `(block ~again
+     (tagbody
+       ~again
+       (let [[~variable ~place]]
+         (return-from ~again
+           ~(choose variable clauses type-test
+              `(progn (setf ~place (%ask-for-value ~variable "CTYPECASE" (quote ~(list-from (lfor clause clauses clause.car)))))
+                      (go ~again))))))))
+
+;; ------------------------------------------------------------------------------------------------------------- sequence
+
+(defoperator prog1 [first #* body]
+  (setv value (gensym "VALUE"))
+  `(let [[~value ~first]] ~@body ~value))
+
+(defoperator prog2 [first second #* body]
+  `(progn ~first (prog1 ~second ~@body)))
+
+(defoperator prog [bindings #* body]
+  (setv #(declarations forms) (split-declarations body))
+  `(block nil (let ~bindings ~@declarations (tagbody ~@forms))))
+
+(defoperator prog* [bindings #* body]
+  (setv #(declarations forms) (split-declarations body))
+  `(block nil (let* ~bindings ~@declarations (tagbody ~@forms))))
+
+(defoperator return [[value None]]
+  `(return-from nil ~value))
+
+(defn split-declarations [body]
+  "(declarations, other forms)"
+  (setv declare (sym "DECLARE") forms (list body) declarations [])
+  (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) declare))
+    (.append declarations (.pop forms 0)))
+  #(declarations forms))
+
+;; ------------------------------------------------------------------------------------------------------------ iteration
+
+(defoperator dotimes [spec #* body]
+  (setv #(variable count #* result) spec)
+  (setv counter (gensym "COUNTER") limit (gensym "LIMIT") next (gensym "NEXT") end (gensym "END"))
+  (setv #(declarations forms) (split-declarations body))
+  `(block nil
+     (let [[~counter 0] [~limit ~count]]
+       (tagbody
+         ~next
+         (if (>= ~counter ~limit) (go ~end))
+         (let [[~variable ~counter]] ~@declarations (tagbody ~@forms))
+         (setq ~counter (1+ ~counter))
+         (go ~next)
+         ~end)
+       (let [[~variable ~counter]] ~@declarations ~variable ~@result))))
+
+(defoperator dolist [spec #* body]
+  (setv #(variable items #* result) spec)
+  (setv rest (gensym "REST") next (gensym "NEXT") end (gensym "END"))
+  (setv #(declarations forms) (split-declarations body))
+  `(block nil
+     (let [[~rest ~items]]
+       (tagbody
+         ~next
+         (if (endp ~rest) (go ~end))
+         (let [[~variable (car ~rest)]] ~@declarations (tagbody ~@forms))
+         (setq ~rest (cdr ~rest))
+         (go ~next)
+         ~end))
+     ~(if result `(let [[~variable nil]] ~variable ~@result) None)))
+
+(defn step-parts [bindings]
+  "(variables with their first values, pairs of variable and step form) of `do`."
+  (setv initial [] steps [])
+  (for [binding (elements bindings)]
+    (setv parts (if (listp binding) (list binding) [binding]))
+    (.append initial (list-from (cut parts 2)))
+    (when (= (len parts) 3)
+      (.extend steps [(get parts 0) (get parts 2)])))
+  #(initial steps))
+
+(defn do-loop [bind assign bindings end body]
+  (setv #(initial steps) (step-parts bindings) #(declarations forms) (split-declarations body))
+  (setv next (gensym "NEXT") done (gensym "DONE") #(test #* result) end)
+  `(block nil
+     (~bind ~initial
+       ~@declarations
+       (tagbody
+         ~next
+         (if ~test (go ~done))
+         (tagbody ~@forms)
+         ~@(if steps [`(~assign ~@steps)] [])
+         (go ~next)
+         ~done)
+       (progn ~@result))))
+
+(defoperator do [bindings end #* body]
+  (do-loop 'let 'psetq bindings end body))
+
+(defoperator do* [bindings end #* body]
+  (do-loop 'let* 'setq bindings end body))
+
+(defoperator loop [#* forms]
+  (import cramhy_runtime.lisp.loop [expand])
+  (expand (list-from forms)))
+
+(defoperator loop-finish []
+  "Outside LOOP there is nothing to finish."
+  `(error "LOOP-FINISH is only meaningful inside LOOP."))
+
+(defoperator do-symbols [spec #* body]
+  (setv #(variable #* rest) spec)
+  `(dolist [~variable (%package-symbols ~(if rest (get rest 0) '*package*) nil) ~@(cut rest 1 None)] ~@body))
+
+(defoperator do-external-symbols [spec #* body]
+  (setv #(variable #* rest) spec)
+  `(dolist [~variable (%package-symbols ~(if rest (get rest 0) '*package*) t) ~@(cut rest 1 None)] ~@body))
+
+(defoperator do-all-symbols [spec #* body]
+  (setv #(variable #* rest) spec)
+  `(dolist [~variable (%all-symbols) ~@rest] ~@body))
+
+;; ------------------------------------------------------------------------------------------------------ multiple values
+
+(defoperator multiple-value-setq [variables form]
+  (setv names (elements variables) temporaries (lfor _ names (gensym "VALUE")))
+  (if names
+      `(multiple-value-bind ~temporaries ~form
+         ~@(lfor #(name value) (zip names temporaries) `(setf ~name ~value))
+         ~(get temporaries 0))
+      `(prog1 ~form)))
+
+(defoperator nth-value [n form]
+  `(nth ~n (multiple-value-list ~form)))
+
+(defoperator destructuring-bind [lambda-list form #* body]
+  (import cramhy_runtime.lisp.lambda-lists [destructure])
+  `(let* ~(lfor #(variable value) (destructure lambda-list form "DESTRUCTURING-BIND") [variable value]) ~@body))
+
+;; ---------------------------------------------------------------------------------------------------------- definitions
+
+(defn body-parts [forms]
+  "(documentation or None, declarations, other forms) of the body of a definition."
+  (setv forms (list forms) documentation None declarations [])
+  (while forms
+    (setv head (get forms 0))
+    (cond
+      (and (isinstance head str) (is documentation None) (> (len forms) 1)) (setv documentation (.pop forms 0))
+      (and (listp head) (is head.car (sym "DECLARE"))) (.append declarations (.pop forms 0))
+      True (break)))
+  #(documentation declarations forms))
+
+(defoperator defun [name lambda-list #* body]
+  (setv #(documentation declarations forms) (body-parts body))
+  `(%define-function (quote ~name) (%named-lambda ~name ~lambda-list ~@declarations ~@forms) ~documentation))
+
+(defoperator defmacro [name lambda-list #* body]
+  (import cramhy_runtime.lisp.definitions [macro-function-form])
+  (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
+  `(%define-macro (quote ~name) ~function ~documentation))
+
+(defoperator define-compiler-macro [name lambda-list #* body]
+  "Accepted; the compiler does without the optimization."
+  `(quote ~name))
+
+(defoperator defvar [name #* rest]
+  (%note-special name)
+  (setv #(value documentation) (+ (list rest) (* [None] (- 2 (len rest)))))
+  `(%define-variable (quote ~name) ~(if rest `(lambda [] ~value) None) ~documentation))
+
+(defoperator defparameter [name value [documentation None]]
+  (%note-special name)
+  `(%define-variable (quote ~name) (lambda [] ~value) ~documentation t))
+
+(defn %note-special [name]
+  "The forms after a definition see the variable as special even before the definition has run."
+  (import cramhy_runtime.lisp.definitions [proclaim-special])
+  (proclaim-special name))
+
+(defoperator defconstant [name value [documentation None]]
+  `(%define-constant (quote ~name) ~value ~documentation))
+
+(defoperator define-symbol-macro [name expansion]
+  `(%define-symbol-macro (quote ~name) (quote ~expansion)))
+
+(defoperator declaim [#* specifiers]
+  `(progn ~@(lfor specifier specifiers `(proclaim (quote ~specifier)))))
+
+(defoperator deftype [name lambda-list #* body]
+  (import cramhy_runtime.lisp.definitions [macro-function-form])
+  (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
+  `(%define-type (quote ~name) ~function))
+
+(defoperator defpackage [name #* options]
+  `(%define-package (quote ~name) (quote ~options)))
+
+(defoperator in-package [name]
+  `(%set-package (quote ~name)))
+
+(defoperator with-package-iterator [spec #* body]
+  (setv #(name packages #* kinds) spec)
+  (setv iterator (gensym "ITERATOR"))
+  `(let [[~iterator (%package-iterator ~packages (quote ~kinds))]]
+     (macrolet [[~name [] (quote (funcall ~iterator))]] ~@body)))
+
+;; --------------------------------------------------------------------------------------------------- conditions, checks
+
+(defoperator assert [test [places None] #* message]
+  `(if ~test nil (%assertion-failed (quote ~test) ~@message)))
+
+(defoperator check-type [place type [name None]]
+  `(if (typep ~place (quote ~type))
+       nil
+       (setf ~place (%check-type-failed ~place (quote ~place) (quote ~type) ~name))))
+
+(defn handler-function [clause]
+  "(type function) for a clause (type (variable) . body)."
+  (setv #(type variables #* body) clause)
+  (setv ignored (gensym "CONDITION"))
+  (if variables
+      `(list (quote ~type) (lambda ~variables ~@body))
+      `(list (quote ~type) (lambda [~ignored] ~@body))))
+
+(defoperator handler-bind [bindings #* body]
+  `(%handler-bind (list ~@(lfor #(type function) (elements bindings) `(list (quote ~type) ~function))) (lambda [] ~@body)))
+
+(defoperator handler-case [form #* clauses]
+  (setv no-error (lfor clause clauses :if (is clause.car (sym ":NO-ERROR")) clause))
+  (setv handlers (lfor clause clauses :if (is-not clause.car (sym ":NO-ERROR")) (handler-function clause)))
+  `(%handler-case (list ~@handlers) (lambda [] ~form)
+                  ~(if no-error `(lambda ~@(. (get no-error 0) cdr)) None)))
+
+(defoperator ignore-errors [#* body]
+  `(%ignore-errors (lambda [] ~@body)))
+
+(defn restart-clause [clause]
+  "A clause (name lambda-list [:report r] [:interactive i] [:test t] . body) of `restart-case`."
+  (setv #(name lambda-list #* rest) clause options {} rest (list rest))
+  (while (and rest (isinstance (get rest 0) LispSymbol) (in (. (get rest 0) name) ["REPORT" "INTERACTIVE" "TEST"]))
+    (setv (get options (. (get rest 0) name)) (get rest 1))
+    (setv rest (cut rest 2 None)))
+  (setv report (.get options "REPORT"))
+  (defn function-of [form]
+    (if (or (is form None) (isinstance form str)) form `(function ~form)))
+  `(list (quote ~name) (lambda ~lambda-list ~@rest) (%restart-report ~(function-of report))
+         ~(function-of (.get options "INTERACTIVE")) ~(function-of (.get options "TEST"))))
+
+(defoperator restart-case [form #* clauses]
+  `(%restart-case (list ~@(lfor clause clauses (restart-clause clause))) (lambda [] ~form)))
+
+(defoperator restart-bind [bindings #* body]
+  `(%restart-bind
+     (list ~@(lfor binding (elements bindings)
+               (do
+                 (setv #(name function #* options) binding)
+                 `(list (quote ~name) ~function ~@options))))
+     (lambda [] ~@body)))
+
+(defoperator with-simple-restart [spec #* body]
+  (setv #(name control #* arguments) spec)
+  `(%with-simple-restart (quote ~name) (lambda [] (format nil ~control ~@arguments)) (lambda [] ~@body)))
+
+(defoperator with-condition-restarts [condition restarts #* body]
+  `(progn ~condition ~restarts ~@body))
+
+(defoperator define-condition [name parents slots #* options]
+  (import cramhy.clos [slot-specification class-options])
+  `(%define-condition (quote ~name) (quote ~parents)
+                      (list ~@(lfor slot (elements slots) (slot-specification slot)))
+                      (list ~@(class-options options))))
+
+;; -------------------------------------------------------------------------------------------------------------- streams
+
+(defoperator with-output-to-string [spec #* body]
+  (setv #(variable #* rest) (elements spec))
+  (setv stream variable)
+  (if (and rest (is-not (get rest 0) None) (isinstance (get rest 0) LispSymbol) (not (isinstance (get rest 0) (type (sym ":A")))))
+      `(let [[~stream (%make-fill-pointer-output-stream ~(get rest 0))]] ~@body)
+      `(let [[~stream (make-string-output-stream)]] ~@body (get-output-stream-string ~stream))))
+
+(defoperator with-input-from-string [spec #* body]
+  (setv #(variable string #* options) spec)
+  (setv options (dict (zip (lfor option (cut options 0 None 2) option.name) (cut options 1 None 2))))
+  (setv index (.get options "INDEX"))
+  `(let [[~variable (make-string-input-stream ~string ~(.get options "START" 0) ~(.get options "END"))]]
+     ~(if (is index None)
+          `(progn ~@body)
+          `(multiple-value-prog1 (progn ~@body) (setf ~index (%stream-position ~variable))))))
+
+(defoperator with-open-file [spec #* body]
+  (setv #(variable path #* options) spec)
+  `(%with-open-file (lambda [~variable] ~@body) ~path ~@options))
+
+(defoperator with-open-stream [spec #* body]
+  (setv #(variable form) spec)
+  `(let [[~variable ~form]] (unwind-protect (progn ~@body) (close ~variable))))
+
+(defoperator with-standard-io-syntax [#* body]
+  `(%with-standard-io-syntax (lambda [] ~@body)))
+
+(defoperator print-unreadable-object [spec #* body]
+  (setv #(object stream #* options) spec)
+  `(%print-unreadable-object ~object ~stream ~(if body `(lambda [] ~@body) None) ~@options))
+
+(defoperator formatter [control]
+  `(%formatter ~control))
+
+(defoperator pprint-logical-block [spec #* body]
+  (setv #(stream items #* options) spec)
+  (setv variable (if (and (isinstance stream LispSymbol)) stream (gensym "STREAM")))
+  `(%pprint-logical-block
+     (lambda [~variable]
+       (macrolet [[pprint-pop [] (quote (%pprint-pop ~variable))]
+                  [pprint-exit-if-list-exhausted [] (quote (if (%pprint-list-exhausted ~variable) (return nil) nil))]]
+         (block nil ~@body)))
+     ~stream ~items ~@options))
+
+;; ------------------------------------------------------------------------------------------------------------ the REPL's
+
+(defoperator time [form]
+  `(%time (lambda [] ~form)))
+
+(defoperator trace [#* names]
+  `(%trace (quote ~names)))
+
+(defoperator untrace [#* names]
+  `(%untrace (quote ~names)))
+
+(defoperator step [form]
+  form)
+
+(defoperator with-compilation-unit [options #* body]
+  `(progn ~@body))
+
+(defoperator with-hash-table-iterator [spec #* body]
+  (setv #(name table) spec)
+  (setv iterator (gensym "ITERATOR"))
+  `(let [[~iterator (%hash-table-iterator ~table)]]
+     (macrolet [[~name [] (quote (funcall ~iterator))]] ~@body)))

@@ -1,0 +1,33 @@
+"""CPL, the CRAM plan language: fluents, tasks, failures and the operators that combine them. Usable from Python:
+
+    from cramhy_runtime import cpl, kernel
+
+    kernel.start(clock="virtual")
+    door = cpl.make_fluent(name="door-open")
+
+    def watch():
+        return cpl.wait_for(door, timeout=5.0)
+
+    def open_it():
+        cpl.sleep(2.0)
+        door.value = True
+
+    cpl.top_level(lambda: cpl.par(watch, open_it))      # True, after two seconds of virtual time
+
+Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``, ``suspension`` ·
+``failure_types``, ``failures`` · ``operators``, ``watching`` · ``tree``, ``tags``, ``plans``, ``policies`` · ``hooks``,
+``logging``, ``printing`` · ``package``, the Lisp faces. Reference: cpl.md.
+"""
+
+from .failure_types import *  # noqa: F403
+from .failures import RetryCounters, fail, with_failure_handling
+from .fluent_operators import (fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed)
+from .fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
+from .operators import (named_top_level, par, par_loop, partial_order, pursue, seq, top_level, try_all, try_each_in_order, try_in_order,
+                        with_task)
+from .suspension import (on_suspension, retry_after_suspension, suspend, wake_up, with_task_suspended, without_scheduling)
+from .task_variables import define_task_variable
+from .tasks import Task, ToplevelTask, current_task, evaporate, join_task
+from .waiting import sleep, wait_for, whenever
+
+__all__ = [name for name in dir() if not name.startswith("_")]

@@ -1,0 +1,135 @@
+"""The branches of one parallel form, and the task that waits for them.
+
+``par``, ``pursue``, ``try-all`` and the rest start one task per branch and differ only in when they have seen enough (`ready`)
+and in what they make of it (`choose`). The branches keep count themselves, so the waiting task is woken once, when there is
+something to decide, and not at the end of each of a thousand branches.
+
+Law 1 is kept in one place, `run`: however the waiting ends, by a decision, a failure, an evaporation or an interrupt, the living
+branches are evaporated and their death is awaited before anything else happens. A failure that a branch ends with *while* it is
+being evaporated is not lost: it takes the place of the evaporation (cpl.md 3.7). The original has a wrapper task and a watcher
+around this (6, 6.9), and does not wait when the form fails.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+
+from ..lisp.conditions import error
+from .failures import signal_failure
+from .tasks import DEAD, FAILED, Task, end_tasks, inside_plan, pause
+
+
+class Branches:
+    """A set of tasks started together. ``living``, ``failed`` and ``done`` count them."""
+
+    __slots__ = ("form", "tasks", "living", "failed", "done", "waiter", "ready")
+
+    def __init__(self, form, tasks):
+        self.form = form
+        self.tasks = tasks
+        self.living = len(tasks)
+        self.failed = self.done = 0
+        self.waiter = None
+        self.ready = None
+        for task in tasks:
+            task.ended = self.ended
+            task.execute()
+
+    def ended(self, task):
+        """A branch is dead. The waiting task is woken if that decides the matter."""
+        self.living -= 1
+        if task.status is FAILED:
+            self.failed += 1
+        else:
+            self.done += 1
+        if self.waiter is not None and self.ready(self):
+            self.waiter.kernel.unpark(self.waiter)
+
+    def wait(self, ready):
+        """Wait until ``ready(self)``."""
+        self.waiter = kernel.current()
+        self.ready = ready
+        while not ready(self):
+            pause(self._why)
+
+    def _why(self):
+        return f"the branches of {self.form.upper()}: " + ", ".join(task.name for task in self.tasks if task.alive)
+
+    def end(self):
+        """Evaporate the living branches and wait until they are dead."""
+        if self.living:
+            self.waiter = None
+            end_tasks([task for task in self.tasks if task.status not in DEAD])
+
+    def last_failure(self):
+        """The failure of the failed branch with the highest position, or ``None``."""
+        for task in reversed(self.tasks):
+            if task.status is FAILED:
+                return task.result
+        return None
+
+
+def run(form, tasks, ready, choose, late_failures_count=True):
+    """Start ``tasks`` as children of the current one, wait until ``ready(branches)``, end the rest, and return what
+    ``choose(branches)`` returned at that moment: (values, failure), failure ``None`` on success."""
+    branches = Branches(form, tasks)
+    try:
+        branches.wait(ready)
+        values, failure = choose(branches)
+    except BaseException as exception:
+        failed_before = branches.failed
+        branches.end()
+        if branches.failed > failed_before and isinstance(exception, kernel.Cancelled):
+            raise branches.last_failure() from None
+        raise
+    if branches.living:
+        failed_before = branches.failed
+        branches.end()
+        if failure is None and late_failures_count and branches.failed > failed_before:
+            failure = branches.last_failure()
+    if failure is not None:
+        signal_failure(failure)
+    return values
+
+
+def branch_tasks(form, thunks):
+    """A new task per thunk, named after its position: ``[PAR-CHILD-#1/2]-7``."""
+    count = len(thunks)
+    return [Task(thunk, _BranchName(form, index, count)) for index, thunk in enumerate(thunks, 1)]
+
+
+class _BranchName:
+    """A name that is made when somebody asks."""
+
+    __slots__ = ("form", "index", "count")
+
+    def __init__(self, form, index, count):
+        self.form, self.index, self.count = form, index, count
+
+    def __call__(self):
+        return f"[{self.form}-CHILD-#{self.index}/{self.count}]"
+
+
+def run_forms(form, thunks, ready, choose, late_failures_count=True):
+    """`run` for a plan form with one branch per thunk; the errors of cpl.md 5.3 and of a form without branches."""
+    inside_plan(form)
+    if not thunks:
+        error("wait-for called with nil argument.")
+    tasks = branch_tasks(form, thunks)
+    return run(form, tasks, ready, choose, late_failures_count)
+
+
+def run_one(task, form=None):
+    """Start ``task`` as a child of the current one and wait for it: its values, or its failure is signalled here."""
+    return run(form or str(task.name), [task], nobody_lives, only_values)
+
+
+def nobody_lives(branches):
+    return not branches.living
+
+
+def only_values(branches):
+    task = branches.tasks[0]
+    return (None, task.result) if task.status is FAILED else (task.result, None)
+
+

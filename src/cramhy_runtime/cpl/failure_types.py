@@ -1,0 +1,90 @@
+"""The conditions by which plans fail (cpl.md 4.1).
+
+A ``plan-failure`` is a serious condition but no error: ``ignore-errors`` and clauses for ``error`` let it pass, and in Python it
+is no `Exception`. An error that ends a branch reaches the parent in an envelope, which is a plan failure; a clause of
+``with-failure-handling`` for ``error`` looks inside. The policy conditions belong to neither family.
+"""
+
+from __future__ import annotations
+
+from ..lisp.condition_types import Condition, SeriousCondition, SimpleCondition, formatted
+
+
+class PlanFailure(SeriousCondition):
+    """A plan could not reach its goal."""
+
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::PLAN-FAILURE"
+
+
+class SimplePlanFailure(SimpleCondition, PlanFailure):
+    """A plan failure with a text."""
+
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::SIMPLE-PLAN-FAILURE"
+
+
+class CompositeFailure(PlanFailure):
+    """All attempts failed; ``failures`` (a Lisp list) says how."""
+
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::COMPOSITE-FAILURE"
+    initargs = {"FAILURES": "failures"}
+    failures = None
+
+
+class CommonLispErrorEnvelope(PlanFailure):
+    """The error of a child task, on its way up."""
+
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::COMMON-LISP-ERROR-ENVELOPE"
+    initargs = {"ERROR": "error"}
+    error = None
+
+
+class PolicyCondition(Condition):
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-CONDITION"
+    initargs = {"NAME": "name"}
+    name = None
+
+
+class PolicyNotFound(PolicyCondition):
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-NOT-FOUND"
+
+    def report(self):
+        return formatted("Policy ~a not found.~%", (self.name,))
+
+
+class PolicyFailure(PolicyCondition):
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-FAILURE"
+    initargs = {"NAME": "name", "PARAMETERS": "parameters"}
+    parameters = None
+
+
+class PolicyInitFailed(PolicyFailure):
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-INIT-FAILED"
+
+    def report(self):
+        return formatted("Initialization of policy ~a failed.~%Parameters: ~a~%", (self.name, self.parameters))
+
+
+class PolicyCheckConditionMet(PolicyFailure):
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-CHECK-CONDITION-MET"
+
+    def report(self):
+        return formatted("Policy check condition met for policy ~a.~%Parameters: ~a.~%", (self.name, self.parameters))
+
+
+def envelope(condition):
+    """``condition`` as a plan failure: itself, or an envelope around it. Envelopes are never nested."""
+    if isinstance(condition, PlanFailure):
+        return condition
+    wrapped = CommonLispErrorEnvelope(error=condition)
+    wrapped.__cause__ = condition
+    return wrapped
+
+
+def opened(condition):
+    """What an envelope holds; any other condition is itself."""
+    return condition.error if isinstance(condition, CommonLispErrorEnvelope) else condition
+
+
+ALL = (PlanFailure, SimplePlanFailure, CompositeFailure, CommonLispErrorEnvelope, PolicyCondition, PolicyNotFound, PolicyFailure,
+       PolicyInitFailed, PolicyCheckConditionMet)
+__all__ = [cls.__name__ for cls in ALL] + ["ALL", "envelope", "opened"]

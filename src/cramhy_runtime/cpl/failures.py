@@ -1,0 +1,220 @@
+"""Failing, and handling failures before anything unwinds.
+
+``fail`` offers its condition to the handlers of its task while the failing code's stack is still there; a handler may leave by a
+non-local exit, have the body tried again with ``retry``, or decline by returning. What nobody takes unwinds the task and is
+signalled once more, the same object, in the task that waits for it (`signal_failure`). Source: cpl.md section 4.
+
+``*debug-on-lisp-errors*`` behaves as nil: an error in a task goes to its parent in an envelope, and ``top-level`` opens it. A task
+that is being evaporated cannot be brought back by a handler that was there before: such handlers are passed over.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+
+from ..lisp import condition_types as types
+from ..lisp import conditions
+from ..lisp.conditions import error, handler_bind, handler_case, make_condition, matches, signal_condition
+from ..lisp.data import truth
+from ..lisp.dynamic import binding
+from .symbols import sym
+from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure
+from .hooks import (on_fail, on_with_failure_handling_begin, on_with_failure_handling_end, on_with_failure_handling_handled,
+                    on_with_failure_handling_rethrown)
+from .logging import log_event
+from .task_variables import inherit
+
+BREAK_ON_PLAN_FAILURES = inherit(sym("CPL-IMPL::*BREAK-ON-PLAN-FAILURES*"), None)
+DEBUG_ON_LISP_ERRORS = inherit(sym("CPL-IMPL::*DEBUG-ON-LISP-ERRORS*"), True)
+
+
+def fail(*arguments):
+    """``(fail ...)``: fail with a text and its arguments, a condition class with initargs, or a condition object. Never returns.
+
+    Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.``
+    """
+    condition = make_condition(arguments[0], arguments[1:], SimplePlanFailure) if arguments else SimplePlanFailure("Plan failure.")
+    log_event(lambda: ("FAIL", f"{condition}"), "FAIL")
+    if on_fail:
+        on_fail(arguments[0] if arguments else None)
+    if getattr(kernel.current().local, "plan_task", None) is None or not isinstance(condition, PlanFailure):
+        return error(condition)
+    if truth(BREAK_ON_PLAN_FAILURES.value) and matches(condition, BREAK_ON_PLAN_FAILURES.value):
+        with binding(conditions.DEBUGGER_HOOK, None):
+            conditions.with_simple_restart(sym("CONTINUE"), "Continue failure signalling.",
+                                           lambda: conditions.invoke_debugger(condition))
+    return signal_failure(condition)
+
+
+def signal_failure(condition):
+    """Offer ``condition`` to the handlers of this task; when all decline, unwind with it. Never returns."""
+    if isinstance(condition, types.Condition):
+        signal_condition(condition)
+    raise condition
+
+
+class _Again(BaseException):
+    """Unwinds to the ``with-failure-handling`` whose body is to be tried again, or that is to return ``values``."""
+
+    def __init__(self, form, values=None, leave=False):
+        self.form, self.values, self.leave = form, values, leave
+
+
+class Handling:
+    """One execution of ``with-failure-handling``; its handlers and body get it as their ``retry``.
+
+    ``retry()`` unwinds and tries the body again; ``retry.leave(value)`` unwinds and makes the form return ``value``, which in
+    Lisp is written ``(return value)`` and compiled to an exit of its own.
+    """
+
+    __slots__ = ("clauses", "task", "ending", "id")
+
+    def __init__(self, clauses):
+        self.clauses = clauses
+        self.task = kernel.current()
+        self.ending = self.task.cancelled_delivered
+        self.id = None
+
+    def __call__(self):
+        raise _Again(self)
+
+    def leave(self, value=None):
+        raise _Again(self, value, True)
+
+    def handle(self, condition):
+        """The handler of the form: try its clauses in order (cpl.md 4.5, points 4 and 5). Returns when all declined."""
+        if self.task.cancelled_delivered and not self.ending:
+            return
+        clauses = self.clauses
+        if condition.__class__ is CommonLispErrorEnvelope:
+            wrapped = condition.error
+            for specifier, handler in clauses:
+                if matches(wrapped, specifier):
+                    handler(wrapped, self)
+                    break
+        for specifier, handler in clauses:
+            if matches(condition, specifier):
+                if on_with_failure_handling_handled:
+                    on_with_failure_handling_handled(self.id)
+                handler(condition, self)
+                if on_with_failure_handling_rethrown:
+                    on_with_failure_handling_rethrown(self.id)
+
+
+def with_failure_handling(clauses, body):
+    """``(with-failure-handling clauses body...)``: the values of ``body(retry)``, with ``clauses`` in force.
+
+    ``clauses`` is a list of (type specifier, handler) with ``handler(condition, retry)``; an ``(or ...)`` clause comes as one pair
+    per type. Handlers run before unwinding; one that returns declines, and the next matching clause or outer form has its turn.
+    ``retry()`` tries the body again. The block named nil for ``return`` is the compiler's; Python handlers call ``retry.leave``.
+    """
+    handling = Handling(clauses)
+    if on_with_failure_handling_begin or on_with_failure_handling_end:
+        return _observed(handling, body)
+    return _attempts(handling, body)
+
+
+def _attempts(handling, body):
+    bound = [(True, handling.handle)]
+    while True:
+        try:
+            return handler_bind(bound, lambda: body(handling))
+        except _Again as again:
+            if again.form is not handling:
+                raise
+            if again.leave:
+                return again.values
+        kernel.checkpoint()
+
+
+def _observed(handling, body):
+    names = [specifier.__name__ if isinstance(specifier, type) else getattr(specifier, "name", str(specifier))
+             for specifier, _ in handling.clauses]
+    from ..lisp.data import list_from
+
+    handling.id = on_with_failure_handling_begin.first(list_from(names))
+    try:
+        return _attempts(handling, body)
+    finally:
+        on_with_failure_handling_end(handling.id)
+
+
+def attempt(thunk):
+    """Call ``thunk``: (its values, ``None``), or (``None``, the plan failure that ended it). Outer handlers do not see it."""
+    me = kernel.current()
+    ending = me.cancelled_delivered
+    values = handler_case([(PlanFailure, _Failed)], thunk)
+    if values.__class__ is _Failed:
+        if me.cancelled_delivered and not ending:
+            raise values.failure
+        return None, values.failure
+    return values, None
+
+
+class _Failed:
+    """What `attempt` gets instead of values."""
+
+    __slots__ = ("failure",)
+
+    def __init__(self, failure):
+        self.failure = failure
+
+
+def composite_failure(failures):
+    """Fail with a ``composite-failure`` of the conditions ``failures``, a Python list in order."""
+    from ..lisp.data import list_from
+
+    return fail(CompositeFailure(failures=list_from(failures)))
+
+
+class RetryCounters:
+    """The counters of one ``with-retry-counters``: name to initial-value function, evaluated once at entry, in parallel.
+
+    The macro compiles ``(do-retry name form...)`` to ``counters.do_retry(name, thunk)``, and ``(get-counter name)`` and
+    ``(reset-counter name)`` likewise.
+    """
+
+    def __init__(self, initial):
+        self.initial = dict(initial)
+        self.left = {name: thunk() for name, thunk in self.initial.items()}
+
+    def do_retry(self, name, thunk):
+        """While the counter is above zero: subtract one and return the values of ``thunk``; then nil."""
+        if self.left[name] > 0:
+            self.left[name] -= 1
+            return thunk()
+        return None
+
+    def get_counter(self, name):
+        return self.left[name]
+
+    def reset_counter(self, name):
+        """Evaluate the initial-value form again and store its value, which is returned."""
+        self.left[name] = self.initial[name]()
+        return self.left[name]
+
+
+def assert_no_returning(forms, thunk):
+    """Call ``thunk``; if it returns, that is an error, which shows ``forms``."""
+    thunk()
+    return error("Asserted~%  ~@<~A~:>~%not to return. But we did return.", forms)
+
+
+def assert_no_nlx(forms, thunk):
+    """The values of ``thunk``; leaving it by a non-local exit is an error, which shows ``forms``."""
+    try:
+        return thunk()
+    except (types.Condition, Exception, kernel.Cancelled, kernel.Abandoned, kernel.Interrupted):
+        raise
+    except BaseException:
+        return error("Asserted~%  ~@<~A~:>~%not to perform a non-local exit. Caught attempt to do so.", forms)
+
+
+def composite_failures(failure):
+    return failure.failures
+
+
+def envelop_error(failure):
+    return failure.error
+
+

@@ -1,0 +1,193 @@
+"""Operators that understand fluents: on plain values they are Common Lisp's, on a fluent they make a net.
+
+An operator looks at its direct arguments only. None of them a fluent: it computes at once. At least one: it returns a net that
+recomputes the operation whenever an argument pulses, cached if all fluent arguments are cacheable. ``fl-and`` and ``fl-or``
+read their arguments from left to right and stop early, which matters when reading consumes. Source: cpl.md 2.7 to 2.9, 2.12.
+
+``fl-apply`` keeps the original's results: it does not spread its last argument but hands the function a *list* of values.
+Repaired: called with that list alone, it follows the fluents in it.
+"""
+
+from __future__ import annotations
+
+from ..lisp.conditions import error
+from ..lisp.data import list_from, truth
+from ..lisp.packages import keyword
+from .symbols import sym
+from .fluents import (ALWAYS, NEVER, ONCE, CachedNet, ChangeFluent, Fluent, Net, PulseFluent, ValueFluent, check_fluent, function_of,
+                      is_cacheable, unchanged, value)
+
+_QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other
+
+
+def net(operator, formula, arguments):
+    """The net for ``formula`` over those of ``arguments`` that are fluents."""
+    inputs = tuple(dict.fromkeys(argument for argument in arguments if isinstance(argument, Fluent)))
+    kind = CachedNet if all(map(is_cacheable, inputs)) else Net
+    return kind(operator, formula, inputs)
+
+
+def _formula(function, arguments):
+    if len(arguments) == 2:
+        first, second = arguments
+        if not isinstance(second, Fluent):
+            return lambda read: function(read(first), second)
+        if not isinstance(first, Fluent):
+            return lambda read: function(first, read(second))
+        return lambda read: function(read(first), read(second))
+    return lambda read: function(*map(read, arguments))
+
+
+def _lifted(name, operator, quick=None):
+    """The fluent-aware form of the Common Lisp function ``name``; ``quick`` does the commonest case, two ordinary numbers."""
+    symbol = sym(name)
+    if quick is None:
+        def compute(*arguments):
+            return symbol.function(*arguments)
+    else:
+        def compute(*arguments):
+            if len(arguments) == 2:
+                first, second = arguments
+                if first.__class__ in _QUICK and second.__class__ in _QUICK:
+                    return quick(first, second)
+            return symbol.function(*arguments)
+
+    def lifted(*arguments):
+        for argument in arguments:
+            if isinstance(argument, Fluent):
+                return net(operator, _formula(compute, arguments), arguments)
+        return compute(*arguments)
+
+    lifted.__name__ = operator.lower()
+    lifted.__doc__ = f"``cl:{name.lower()}`` that makes a net when an argument is a fluent."
+    return lifted
+
+
+fl_lt = _lifted("<", "FL<", lambda a, b: True if a < b else None)
+fl_gt = _lifted(">", "FL>", lambda a, b: True if a > b else None)
+fl_equals = _lifted("=", "FL=", lambda a, b: True if a == b else None)
+fl_plus = _lifted("+", "FL+", lambda a, b: a + b)
+fl_minus = _lifted("-", "FL-", lambda a, b: a - b)
+fl_times = _lifted("*", "FL*", lambda a, b: a * b)
+fl_divide = _lifted("/", "FL/")
+fl_member = _lifted("MEMBER", "FL-MEMBER")
+
+
+def _lift_test(operator, test):
+    def lifted(first, second):
+        if isinstance(first, Fluent) or isinstance(second, Fluent):
+            return net(operator, _formula(lambda a, b: True if test(a, b) else None, (first, second)), (first, second))
+        return True if test(first, second) else None
+
+    return lifted
+
+
+fl_eq = _lift_test("FL-EQ", lambda a, b: a is b or (a.__class__ is int and b.__class__ is int and a == b))
+fl_eql = _lift_test("FL-EQL", unchanged)
+
+
+def fl_not(argument):
+    """``(not x)``, or a net that is true while the fluent ``argument`` is not."""
+    if isinstance(argument, Fluent):
+        return net("FL-NOT", lambda read: None if truth(read(argument)) else True, (argument,))
+    return None if truth(argument) else True
+
+
+def fl_and(*arguments):
+    """The last value if all are true, else nil; a net if there is a fluent. ``(fl-and)`` is true."""
+
+    def formula(read):
+        result = True
+        for argument in arguments:
+            result = read(argument)
+            if not truth(result):
+                return None
+        return result
+
+    return _now_or_net("FL-AND", formula, arguments)
+
+
+def fl_or(*arguments):
+    """The first true value, or nil; a net if there is a fluent. Later fluents are not read, hence not consumed."""
+
+    def formula(read):
+        for argument in arguments:
+            result = read(argument)
+            if truth(result):
+                return result
+        return None
+
+    return _now_or_net("FL-OR", formula, arguments)
+
+
+def _now_or_net(operator, formula, arguments):
+    if any(isinstance(argument, Fluent) for argument in arguments):
+        return net(operator, formula, arguments)
+    return formula(value)
+
+
+def fl_funcall(function, *arguments):
+    """Call ``function`` on the values of ``arguments``, at once or in a net. Lists are not searched for fluents."""
+    function = function_of(function)
+    for argument in arguments:
+        if isinstance(argument, Fluent):
+            return net("FL-FUNCALL", _formula(function, arguments), arguments)
+    return function(*arguments)
+
+
+def fl_apply(function, argument, *more):
+    """A net of ``function`` on the values of the leading arguments and, last, a *list* of the values in the last argument."""
+    function = function_of(function)
+    *leading, last = argument, *more
+    elements = [] if last is None else list(last)
+
+    def formula(read):
+        return function(*map(read, leading), list_from([read(element) for element in elements]))
+
+    return net("FL-APPLY", formula, [*leading, *elements])
+
+
+_MISSED = {keyword(mode): mode for mode in (NEVER, ONCE, ALWAYS)}
+
+
+def fl_pulsed(fluent, *, handle_missed_pulses=None):
+    """A fluent of its own that is true while ``fluent`` has pulses that were not consumed; modes :never, :once, :always."""
+    check_fluent(fluent)
+    if handle_missed_pulses is None:
+        return PulseFluent(fluent)
+    mode = _MISSED.get(handle_missed_pulses) or (handle_missed_pulses if handle_missed_pulses in _MISSED.values() else None)
+    if mode is None:
+        from ..lisp.condition_types import CaseFailure
+        from ..lisp.data import lisp_list
+
+        return error(CaseFailure(handle_missed_pulses, "ECASE", lisp_list(*_MISSED)))
+    return PulseFluent(fluent, mode)
+
+
+pulsed = fl_pulsed
+
+
+def fl_value_changed(fluent, *, test=None, key=None):
+    """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
+    check_fluent(fluent)
+    return ChangeFluent(fluent, function_of(test) or unchanged, function_of(key) or (lambda current: current))
+
+
+class Parameter:
+    """What ``def-cpl-parameter`` makes: a place with a hidden fluent, so that access is observed like a fluent's."""
+
+    def __init__(self, name, initial=None):
+        self.fluent = ValueFluent(name, initial)
+
+    def get(self):
+        return self.fluent.stored
+
+    def set(self, new):
+        return self.fluent.set(new)
+
+
+def define_cpl_parameter(name, initial=None):
+    """``(def-cpl-parameter name initial)``: the `Parameter` behind ``name``, kept on the symbol for reading and assigning."""
+    parameter = name.compiler_data = Parameter(name, initial)
+    return parameter
+

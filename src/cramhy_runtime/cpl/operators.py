@@ -1,0 +1,242 @@
+"""The control operators: ``top-level``, ``seq``, ``par``, ``pursue``, ``try-all``, ``partial-order`` and their kin.
+
+Each takes its branches as functions of no arguments and passes all values through. Which branch's values a form returns, and
+which failure it fails with, is decided by *position* (cpl.md section 6): ``par`` returns the first form's values, ``pursue`` those
+of the last form that is done, ``try-all`` those of the first; a failure is that of the last failed form. A branch that somebody
+else evaporated counts as done, without values; in the original ``pursue`` signals an assertion then.
+
+What all parallel forms have in common is in ``branches.py``.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+
+from ..lisp.conditions import error, type_error
+from ..lisp.data import Cons, truth
+from ..lisp.dynamic import binding
+from .branches import branch_tasks, run, run_forms, run_one
+from .failure_types import CompositeFailure, opened
+from .failures import attempt, composite_failure
+from .fluent_operators import fl_pulsed
+from .fluents import ValueFluent
+from .hooks import (on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook)
+from .tasks import DEAD, DONE, FAILED, Task, ToplevelTask, end_tasks, inside_plan
+from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
+
+
+def top_level(body):
+    """``(top-level body...)``: run ``body`` as the root of a plan and wait for it: its values.
+
+    A plan failure that leaves it is signalled here as itself, an error of any branch as that error. When this returns or unwinds,
+    every task below is dead. Inside a task it is an error.
+    """
+    return named_top_level(body)
+
+
+def named_top_level(body, name=None):
+    """``(named-top-level (:name name) body...)``: as `top_level`, with a task tree that is kept under ``name``."""
+    me = kernel.current()
+    if getattr(me.local, "plan_task", None) is not None:
+        error("top-level calls cannot be nested.")
+    if name is None and not (on_preparing_named_top_level or on_top_level_setup_hook or on_finishing_named_top_level
+                             or on_top_level_cleanup_hook):
+        return _run_top_level(body, None, TaskTreeNode())
+    tree = clear_tasks(get_top_level_task_tree(name) if name is not None else TaskTreeNode())
+    run_id = on_preparing_named_top_level.first(name)
+    pairs = []
+    for bound in on_top_level_setup_hook(name, tree):
+        if bound is not None:
+            for symbol, value in zip(bound.car or (), bound.cdr or (), strict=False):
+                pairs += (symbol, value)
+    with binding(*pairs):
+        try:
+            return _run_top_level(body, name, tree)
+        finally:
+            on_finishing_named_top_level(run_id)
+            on_top_level_cleanup_hook(name)
+
+
+def _run_top_level(body, name, tree):
+    task = ToplevelTask(body, lambda: f"[{name.name}-TOP-LEVEL]" if name is not None else "[TOP-LEVEL]")
+    task.tree = tree
+    me = kernel.current()
+    task.ended = lambda task: me.kernel.unpark(me)
+    task.execute()
+    try:
+        while task.status not in DEAD:
+            kernel.park(lambda: f"the plan {task.name}")
+    except BaseException as exception:
+        end_tasks([task], f"{name.name if name is not None else 'NIL'} aborted.")
+        if task.status is FAILED and isinstance(exception, kernel.Cancelled | kernel.Interrupted):
+            exception.add_note(f"While the plan was ended, its cleanup failed: {task.result}")
+        raise
+    if task.status is FAILED:
+        failure = opened(task.result)
+        if isinstance(failure, KeyboardInterrupt | SystemExit | kernel.Interrupted):
+            raise failure
+        return error(failure)
+    return task.result
+
+
+# ---------------------------------------------------------------------------------------------------------- when it is decided
+
+
+def _any_failed_or_all_dead(branches):
+    return branches.failed or not branches.living
+
+
+def _any_dead(branches):
+    return branches.failed or branches.done
+
+
+def _any_done_or_all_dead(branches):
+    return branches.done or not branches.living
+
+
+# ---------------------------------------------------------------------------------------------------------- and what comes of it
+
+
+def _first_values(branches):
+    failure = branches.last_failure() if branches.failed else None
+    return branches.tasks[0].result, failure
+
+
+def _winner(branches):
+    if branches.failed:
+        return None, branches.last_failure()
+    for task in reversed(branches.tasks):
+        if task.status in DONE:
+            return task.result, None
+    return None, None
+
+
+def _first_success(branches):
+    for task in branches.tasks:
+        if task.status in DONE:
+            return task.result, None
+    from ..lisp.data import list_from
+
+    return None, CompositeFailure(failures=list_from([task.result for task in reversed(branches.tasks)]))
+
+
+def seq(*thunks):
+    """``(seq form...)``: one after the other; values of the last."""
+    result = None
+    for thunk in thunks:
+        result = thunk()
+    return result
+
+
+def par(*thunks):
+    """``(par form...)``: all at once, until all have ended; values of the first form. One fails: the others are ended, it fails."""
+    return run_forms("PAR", thunks, _any_failed_or_all_dead, _first_values)
+
+
+def pursue(*thunks):
+    """``(pursue form...)``: all at once, until one has ended; its values. The others are evaporated, and dead when this returns."""
+    return run_forms("PURSUE", thunks, _any_dead, _winner)
+
+
+def try_all(*thunks):
+    """``(try-all form...)``: all at once, until one succeeds. All fail: a composite failure, failures of the last form first."""
+    return run_forms("TRY-ALL", thunks, _any_done_or_all_dead, _first_success, late_failures_count=False)
+
+
+def try_in_order(*thunks):
+    """``(try-in-order form...)``: one after the other until one succeeds. All fail: a composite failure, in order."""
+    inside_plan("TRY-IN-ORDER")
+    return _try(thunks)
+
+
+def try_each_in_order(elements, body):
+    """``(try-each-in-order (variable list) body...)``: ``body(element)`` for one after the other until one succeeds."""
+    inside_plan("TRY-EACH-IN-ORDER")
+    return _try((lambda element=element: body(element)) for element in _list(elements))
+
+
+def _try(thunks):
+    failures = []
+    for thunk in thunks:
+        values, failure = attempt(thunk)
+        if failure is None:
+            return values
+        failures.append(failure)
+        kernel.checkpoint()
+    return composite_failure(failures)
+
+
+def par_loop(elements, body):
+    """``(par-loop (variable list) body...)``: ``body(element)`` for all elements at once; values for the first element.
+
+    As in the original an empty list runs the body once, with nil.
+    """
+    inside_plan("PAR-LOOP")
+    elements = list(_list(elements)) or [None]
+    tasks = branch_tasks("PAR", [(lambda element=element: body(element)) for element in elements])
+    return run("PAR", tasks, _any_failed_or_all_dead, _first_values)
+
+
+def _list(elements):
+    if elements is None:
+        return ()
+    if not isinstance(elements, Cons):
+        return type_error(elements, "LIST")
+    return elements
+
+
+def partial_order(steps, orderings):
+    """``(partial-order (step...) (:order before after)...)``: as `par`, with ``after`` starting its body only when ``before`` is dead.
+
+    ``orderings`` is a list of pairs (before, after): tasks, or for ``before`` a value fluent, which counts when it has been pulsed.
+    A ring of orderings never ends; the kernel reports it as a deadlock.
+    """
+    inside_plan("PARTIAL-ORDER")
+    for before, after in orderings:
+        order(before, after)
+    return run_forms("PAR", steps, _any_failed_or_all_dead, _first_values)
+
+
+def order(before, after):
+    """Let the task ``after`` start its body only when ``before`` is dead (a task) or has been pulsed (a fluent)."""
+    if not isinstance(after, Task):
+        type_error(after, "TASK")
+    if isinstance(before, Task):
+        from .tasks import task_dead
+
+        constraint = task_dead(before)
+    elif before.__class__ is ValueFluent:
+        constraint = fl_pulsed(before)
+    else:
+        return type_error(before, "(OR TASK VALUE-FLUENT)")
+    if after.constraints is None:
+        after.constraints = []
+    after.constraints.append(constraint)
+
+
+def with_task(body, name="WITH-TASK", cls=None):
+    """``(with-task (:name name) body...)``: run ``body`` in a new child task and wait for it."""
+    inside_plan("WITH-TASK")
+    return run_one((cls or Task)(body, lambda: f"[{name}]"))
+
+
+def with_parallel_childs(name, thunks, watcher):
+    """The general parallel form: ``watcher(running, done, failed)`` is called each time that a child's status has changed.
+
+    The three are Lisp lists of tasks, last form first. The watcher leaves the form by ``(return ...)``, a non-local exit; if it
+    never does, the form goes on when all children are dead, and waits for ever.
+    """
+    inside_plan(name or "WITH-PARALLEL-CHILDS")
+    from .watching import watch
+
+    return watch(branch_tasks(name or "WITH-PARALLEL-CHILDS", thunks), watcher)
+
+
+def mapcar_clean(function, first, *more):
+    """``(mapcar-clean function list...)``: the results of ``mapcar`` without the nils. Repaired: works with several lists."""
+    from ..lisp.data import list_from, one
+
+    results = (one(function(*arguments)) for arguments in zip(*(_list(lst) for lst in (first, *more)), strict=False))
+    return list_from([result for result in results if truth(result)])
+
+

@@ -1,0 +1,100 @@
+"""The faces of the plan language: the packages CRAM-LANGUAGE-IMPLEMENTATION, CRAM-LANGUAGE and CRAM-USER (cpl.md section 1).
+
+CRAM-LANGUAGE is what users use instead of COMMON-LISP: all of Common Lisp, eleven of its names replaced by fluent-aware ones, and
+the plan language. Which symbol is which Python function stands in the tables below. Macros are only exported here; they are
+defined in ``hy_src/cramhy/cpl.hy``.
+"""
+
+from __future__ import annotations
+
+from ..lisp.faces import define_face
+from . import (failures, fluent_operators, fluents, hooks, logging, operators, plans, policies, printing, readers, suspension,
+               task_variables, tasks, tree, waiting)  # fmt: skip
+from .symbols import CPL_IMPL, sym
+
+OPERATORS = {
+    "FL<": fluent_operators.fl_lt, "FL>": fluent_operators.fl_gt, "FL=": fluent_operators.fl_equals,
+    "FL+": fluent_operators.fl_plus, "FL-": fluent_operators.fl_minus, "FL*": fluent_operators.fl_times,
+    "FL/": fluent_operators.fl_divide, "FL-EQ": fluent_operators.fl_eq, "FL-EQL": fluent_operators.fl_eql,
+    "FL-NOT": fluent_operators.fl_not, "FL-PULSED": fluent_operators.fl_pulsed, "FL-MEMBER": fluent_operators.fl_member,
+}
+"""The fluent operators under their names of CPL-IMPL."""
+
+SHADOWING = {"<": "FL<", ">": "FL>", "=": "FL=", "+": "FL+", "-": "FL-", "*": "FL*", "/": "FL/", "EQ": "FL-EQ", "EQL": "FL-EQL",
+             "NOT": "FL-NOT"}
+"""Names of Common Lisp that CPL replaces by fluent operators."""
+
+FUNCTIONS = {
+    fluents: "value peek-value pulse make-fluent register-update-callback remove-update-callback get-update-callback",
+    fluent_operators: "fl-and fl-or fl-funcall fl-value-changed fl-apply",
+    waiting: "wait-for sleep*",
+    tasks: "task-alive task-dead task-running-p task-dead-p task-done-p task-failed-p task-path status result evaporate join-task "
+           "list-saved-tasks child-tasks parent-task task-constraints execute",
+    suspension: "suspend wake-up",
+    task_variables: "tv-closure",
+    failures: "fail composite-failures envelop-error",
+    tree: "make-task sub-task task-tree-node clear-tasks stale-task-tree-node-p flatten-task-tree filter-task-tree "
+          "get-top-level-task-tree remove-top-level-task-tree task-tree-node-effective-code task-tree-node-parameters "
+          "task-tree-node-status-fluent task-tree-node-result task-tree-node-children goal-task-tree-node-p "
+          "goal-task-tree-node-pattern replace-task-code register-task-code",
+    readers: "name parameters code-sexp code-function code-task code-parameters task-tree-node-path task-tree-node-code "
+             "task-tree-node-parent task-tree-node-p make-task-tree-node",
+    plans: "register-goal describe-goal",
+    policies: "named-policy",
+    operators: "mapcar-clean",
+    logging: "log-enable log-disable log-set list-available-log-tags list-active-log-tags",
+}
+
+IMPLEMENTATION_ONLY = """fl< fl> fl= fl+ fl- fl* fl/ fl-eq fl-eql fl-not fl-pulsed fl-apply *log-output* *log-right-margin* log-event
+    +log-all+ +log-default+ +log-verbose+ +log-very-verbose+ +log-language+ logging-enabled-p list-available-log-tags
+    list-active-log-tags log-enable log-disable log-set name *save-tasks* *tasks* list-saved-tasks"""
+"""Exported by CPL-IMPL but not by CPL (cpl.md 1.4)."""
+
+INTERNAL = """fl-member child-tasks parent-task task-constraints execute remove-top-level-task-tree replace-task-code register-task-code
+    on-preparing-named-top-level on-finishing-named-top-level on-begin-execute-tag-task on-finish-execute-tag-task
+    on-preparing-task-execution on-finishing-task-execution on-with-failure-handling-begin on-with-failure-handling-end
+    on-with-failure-handling-handled on-with-failure-handling-rethrown on-with-policy-begin on-with-policy-end"""
+"""Reached for with ``::`` by other CRAM code (cpl.md 1.5); present, not exported."""
+
+MACROS_AND_MARKERS = """fluent value-fluent whenever def-cpl-parameter current-task task toplevel-task status-indicator
+    define-task-variable without-scheduling with-scheduling retry-after-suspension on-suspension plan-failure simple-plan-failure
+    composite-failure common-lisp-error-envelope with-failure-handling retry with-retry-counters do-retry reset-counter get-counter
+    top-level seq par par-loop pursue try-all try-in-order try-each-in-order partial-order with-task-suspended with-tags tag tagged
+    code with-task-tree-node replaceable-function def-cram-function def-top-level-cram-function def-plan def-top-level-plan
+    declare-goal def-goal goal goal-context succeed with-policy with-named-policy with-policies with-named-policies make-policy
+    define-policy timeout-policy policy-condition policy-not-found policy-failure policy-init-failed policy-check-condition-met
+    goal-task-tree-node-parameter-bindings goal-task-tree-node-goal plan-tree-node plan-tree-node-sexp plan-tree-node-parent
+    plan-tree-node-children plan-tree-node-path find-plan-node expand-plan logging-enabled-p log-event"""
+
+
+def define_faces():
+    """Declare the packages. COMMON-LISP must be filled."""
+    for name, getter in (("*CURRENT-TASK*", tasks.current_task), ("*CURRENT-PATH*", tree.current_path),
+                         ("*TASK-TREE*", tree.current_tree)):
+        if not CPL_IMPL.present(name):
+            task_variables.define_task_state(CPL_IMPL, name, getter)
+    hook_functions = {hook.name: hook for hook in vars(hooks).values() if isinstance(hook, hooks.Hook)}
+    constants = {"+alive+": tasks.ALIVE, "+dead+": tasks.DEAD, "+done+": tasks.DONE}
+    log_lists = {"+log-all+": logging.TAGS, "+log-default+": logging.DEFAULT, "+log-verbose+": logging.VERBOSE,
+                 "+log-very-verbose+": logging.VERY_VERBOSE, "+log-language+": logging.LANGUAGE}
+    define_face(
+        "CRAM-LANGUAGE-IMPLEMENTATION", ["CPL-IMPL"], use=["COMMON-LISP"],
+        functions={**FUNCTIONS, **OPERATORS, **hook_functions, "current-task": tasks.current_task_or_dummy, "task": tree.task_at},
+        variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
+                   "*save-tasks*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
+                   "timeout-policy": policies.TIMEOUT_POLICY,
+                   **{name: tasks.status_list(statuses) for name, statuses in constants.items()},
+                   **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
+        export=MACROS_AND_MARKERS + " *current-task* *current-path* *task-tree*", internal=INTERNAL)
+    sym("CPL-IMPL::VALUE").setf_function = fluents.set_value
+    not_reexported = {name.upper() for name in IMPLEMENTATION_ONLY.split()}
+    shared = " ".join(name for name in CPL_IMPL.external if name not in not_reexported)
+    define_face(
+        "CRAM-LANGUAGE", ["CPL"], use=["COMMON-LISP"], shadow=[*SHADOWING, "SLEEP"], imports={"CPL-IMPL": shared},
+        functions={**{name: OPERATORS[operator] for name, operator in SHADOWING.items()},
+                   "SLEEP": waiting.sleep_star, "PULSED": fluent_operators.fl_pulsed},
+        reexport=["COMMON-LISP"])
+    define_face("CRAM-USER", ["CPL-USER"], use=["CRAM-LANGUAGE"])
+
+
+define_faces()

@@ -1,0 +1,126 @@
+"""Policies: a condition that is watched while a body runs, and what to do when it is met.
+
+A policy has four optional clauses: ``init`` must give true or nothing starts; ``check`` is called again and again beside the body;
+when it is met the body is evaporated, ``recover`` runs, and the form fails with ``policy-check-condition-met``; ``clean-up`` runs
+at every end. Source: cpl.md section 9. Repaired: a policy without ``check`` just runs its body, where the original kills it; a
+failing ``recover`` does not skip ``clean-up``; the conditions reach handlers in parent tasks, as errors do.
+
+A clause is a function of the use's `Store` and the policy's parameters; the macro makes the local functions ``policy-get`` and
+``policy-setf`` from the store.
+"""
+
+from __future__ import annotations
+
+from ..lisp.conditions import error
+from ..lisp.data import list_from, one, truth
+from .failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
+from .hooks import on_with_policy_begin, on_with_policy_end
+from .operators import pursue
+from .symbols import sym
+from .tasks import inside_plan
+from .waiting import sleep
+
+POLL = 0.01  # s between two checks
+_named = {}
+
+
+class Policy:
+    """A policy; ``init``, ``check``, ``recover`` and ``clean_up`` are functions or ``None``, ``parameters`` a Lisp list of names."""
+
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY"
+
+    def __init__(self, name, parameters=None, description=None, init=None, check=None, recover=None, clean_up=None):
+        self.name, self.parameters, self.description = name, parameters, description
+        self.init, self.check, self.recover, self.clean_up = init, check, recover, clean_up
+
+
+class Store:
+    """The small memory that the clauses of one use of a policy share."""
+
+    def __init__(self):
+        self.values = {}
+
+    def get(self, symbol):
+        return self.values.get(symbol)
+
+    def set(self, symbol, value):
+        self.values[symbol] = value
+        return value
+
+
+def make_policy(name, parameters=None, description=None, **clauses):
+    """A policy object; clauses are ``init``, ``check``, ``recover`` and ``clean_up``."""
+    return Policy(name, parameters, description, **clauses)
+
+
+def define_policy(name, parameters=None, description=None, **clauses):
+    """Make a policy, keep it under ``name`` and in the variable ``name``; returns it."""
+    policy = _named[name] = make_policy(name, parameters, description, **clauses)
+    name.special = True
+    name.value = policy
+    return policy
+
+
+def named_policy(name):
+    """The policy called ``name``; it is a failure ``policy-not-found`` if there is none."""
+    policy = _named.get(name)
+    return policy if policy is not None else error(PolicyNotFound(name=name))
+
+
+def with_policy(policy, arguments, body, forms=None):
+    """``(with-policy policy (form...) body...)``: values of ``body()`` under ``policy``.
+
+    ``arguments()`` evaluates the parameter forms to a Python sequence, again at each call of a clause; ``forms`` are the forms
+    themselves, which the conditions show.
+    """
+    inside_plan("PURSUE")
+    store = Store()
+    shown = forms if forms is not None else list_from(arguments())
+
+    def clause(function):
+        return one(function(store, *arguments()))
+
+    if policy.init is not None and not truth(clause(policy.init)):
+        return error(PolicyInitFailed(name=policy.name, parameters=shown))
+    run_id = on_with_policy_begin.first(policy.name, None)
+    met = False
+
+    def check():
+        nonlocal met
+        while not truth(clause(policy.check)):
+            sleep(POLL)
+        met = True
+
+    succeeded = False
+    try:
+        result = body() if policy.check is None else pursue(check, body)
+        succeeded = True
+        return result
+    finally:
+        try:
+            if met and policy.recover is not None:
+                clause(policy.recover)
+        finally:
+            if policy.clean_up is not None:
+                clause(policy.clean_up)
+        if on_with_policy_end:
+            on_with_policy_end(run_id, True if succeeded and not met else None)
+        if met and succeeded:
+            error(PolicyCheckConditionMet(name=policy.name, parameters=shown))
+
+
+def with_policies(policies, body):
+    """``(with-policies ((policy (form...))...) body...)``: nested, the first outermost; ``policies``: (policy, arguments, forms)."""
+    if not policies:
+        return body()
+    (policy, arguments, forms), *rest = policies
+    return with_policy(policy, arguments, lambda: with_policies(rest, body), forms)
+
+
+def _timeout_met(store, time):
+    sleep(time)
+    return True
+
+
+TIMEOUT_POLICY = define_policy(sym("CPL-IMPL::TIMEOUT-POLICY"), list_from([sym("CPL-IMPL::TIME")]),
+                               "Ends its body after TIME seconds.", check=_timeout_met)

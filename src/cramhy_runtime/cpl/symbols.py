@@ -1,0 +1,17 @@
+"""The Lisp packages of this room, made before anything interns a symbol in them.
+
+What they contain is declared in ``package.py``, when all the code is there.
+"""
+
+from ..lisp.packages import Package, find_package, register, sym
+
+
+def ensure_package(name, *nicknames):
+    """The package ``name``, registered with its nicknames if it does not exist yet."""
+    return find_package(name) or register(Package(name, list(nicknames)))
+
+
+CPL_IMPL = ensure_package("CRAM-LANGUAGE-IMPLEMENTATION", "CPL-IMPL")
+CPL = ensure_package("CRAM-LANGUAGE", "CPL")
+
+__all__ = ["CPL", "CPL_IMPL", "ensure_package", "sym"]

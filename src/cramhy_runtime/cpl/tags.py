@@ -1,0 +1,61 @@
+"""Tags: naming a step of a plan, so that others can order it, watch it or suspend it.
+
+``(with-tags ... (:tag grasp form...) ...)`` binds a variable ``grasp`` to a task that is created now and executed when control
+reaches the tag; executing it again makes a new task at the next iteration path and assigns it to the variable. Source: cpl.md 7.1.
+
+The macro collects the tag names, binds each by `make_tag_task`, and compiles ``(:tag name form...)`` to
+``(progn (setq name (prepare-tag name)) (execute-tag name (lambda () form...)))``.
+"""
+
+from __future__ import annotations
+
+from ..lisp.data import Cons, lisp_list
+from .symbols import sym
+from .branches import run_one
+from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
+from .tasks import CREATED, inside_plan
+from .tree import current_path, make_task
+
+TAGGED = sym("CPL-IMPL::TAGGED")
+
+
+def enter_with_tags():
+    """The check of ``with-tags``; returns the path that the tags go below."""
+    inside_plan("WITH-TAGS")
+    return current_path()
+
+
+def make_tag_task(name, path=None):
+    """The task of the tag ``name``, not executed yet, at ``((tagged name) . path)``; the default is the current path."""
+    path = enter_with_tags() if path is None else path
+    return make_task(name=lambda: f"[TAG-{name.name}]", path=Cons(lisp_list(TAGGED, name), path))
+
+
+def prepare_tag(task):
+    """``task`` if it was not executed yet, else a new task at the next iteration path."""
+    if task.status is CREATED and task.kernel_task is None:
+        return task
+    part = task.path.car
+    return make_task(name=lambda: f"[TAG-{part.cdr.car.name}]", path=Cons(lisp_list(part.car, part.cdr.car), task.path.cdr))
+
+
+def execute_tag(task, body):
+    """Run ``body`` as ``task`` and wait for it: its values; its failure is signalled here."""
+    if task.code is not None and task.code.function is None:
+        task.code.function = body
+    code = task.code
+    task.body = body if code is None else lambda: code.function(*(code.parameters or ()))
+    if not (on_begin_execute_tag_task or on_finish_execute_tag_task):
+        return run_one(task, "TAG")
+    run_id = on_begin_execute_tag_task.first(task)
+    try:
+        return run_one(task, "TAG")
+    finally:
+        on_finish_execute_tag_task(run_id)
+
+
+def tag_outside_of_with_tags(name):
+    """The error of ``(:tag ...)`` outside of ``with-tags``."""
+    from ..lisp.conditions import error
+
+    return error("(:TAG ~S ..) used outside of WITH-TAGS.", name)

@@ -1,0 +1,112 @@
+"""Task variables: specials that a new task inherits from the task that starts it.
+
+An ordinary special has its global value in every new task, even in the body of ``top-level`` (cpl.md 3.13); a task variable
+starts with the parent's current value, or with what its init function makes of it. Assignments stay in the task.
+
+The language's own task variables are bound in a new task only if its parent has them bound, so that a task without any costs
+nothing; an assignment to one of these outside of ``let`` is therefore seen by all tasks. ``*current-task*``, ``*current-path*``
+and ``*task-tree*`` are not bound at all: `TaskStateSymbol` computes them from the task that runs.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+
+from ..lisp.data import UNBOUND, Symbol
+from ..lisp.dynamic import Bindings
+from ..lisp.packages import find_package, sym
+
+_inherited = set()  # the language's own: inherited when bound
+_declared = {}  # the user's: symbol -> init function or None; bound in every task
+
+
+class TaskStateSymbol(Symbol):
+    """A variable whose value is computed from the current task by ``getter``; assignments are ignored."""
+
+    __slots__ = ("getter",)
+
+    def __init__(self, name, package, getter):
+        self.getter = getter
+        super().__init__(name, package)
+        self.special = True
+
+    @property
+    def value(self):
+        return self.getter()
+
+    @value.setter
+    def value(self, new):
+        pass
+
+
+def define_task_state(package, name, getter):
+    """Make ``name`` in ``package`` a variable that reads the current task's state. To be called before the name is interned."""
+    package = find_package(package)
+    symbol = package.internal[name] = TaskStateSymbol(name, package, getter)
+    return symbol
+
+
+def inherit(symbol, initial):
+    """Declare one of the language's own task variables, with its global value."""
+    symbol.special = True
+    if symbol.value is UNBOUND:
+        symbol.value = initial
+    _inherited.add(symbol)
+    return symbol
+
+
+def define_task_variable(symbol, global_value=None, *, documentation=None, init_function=None):
+    """``(define-task-variable name value)``: every task gets its own binding of ``symbol``, from its parent's value.
+
+    ``init_function(task, parent, value)`` computes the initial value in the parent; ``parent`` is nil for a top-level.
+    """
+    symbol.special = True
+    if symbol.value is UNBOUND:
+        symbol.value = global_value
+    _declared[symbol] = init_function.function if isinstance(init_function, Symbol) else init_function
+    return symbol
+
+
+def inherited_bindings(task, parent):
+    """The bindings that the new ``task`` starts with, computed in the task that starts it. ``None`` when there are none."""
+    stack = []
+    current = kernel.current().dynamic
+    if current is not None:
+        for symbol in dict.fromkeys(entry[0] for entry in current.stack):
+            if symbol in _inherited:
+                stack.append([symbol, symbol.value])
+    for symbol, init_function in _declared.items():
+        stack.append([symbol, symbol.value if init_function is None else init_function(task, parent, symbol.value)])
+    stack.append([DEBUGGER_HOOK, end_the_task])
+    bindings = Bindings()
+    bindings.stack = stack
+    return bindings
+
+
+def end_the_task(condition, hook):
+    """The debugger hook of tasks: an error ends the task and reaches its parent (``*debug-on-lisp-errors*`` as nil)."""
+    raise condition
+
+
+def tv_closure(task, parent, continuation):
+    """A function that binds the task variables, as seen here and now, and calls ``continuation``."""
+    bindings = inherited_bindings(task, parent)
+
+    def call(*arguments):
+        here = kernel.current()
+        outer, here.dynamic = here.dynamic, bindings
+        if outer is not None:
+            outer.leave()
+        bindings.enter()
+        try:
+            return continuation(*arguments)
+        finally:
+            bindings.leave()
+            here.dynamic = outer
+            if outer is not None:
+                outer.enter()
+
+    return call
+
+
+DEBUGGER_HOOK = sym("*DEBUGGER-HOOK*")

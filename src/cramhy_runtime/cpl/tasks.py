@@ -1,0 +1,414 @@
+"""Tasks: the branches of a plan, and what can be done to them.
+
+A task is one thread of control of a plan with a place in the tree: it has one parent, a status that can be observed, and a
+result. Under each lies a task of the kernel. Every branch of ``par``, every tag and every call of a plan function is one.
+
+Laws kept here: a task is dead only when its children are (law 1), and its cleanup forms run after that (law 2), because every
+form that starts tasks waits for their death before it returns or lets an exception pass. A failure of a task becomes its result
+and reaches the task that waits for it (law 3). Source: cpl.md section 3. Repaired: children are awaited on failure and
+evaporation too, in which the original only tells them to end; a cleanup form of the parent cannot be overrun by a child.
+
+Suspension is in ``suspension.py``; how parallel forms wait and decide is in ``branches.py``.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+from cramhy_runtime import kernel
+
+from ..lisp import condition_types as types
+from ..lisp.conditions import error, from_python
+from ..lisp.data import NO_VALUES, Symbol, list_from, truth
+from ..lisp.packages import keyword
+from .symbols import sym
+from .fluent_operators import fl_and, fl_funcall
+from .fluents import ValueFluent
+from .task_variables import inherit, inherited_bindings
+
+CREATED, RUNNING, WAITING, SUSPENDED = map(keyword, ("CREATED", "RUNNING", "WAITING", "SUSPENDED"))
+SUCCEEDED, FAILED, EVAPORATED = map(keyword, ("SUCCEEDED", "FAILED", "EVAPORATED"))
+ALIVE = (CREATED, RUNNING, WAITING, SUSPENDED)
+DEAD = (FAILED, SUCCEEDED, EVAPORATED)
+DONE = (SUCCEEDED, EVAPORATED)
+
+_NEXT = {
+    CREATED: (RUNNING, EVAPORATED),
+    RUNNING: (SUSPENDED, SUCCEEDED, FAILED, EVAPORATED),
+    SUSPENDED: (RUNNING, EVAPORATED, FAILED),
+}
+
+_count = itertools.count(1)
+SAVE_TASKS = inherit(sym("CPL-IMPL::*SAVE-TASKS*"), None)
+saved_tasks = []
+
+
+class Task:
+    """A branch of a plan: ``body`` is called without arguments in a task of its own once `execute` has started it.
+
+    ``path`` is its place in the task tree; ``constraints`` are fluents that must all be true before the body starts.
+    ``ended``, if set, is called with the task when it is dead.
+    """
+
+    __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "code", "kernel_task",
+                 "constraints", "ended", "observers", "held", "unschedulable", "suspension_handlers", "retry_level", "__weakref__",
+                 "__dict__")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
+
+    def __init__(self, body=None, name=None, path=None):
+        self._name = name
+        self.body = body
+        self.parent = None
+        self.children = {}
+        self.status = CREATED
+        self._status_fluent = None
+        self.result = NO_VALUES
+        self.path = path
+        self.tree = None
+        self.code = None
+        self.kernel_task = None
+        self.constraints = None
+        self.ended = None
+        self.observers = None
+        self.held = False  # a suspension is wanted
+        self.unschedulable = 0
+        self.suspension_handlers = None
+        self.retry_level = 0
+
+    # ---------------------------------------------------------------------------------------------------- names and status
+
+    @property
+    def name(self):
+        """Its name, a string. Names given as functions are made when somebody asks."""
+        name = self._name
+        if name is None:
+            name = self._name = f"UNKNOWN-{next(_count)}"
+        elif callable(name):
+            name = self._name = f"{name()}-{next(_count)}"
+        return name
+
+    @property
+    def alive(self):
+        return self.status not in DEAD
+
+    @property
+    def dead(self):
+        return self.status in DEAD
+
+    @property
+    def status_fluent(self):
+        """The fluent of its status, made when first asked for; callbacks on it see each transition in order."""
+        fluent = self._status_fluent
+        if fluent is None:
+            fluent = self._status_fluent = ValueFluent(Symbol(f"{self.name}-STATUS"), self.status)
+        return fluent
+
+    def change_status(self, new):
+        """Go to the status ``new``; what cpl.md 3.2 does not allow is an error."""
+        if new not in _NEXT.get(self.status, ()):
+            error("Invalid status transition from ~S to ~S.", self.status, new)
+        self.status = new
+        if self._status_fluent is not None:
+            self._status_fluent.set(new)
+        if self.observers:
+            for observer in self.observers:
+                observer.kernel.unpark(observer)
+
+    # ------------------------------------------------------------------------------------------------------------- life
+
+    def execute(self):
+        """Start the task as a child of the current one. It runs when the current task parks."""
+        if self.body is None:
+            error("Tried to execute task ~S which has no thread-fun.", self)
+        if self.kernel_task is not None or self.status is not CREATED:
+            error("Task ~S is already running a thread.", self)
+        self._find_parent()
+        parent = self.parent
+        if parent is not None:
+            parent.children[self] = True
+            if self.tree is None:
+                self.tree = parent.tree
+            if self.path is None:
+                self.path = parent.path
+        bindings = inherited_bindings(self, parent)
+        self.kernel_task = kernel.spawn(self._live, bindings, name=self.name if self._name is None else "task")
+        self.kernel_task.name = _KernelName(self)
+        if truth(SAVE_TASKS.value):
+            saved_tasks.append(self)
+        return self
+
+    def _find_parent(self):
+        self.parent = current_task()
+        if self.parent is None:
+            error("No current task active (*CURRENT-TASK* is NIL).")
+
+    def _live(self, bindings):
+        me = kernel.current()
+        me.local.plan_task = self
+        me.dynamic = bindings
+        bindings.enter()
+        try:
+            self.change_status(RUNNING)
+            if self.constraints:
+                from .waiting import wait_for
+
+                wait_for(fl_and(*self.constraints))
+            result = self.body()
+            if self.held:
+                from .suspension import obey
+
+                obey(self)
+            status = SUCCEEDED
+        except BaseException as exception:
+            status, result = self._outcome(exception)
+        if self.children:
+            try:
+                end_tasks(list(self.children), "Parent succeeded." if status is SUCCEEDED else "Parent aborted.")
+            except BaseException as exception:  # the user gave up waiting for cleanup
+                status, result = self._outcome(exception)
+        if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
+            status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
+        self._die(status, result)
+
+    def _outcome(self, exception):
+        """The status and result of a task that ``exception`` ended."""
+        if isinstance(exception, (kernel.Cancelled, kernel.Abandoned)):
+            return EVAPORATED, NO_VALUES
+        if isinstance(exception, PlanFailure):
+            return FAILED, exception
+        if isinstance(exception, (KeyboardInterrupt, SystemExit, kernel.Interrupted)):
+            return FAILED, exception  # meant for the program as a whole: every parent passes it on
+        if isinstance(exception, (types.Condition, Exception)):
+            return FAILED, envelope(from_python(exception))
+        lost = types.ControlError_(
+            "A branch of a plan tried to leave a form around it, by RETURN-FROM, RETURN, GO or THROW. Every branch has a stack of its "
+            "own, so only its values can leave it: let the branch return a value, or FAIL and handle the failure outside.")
+        lost.__cause__ = exception
+        return FAILED, envelope(lost)
+
+    def _die(self, status, result):
+        self.result = result  # before the status, so that who sees a dead status can read it
+        self.body = self.constraints = self.suspension_handlers = None
+        if self.parent is not None:
+            self.parent.children.pop(self, None)
+        if self._status_fluent is not None:
+            with kernel.shield():
+                self.change_status(status)
+        else:
+            self.change_status(status)
+        if self.ended is not None:
+            self.ended(self)
+
+    def evaporate(self, reason=None):
+        """Ask the task to end. It unwinds from its next waiting point or checkpoint; nobody waits for that here."""
+        if self.status in DEAD:
+            return
+        kernel_task = self.kernel_task
+        if kernel_task is None or self.status is CREATED:
+            if kernel_task is not None:
+                kernel_task.cancel(reason)
+            self._die(EVAPORATED, NO_VALUES)  # it never ran, so nothing is to be cleaned up
+            return
+        kernel_task.cancel(reason)
+
+    def park_until(self, statuses, why):
+        """Wait until its status is among ``statuses``. To be called in another task."""
+        me = kernel.current()
+        while self.status not in statuses:
+            if self.observers is None:
+                self.observers = []
+            self.observers.append(me)
+            try:
+                pause(why)
+            finally:
+                self.observers.remove(me)
+
+    def __repr__(self):
+        return f"<{type(self).__name__} {self.name} {self.status!r}>"
+
+
+class ToplevelTask(Task):
+    """The root of a plan: the task that runs the body of ``top-level``. It has no parent."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TOPLEVEL-TASK"
+
+    def _find_parent(self):
+        pass
+
+
+class _KernelName:
+    """The name of a task, made only when the kernel reports something."""
+
+    __slots__ = ("task",)
+
+    def __init__(self, task):
+        self.task = task
+
+    def __str__(self):
+        return self.task.name
+
+
+# ------------------------------------------------------------------------------------------------------ the current task
+
+
+def current_task():
+    """The plan task that runs, or ``None`` outside of plans."""
+    return getattr(kernel.current().local, "plan_task", None)
+
+
+def current_task_or_dummy():
+    """``(current-task)``: as `current_task`; outside of plans a fresh dummy, as in the original."""
+    task = current_task()
+    if task is None:
+        task = ToplevelTask(name=str(kernel.current().name))
+        task.change_status(RUNNING)
+    return task
+
+
+def inside_plan(form):
+    """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
+    task = getattr(kernel.current().local, "plan_task", None)
+    if task is None:
+        from ..lisp.data import one
+
+        return one(error("'~a' form not inside a plan.", form))
+    return task
+
+
+def pause(why, until=None):
+    """Park as ``kernel.park`` does, and obey requests to suspend that arrived meanwhile."""
+    woken = kernel.park(why, until)
+    task = getattr(kernel.current().local, "plan_task", None)
+    if task is not None and task.held:
+        from .suspension import obey
+
+        obey(task)
+    return woken
+
+
+def end_tasks(tasks, reason=None):
+    """Evaporate ``tasks`` and wait until they are dead; a request to end the current task waits for that too."""
+    for task in tasks:
+        task.evaporate(reason)
+    me = kernel.current()
+    with kernel.shield():
+        for task in tasks:
+            while task.status not in DEAD:
+                if task.observers is None:
+                    task.observers = []
+                task.observers.append(me)
+                try:
+                    kernel.park(lambda task=task: f"the cleanup of {task.name}")
+                finally:
+                    task.observers.remove(me)
+
+
+# ----------------------------------------------------------------------------------------------------- readers and requests
+
+
+def status(task):
+    """``(status task)``: the fluent of its status."""
+    return task.status_fluent
+
+
+def result(task):
+    """``(result task)``: its values when it succeeded, the condition when it failed, no values otherwise."""
+    if isinstance(task, Task):
+        return task.result
+    return task.result_fluent  # a process module
+
+
+def task_alive(task):
+    """A fluent that is true while the task is not dead; the true value is a list tail, as ``member`` gives it."""
+    return _status_net(task, ALIVE)
+
+
+def task_dead(task):
+    """A fluent that is true when the task is dead."""
+    return _status_net(task, DEAD)
+
+
+def _status_net(task, statuses):
+    return fl_funcall(lambda now: status_list(statuses[statuses.index(now):]) if now in statuses else None, status(task))
+
+
+def status_list(statuses):
+    """``statuses`` as a Lisp list."""
+    return list_from(statuses)
+
+
+def task_running_p(task):
+    """True while the task is alive, created and suspended included."""
+    return True if task.alive else None
+
+
+def task_dead_p(task):
+    return True if task.dead else None
+
+
+def task_done_p(task):
+    return True if task.status in DONE else None
+
+
+def task_failed_p(task):
+    return True if task.status is FAILED else None
+
+
+def task_path(task):
+    return task.path
+
+
+def child_tasks(task):
+    """Its living children, newest first (a Lisp list)."""
+    return list_from(list(reversed(task.children)))
+
+
+def parent_task(task):
+    return task.parent
+
+
+def task_constraints(task):
+    return list_from(task.constraints or [])
+
+
+def list_saved_tasks():
+    """The tasks executed while ``*save-tasks*`` was true, in order of execution."""
+    return list_from(saved_tasks)
+
+
+def check_reason(reason):
+    if reason is not None and not isinstance(reason, str):
+        from ..lisp.conditions import type_error
+
+        type_error(reason, "(OR NULL STRING)")
+
+
+def evaporate(task, *, reason=None, sync=True):
+    """Ask ``task`` to end and, with ``sync``, wait until it is dead. Evaporation is no condition: no handler catches it."""
+    check_reason(reason)
+    task.evaporate(reason)
+    if truth(sync) and task is not current_task():
+        task.park_until(DEAD, lambda: f"the evaporation of {task.name}")
+    elif task is current_task():
+        kernel.checkpoint()
+
+
+def execute(task):
+    """Start ``task`` as a child of the current task."""
+    task.execute()
+
+
+def join_task(task):
+    """Wait until ``task`` is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
+    if task is current_task():
+        error("Cannot join current task.")
+    task.park_until(DEAD, lambda: f"the end of {task.name}")
+    if task.status is FAILED:
+        from .failures import signal_failure
+
+        signal_failure(task.result)
+    return task.result
+
+
+from .failure_types import PlanFailure, envelope  # noqa: E402

@@ -1,0 +1,287 @@
+"""The task tree: where in a plan each task belongs.
+
+A path is a Lisp list of parts, the deepest first: ``((tagged a) (drive-home) (top-level lecture))``. A node of the tree stands for a
+path; it holds the code that runs there and the task that ran it last, so that a plan can be looked at after, and during, its run,
+and a step can be replaced for the next run. Repetition of a part goes to sibling nodes ``(a :call 2)``. Source: cpl.md section 7.
+"""
+
+from __future__ import annotations
+
+from ..lisp.conditions import error
+from ..lisp.data import Cons, lisp_list, list_from, truth
+from ..lisp.packages import keyword
+from .symbols import sym
+from .hooks import on_finishing_task_execution, on_preparing_task_execution
+from .tasks import CREATED, Task, current_task
+
+CALL = keyword("CALL")
+_goal_marks = (sym("CPL-IMPL::GOAL"), sym("CPL-IMPL::GOAL-CONTEXT"))
+_named_trees = {}
+
+
+class Code:
+    """What runs at a node: the form ``sexp``, the ``function`` made from it, the ``task`` that runs it, and its ``parameters``."""
+
+    __slots__ = ("sexp", "function", "task", "parameters")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::CODE"
+
+    def __init__(self, sexp=None, function=None, task=None, parameters=None):
+        self.sexp, self.function, self.task, self.parameters = sexp, function, task, parameters
+
+
+class TaskTreeNode:
+    """A node: its ``path``, ``code``, ``replacements`` (newest first), ``parent`` and ``children`` (path part to node, in order)."""
+
+    __slots__ = ("path", "code", "replacements", "parent", "children", "__weakref__")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK-TREE-NODE"
+
+    def __init__(self, path=None, parent=None, code=None):
+        self.path, self.parent, self.code = path, parent, code
+        self.replacements = []
+        self.children = {}
+
+    @property
+    def effective_code(self):
+        return self.replacements[0] if self.replacements else self.code
+
+    def child(self, part, make=True):
+        """The node below this one for the path part ``part`` (a Lisp list), made if there is none and ``make``."""
+        key = _key(part)
+        node = self.children.get(key)
+        if node is None and make:
+            node = self.children[key] = TaskTreeNode(Cons(part, self.path), self)
+        return node
+
+
+def _key(part):
+    if isinstance(part, Cons):
+        return (*(_key(element) for element in part), None)
+    return part
+
+
+def ensure_node(path, tree):
+    """The node for ``path`` below ``tree``, with all nodes above it made as needed."""
+    node = tree
+    for part in reversed(list(path or ())):
+        node = node.child(part)
+    return node
+
+
+def task_tree_node(path, node=None):
+    """``(task-tree-node path)``: the node of a path, or nil."""
+    node = node or current_tree()
+    for part in reversed(list(path or ())):
+        if node is None:
+            return None
+        node = node.child(part, make=False)
+    return node
+
+
+def current_tree():
+    task = current_task()
+    return task.tree if task is not None else None
+
+
+def current_path():
+    task = current_task()
+    return task.path if task is not None else None
+
+
+def _tree_or_error():
+    tree = current_tree()
+    if tree is None:
+        from ..lisp.conditions import type_error
+
+        type_error(None, "TASK-TREE-NODE",
+                   "\n(A plan function, goal or tag was used outside of a plan: call it inside (top-level ...), or from a function "
+                   "defined with def-top-level-cram-function.)")
+    return tree
+
+
+def _next_free(path, tree):
+    """The node for ``path``, or for its next repetition if the task there was executed already."""
+    part, above = path.car, path.cdr
+    node = ensure_node(path, tree)
+    number = 1
+    while (code := node.effective_code) is not None and code.task is not None and code.task.status is not CREATED:
+        number += 1
+        node = ensure_node(Cons(list_from(part, lisp_list(CALL, number)), above), tree)
+    return node
+
+
+def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None):
+    """The task, not executed yet, of the node for ``path`` (default: the current path), made if necessary.
+
+    When the node's task has run already, that of the next iteration path. A replacement of the node's code takes its place.
+    """
+    node = _next_free(path or current_path(), _tree_or_error())
+    code = node.effective_code
+    if code is None:
+        code = node.code = Code()
+    replaced = code is not node.code
+    if sexp is not None and not replaced:
+        code.sexp = sexp
+    if function is not None and not replaced:
+        code.function = function
+    code.parameters = parameters
+    task = code.task
+    if task is None:
+        task = code.task = Task(None, name or (lambda: "[TASK]"), node.path)
+        task.tree = current_tree()
+    elif name is not None:
+        task._name = name
+    task.code = code
+    if code.function is not None:
+        arguments = tuple(parameters) if parameters is not None else ()
+        task.body = lambda: code.function(*arguments)
+    return task
+
+
+def task_at(path):
+    """``(task path)``: the task of an absolute path; it can be named before its code is known."""
+    return make_task(path=path)
+
+
+def sub_task(path):
+    """``(sub-task path)``: the task of a path relative to the current one."""
+    return make_task(path=list_from(list(path), current_path()))
+
+
+def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp=None, lambda_list=None, parameters=None,
+                        log_parameters=None, log_pattern=None):
+    """Run ``function(*parameters)`` in a new task at ``path_part`` below the current path, and wait for it: its values.
+
+    ``parameters`` is a Lisp list. ``name`` may be a function that makes the name when it is asked for.
+    """
+    _tree_or_error()
+    observed = on_preparing_task_execution or on_finishing_task_execution
+    run_id = on_preparing_task_execution.first(name, log_parameters, log_pattern, lambda_list, parameters) if observed else None
+    label = name if callable(name) else (lambda: f"[{name}]")
+    task = make_task(name=label, sexp=sexp, function=function, path=Cons(path_part, current_path()), parameters=parameters)
+    from .branches import run_one
+
+    if not observed:
+        return run_one(task, "TASK")
+    try:
+        return run_one(task, "TASK")
+    finally:
+        on_finishing_task_execution(run_id)
+
+
+def replaceable_function(name, lambda_list, parameters, path_part, function, sexp=None):
+    """``(replaceable-function name ...)``: `with_task_tree_node` under the name ``REPLACEABLE-FUNCTION-<name>``."""
+    return with_task_tree_node(path_part, function, name=lambda: f"[REPLACEABLE-FUNCTION-{getattr(name, 'name', name)}]",
+                               sexp=sexp, lambda_list=lambda_list, parameters=parameters)
+
+
+def replace_task_code(sexp, function, path, tree=None):
+    """Let the next executions at ``path`` call ``function`` instead; the newest replacement wins and survives `clear_tasks`."""
+    node = ensure_node(path, tree or _tree_or_error())
+    node.replacements.insert(0, Code(sexp, function))
+    return node
+
+
+def register_task_code(sexp, function, *, path=None, task_tree=None, replace_registered=None):
+    """Set the code of a node if it has none, or with ``replace_registered`` always."""
+    node = ensure_node(path or current_path(), task_tree or _tree_or_error())
+    if node.code is None:
+        node.code = Code()
+    if node.code.function is None or truth(replace_registered):
+        node.code.sexp, node.code.function = sexp, function
+        task = node.code.task
+        if task is not None and task.status is CREATED:
+            code = node.code
+            task.body = lambda: code.function(*(code.parameters or ()))
+    return node.code
+
+
+# ------------------------------------------------------------------------------------------------------- looking at the tree
+
+
+def get_top_level_task_tree(name):
+    """The tree of the named top-level, empty at first; it survives the run."""
+    tree = _named_trees.get(name)
+    if tree is None:
+        tree = _named_trees[name] = TaskTreeNode()
+    return tree
+
+
+def remove_top_level_task_tree(name):
+    _named_trees.pop(name, None)
+
+
+def clear_tasks(node):
+    """Forget what ran: code, tasks and parameters. Structure and replacements stay."""
+    if node.code is not None:
+        node.code = Code()
+    for replacement in node.replacements:
+        replacement.task = replacement.parameters = None
+    for child in node.children.values():
+        clear_tasks(child)
+    return node
+
+
+def stale_task_tree_node_p(node):
+    """True if the node's own code did not run in the latest run."""
+    return True if node.code is None or node.code.task is None else None
+
+
+def task_tree_node_effective_code(node):
+    return node.effective_code
+
+
+def task_tree_node_parameters(node):
+    return node.code.parameters if node.code else None
+
+
+def task_tree_node_status_fluent(node):
+    return node.code.task.status_fluent if node.code and node.code.task else None
+
+
+def task_tree_node_result(node):
+    return node.code.task.result if node.code and node.code.task else None
+
+
+def task_tree_node_children(node):
+    """The children as an alist from path part to node, the newest first."""
+    return list_from([Cons(child.path.car, child) for child in reversed(node.children.values())])
+
+
+def flatten_task_tree(tree):
+    """All nodes as a list, parents before children, the newest child first."""
+    found = []
+
+    def visit(node):
+        found.append(node)
+        for child in reversed(node.children.values()):
+            visit(child)
+
+    visit(tree)
+    return list_from(found)
+
+
+def filter_task_tree(predicate, tree):
+    """A copy with the nodes that satisfy ``predicate``; a rejected node takes what is below it along. The root must satisfy it."""
+    if not truth(predicate(tree)):
+        error("The assertion (FUNCALL PREDICATE TREE) failed.")
+    copy = TaskTreeNode(tree.path, None, tree.code)
+    copy.replacements = list(tree.replacements)
+    for key, child in tree.children.items():
+        if truth(predicate(child)):
+            below = filter_task_tree(predicate, child)
+            below.parent = copy
+            copy.children[key] = below
+    return copy
+
+
+def goal_task_tree_node_p(node):
+    """True if the node is that of a goal."""
+    part = node.path.car if node.path is not None else None
+    return True if isinstance(part, Cons) and part.car in _goal_marks else None
+
+
+def goal_task_tree_node_pattern(node):
+    """``(name . pattern)`` of a goal's node."""
+    if goal_task_tree_node_p(node) is None:
+        error("The assertion (GOAL-TASK-TREE-NODE-P NODE) failed.")
+    return node.path.car.cdr.car

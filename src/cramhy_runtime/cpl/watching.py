@@ -1,0 +1,38 @@
+"""``with-parallel-childs``: the parallel form whose end the program decides itself (cpl.md 6.9).
+
+The watcher runs in the task of the form each time that the status of a child may have changed. Law 1 holds here too: whatever
+ends the form, the living children are evaporated and awaited.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+
+from ..lisp.data import list_from
+from .tasks import DEAD, DONE, FAILED, end_tasks, pause
+
+
+def watch(tasks, watcher):
+    """Start ``tasks`` and call ``watcher(running, done, failed)`` after each change, until it leaves by a non-local exit."""
+    me = kernel.current()
+    changed = True
+
+    def note(_):
+        nonlocal changed
+        changed = True
+        me.kernel.unpark(me)
+
+    for task in tasks:
+        task.status_fluent.callbacks = {"watcher": note}
+        task.execute()
+    try:
+        while True:
+            while not changed:
+                pause(lambda: "a change of its children")
+            changed = False
+            newest_first = list(reversed(tasks))
+            watcher(list_from([task for task in newest_first if task.status not in DEAD]),
+                    list_from([task for task in newest_first if task.status in DONE]),
+                    list_from([task for task in newest_first if task.status is FAILED]))
+    finally:
+        end_tasks([task for task in tasks if task.status not in DEAD])

@@ -1,0 +1,70 @@
+"""The kernel: tasks that park and wake, one baton, a clock. The ground floor; it knows nothing of Lisp.
+
+    from cramhy_runtime import kernel
+
+    kernel.start(clock="virtual")
+    def drive():
+        kernel.sleep(2.0)
+        return "there"
+    kernel.spawn(drive, name="drive").join()      # "there", at once; kernel.now() is 2.0
+
+Plans wait all the time: for a pose, for a failure of a sibling, for two seconds to pass. In CRAM each branch of a plan is
+a thread of SBCL, and time is the wall's. Here a branch is a task, and one task runs at a time: the one that has the
+baton. It passes the baton at points that one can name. It parks (waits for `unpark` or for a time), it yields, it ends,
+or it passed so many checkpoints that others are due. Between two such points nobody else touches anything, so a plan
+needs no locks, a test of a condition and the wait that follows it are one step, and the whole run is deterministic: same
+program, same seed, same order of events from outside, same run.
+
+Since all waiting comes through here, time is ours as well. When every task is parked nothing can happen before the next
+timer, so the virtual clock jumps there. The wall clock is the same with a pace-maker: it waits before it jumps.
+
+Where the parts are:
+
+* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at
+* `tasks`      a task, its end, the request to end
+* `timers`, `clocks`, `budget` (what checkpoints count), `reports` (what people read), `errors`
+* `backends`   stacks: threads of the operating system, or greenlets
+* `active`     the functions below, which act on the kernel that is active
+
+Taken from trio: cancellation at checkpoints, the shield, a clock that jumps, the deadlock as an error with a text. Left
+out: cancel scopes and nurseries, because CPL brings its own tree and its own rules for it. Taken from Erlang:
+counting reductions. Taken from SimPy: real time on top of simulated time, and not the other way round.
+
+Two hooks are attributes of this package, to be replaced by assignment: `describe_frame` and `unhandled` (see `reports`).
+"""
+
+from .active import (
+    active,
+    call_at,
+    call_every,
+    checkpoint,
+    current,
+    interrupt,
+    interrupt_over,
+    now,
+    outside_source,
+    park,
+    post,
+    run_blocking,
+    settle,
+    shield,
+    sleep,
+    spawn,
+    start,
+    stop,
+    unpark,
+    yield_,
+)
+from .clocks import VirtualClock, WallClock
+from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, TimeLimit
+from .reports import describe_frame, unhandled
+from .scheduler import Kernel
+from .tasks import Task
+from .timers import Timer
+
+__all__ = [
+    "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer",
+    "VirtualClock", "WallClock", "active", "call_at", "call_every", "checkpoint", "current", "describe_frame",
+    "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "run_blocking", "settle", "shield", "sleep",
+    "spawn", "start", "stop", "unhandled", "unpark", "yield_",
+]  # fmt: skip

@@ -1,0 +1,142 @@
+"""The active kernel, and the functions that act on it.
+
+A process has one active kernel at a time; tests start hundreds, one after the other. The functions here are what the
+floors above call: `kernel.park(...)` is `kernel.active().park(...)`.
+"""
+
+import atexit
+from _thread import get_ident
+
+from .budget import SLICE, budget
+from .errors import KernelError
+from .scheduler import Kernel
+
+_active = None
+
+
+def start(clock="virtual", backend="threads", seed=None, time_limit=None):
+    """Make a fresh kernel active, whose main task is the caller. The one before, if any, is stopped first.
+
+    CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", or a back end. SEED: None for first
+    come, first served; a number shuffles the order, reproducibly. TIME_LIMIT: seconds of the kernel's clock after which
+    the main task gets `TimeLimit`, or None.
+    """
+    global _active
+    if _active is not None and _active.main.carrier.ident == get_ident():
+        _active.stop()
+    _active = Kernel(clock, backend, seed, time_limit)
+    return _active
+
+
+def stop():
+    """Stop the active kernel (see `Kernel.stop`); afterwards none is active."""
+    global _active
+    if _active is not None:
+        _active.stop()
+        _active = None
+
+
+@atexit.register
+def _stop_at_exit():
+    """A script that just ends shall not leave out the cleanup of its tasks."""
+    if _active is not None and _active.current is _active.main and _active.main.carrier.ident == get_ident():
+        stop()
+
+
+def active():
+    """The active kernel, or None."""
+    return None if _active is None or _active.stopped else _active
+
+
+def _none():
+    raise KernelError("No kernel is running. Call kernel.start() first; the caller becomes the main task.")
+
+
+def checkpoint():
+    """Named in every loop's back edge: counts, and now and then lets others run or raises a request to end."""
+    budget.left -= 1
+    if budget.left < 0:
+        if _active is None or _active.stopped:
+            budget.left = SLICE
+        else:
+            _active.end_slice()
+
+
+def current():
+    """The task that runs. While timers fire and messages are read this is a stand-in, which cannot park."""
+    return (_active or _none()).current
+
+
+def now():
+    """Seconds of the kernel's clock since `start`."""
+    return (_active or _none()).clock.now()
+
+
+def spawn(fn, *args, name=None, parent=None):
+    """See `Kernel.spawn`."""
+    return (_active or _none()).spawn(fn, *args, name=name, parent=parent)
+
+
+def park(why="", until=None):
+    """See `Kernel.park`."""
+    return (_active or _none()).park(why, until)
+
+
+def unpark(task):
+    """See `Kernel.unpark`."""
+    return task.kernel.unpark(task)
+
+
+def sleep(seconds):
+    """See `Kernel.sleep`."""
+    (_active or _none()).sleep(seconds)
+
+
+def yield_():
+    """See `Kernel.yield_`."""
+    (_active or _none()).yield_()
+
+
+def settle():
+    """See `Kernel.settle`."""
+    (_active or _none()).settle()
+
+
+def shield():
+    """See `Kernel.shield`."""
+    return (_active or _none()).shield()
+
+
+def call_at(time, fn):
+    """See `Kernel.call_at`."""
+    return (_active or _none()).call_at(time, fn)
+
+
+def call_every(period, fn, first=None):
+    """See `Kernel.call_every`."""
+    return (_active or _none()).call_every(period, fn, first)
+
+
+def post(fn):
+    """See `Kernel.post`."""
+    (_active or _none()).post(fn)
+
+
+def outside_source():
+    """See `Kernel.outside_source`."""
+    return (_active or _none()).outside_source()
+
+
+def run_blocking(fn, *args):
+    """See `Kernel.run_blocking`."""
+    return (_active or _none()).run_blocking(fn, *args)
+
+
+def interrupt():
+    """See `Kernel.interrupt`."""
+    (_active or _none()).interrupt()
+
+
+def interrupt_over():
+    """See `Kernel.interrupt_over`."""
+    (_active or _none()).interrupt_over()

@@ -1,0 +1,43 @@
+"""Where tasks get their stacks from.
+
+A back end makes stacks and jumps between them, and knows nothing of queues, clocks or cancellation. A stack is called
+a carrier, since it carries one task after the other: making one costs more than keeping it. The whole interface:
+
+* `adopt(kernel) -> carrier` the stack that called `kernel.start`; it carries the main task.
+* `carrier(job) -> carrier` (or `NoStack`) a stack that waits for its first `transfer` and then calls `job(carrier)`. The job returns
+  the carrier that gets the baton next; after that this carrier may be given out again.
+* `transfer(mine, other)` give the baton to OTHER; returns when somebody transfers to MINE.
+* `run_blocking(kernel, task, call)` run CALL while the baton goes round, and return what it returns. `calls_back`:
+  whether the task can be had back before CALL has returned.
+* `frame(carrier)` the innermost Python frame of a stack that does not have the baton, for reports.
+* `close()` the kernel has stopped: let go of the stacks that nobody needs.
+* `forsake(carrier)` its task will never end: keep the stack, but don't expect it back.
+
+A carrier has `ident`, the operating system's thread that it runs on.
+
+A third back end (a browser, where neither threads nor greenlets exist) implements these seven and is named in `make_backend`.
+"""
+
+
+class NoStack(Exception):
+    """The system gives no more stacks; the cause says why."""
+
+
+def make_backend(backend):
+    """A fresh back end for "threads" or "greenlet"; an object with the interface above is taken as it is."""
+    if backend == "threads":
+        from .threads import ThreadBackend
+
+        return ThreadBackend()
+    if backend == "greenlet":
+        try:
+            from .greenlet import GreenletBackend
+        except ImportError as missing:
+            raise ImportError(
+                'The back end "greenlet" needs the package greenlet, which is not installed. '
+                'Install it (pip install "cramhy[fast]") or use the back end "threads".'
+            ) from missing
+        return GreenletBackend()
+    if isinstance(backend, str):
+        raise ValueError(f'There is no back end "{backend}". Choose "threads" or "greenlet".')
+    return backend

@@ -1,0 +1,149 @@
+"""Stacks that are threads of the operating system: the default, because it needs nothing installed.
+
+Every carrier has one lock, and having the baton means not to wait on it. Giving the baton away is two calls: release the
+other's lock, wait on one's own. No dispatcher thread stands between, so a hand-over costs one wake-up.
+
+Threads are taken from a pool that all kernels share, and return to it when their task is dead; a run that starts and
+ends tasks all the time starts no threads. The pool keeps `KEEP` idle threads; they are daemons and hold up no exit.
+
+The size of a stack is a matter of life and death: Python code that calls Python code uses none of it, but each call
+that goes through C (`f(*args)`, `sorted(key=...)`, `map`) takes 0.4 to 8 KiB, and at its end the process dies without a
+word. So a task may recurse as deep as the main thread, and more: 16 MiB. That much is reserved, not used: ten thousand
+parked tasks take 100 MB of memory with stacks of 1 MiB and with stacks of 16 MiB (measured on Linux, 64 bit).
+"""
+
+import _thread
+import os
+import sys
+import threading
+from collections import deque
+
+from . import NoStack
+
+STACK_SIZE = 16 << 20 if sys.maxsize > 2**32 else 1 << 20  # bytes
+KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
+
+_idle = deque()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_idle.clear)  # threads do not come along into a forked child
+
+
+class ThreadCarrier:
+    """A thread with its lock."""
+
+    __slots__ = ("lock", "job", "ident")
+
+    def __init__(self):
+        self.lock = _thread.allocate_lock()
+        self.lock.acquire()
+        self.job = None
+        self.ident = None
+
+
+def borrow(job):
+    """A thread from the pool that runs JOB as soon as its lock is released.
+
+    Raises NoStack when the system gives no more threads.
+    """
+    try:
+        carrier = _idle.pop()
+    except IndexError:
+        carrier = ThreadCarrier()
+        carrier.job = job
+        before = _thread.stack_size(STACK_SIZE)
+        try:
+            carrier.ident = _thread.start_new_thread(_carry_on, (carrier,))
+        except RuntimeError as refused:
+            raise NoStack from refused
+        finally:
+            _thread.stack_size(before)
+    else:
+        carrier.job = job
+    return carrier
+
+
+def _carry_on(carrier):
+    """The life of a thread in the pool: wait, do a job, hand the baton on, and again."""
+    trace = threading.gettrace()
+    if trace is not None:
+        sys.settrace(trace)  # debuggers and coverage ask `threading` for this; we don't come by there
+    lock = carrier.lock
+    lock.acquire()
+    while True:
+        job, carrier.job = carrier.job, None
+        successor = job(carrier)
+        job = None
+        keep = len(_idle) < KEEP
+        if keep:
+            _idle.append(carrier)
+        if successor is not None:
+            successor.lock.release()
+            successor = None
+        if not keep:
+            return
+        lock.acquire()
+
+
+class ThreadBackend:
+    """See the interface in `backends`."""
+
+    name = "threads"
+    calls_back = False  # a task that is outside comes back when its call has returned, not before
+
+    def __init__(self):
+        self._kernel = None
+
+    def adopt(self, kernel):
+        self._kernel = kernel
+        carrier = ThreadCarrier()
+        carrier.ident = _thread.get_ident()
+        return carrier
+
+    def carrier(self, job):
+        return borrow(job)
+
+    def transfer(self, mine, other):
+        other.lock.release()
+        self._wait(mine)
+
+    def _wait(self, mine):
+        """Wait for the baton. In the main thread Python runs signal handlers meanwhile, and one may raise."""
+        while True:
+            try:
+                mine.lock.acquire()
+                return
+            except KeyboardInterrupt:
+                kernel = self._kernel
+                kernel.interrupt()
+                if kernel.current.carrier is mine:  # the baton came at the same moment
+                    mine.lock.acquire(False)
+                    return
+
+    def run_blocking(self, kernel, task, call):
+        """This very thread runs CALL, without the baton; a spare one takes the baton and finds the next task.
+
+        Python delivers signals to the main thread. So while the main task is outside, an interrupt may raise right here
+        and so end a wait for input or for a socket, which nothing else could.
+        """
+        spare = borrow(kernel.carry)
+        kernel.leave(task)
+        try:
+            spare.lock.release()
+            try:
+                kernel.interruptible = task is kernel.main
+                return call()
+            finally:
+                if task is kernel.main:
+                    kernel.interruptible = False
+        finally:
+            kernel.post(lambda: kernel.comes_back(task))
+            self._wait(task.carrier)
+
+    def frame(self, carrier):
+        return sys._current_frames().get(carrier.ident)
+
+    def close(self):
+        """The pool outlives its kernels."""
+
+    def forsake(self, carrier):
+        """A daemon thread that waits for ever harms nobody."""

@@ -1,0 +1,100 @@
+"""Two clocks: virtual time, and a pace-maker that holds virtual time back to the wall's (law 5).
+
+The scheduler works with times of timers only. When nothing is left to do at this instant it asks its clock to go to
+the next timer. The virtual clock jumps there. The wall clock waits until the operating system's clock says so, or until
+somebody rings the bell (a message in the inbox, an interrupt), and has no other part in the scheduling. SimPy's
+`RealtimeEnvironment` has the same shape.
+
+What the original leaves to SBCL's timers and threads (`sleep`, `wait-for :timeout`, `top-level`) all comes here.
+"""
+
+import _thread
+import time
+
+LONGEST_WAIT = 3600.0  # s; a longer wait is cut and begun again, which keeps clear of TIMEOUT_MAX
+
+
+class Bell:
+    """Wakes the thread that waits while every task is parked.
+
+    A plain lock used as a binary semaphore: unlike a condition it can be rung from a signal handler that interrupted
+    the very thread that waits. A ring with nobody waiting is kept, so none is lost; two rings are one.
+    """
+
+    __slots__ = ("_lock",)
+
+    def __init__(self):
+        self._lock = _thread.allocate_lock()
+        self._lock.acquire()
+
+    def ring(self):
+        try:
+            self._lock.release()
+        except RuntimeError:
+            pass  # it rings already
+
+    def wait(self, timeout=None):
+        """Wait until the bell rings, TIMEOUT seconds at most; may come back early."""
+        if timeout is None or timeout > LONGEST_WAIT:
+            timeout = LONGEST_WAIT
+        if timeout > 0:
+            self._lock.acquire(True, timeout)
+        else:
+            self._lock.acquire(False)
+
+
+class VirtualClock:
+    """Time that stands still while anything runs, and jumps to the next timer when everything is parked."""
+
+    virtual = True
+
+    def __init__(self):
+        self.time = 0.0
+
+    def now(self):
+        """Seconds since the start of the kernel."""
+        return self.time
+
+    def go_to(self, when, bell):
+        """Let it be WHEN."""
+        self.time = max(self.time, when)
+
+    def nudge(self, when):
+        """Busy tasks used up their slices: time must not stand still for the others because of them."""
+        self.time = max(self.time, when)
+
+
+class WallClock:
+    """Time that passes by itself. OS_CLOCK gives seconds and never goes back; WAIT(bell, seconds) waits.
+
+    Both can be given, so that tests pace a run without waiting for it.
+    """
+
+    virtual = False
+
+    def __init__(self, os_clock=time.monotonic, wait=Bell.wait):
+        self._os_clock = os_clock
+        self._wait = wait
+        self._start = os_clock()
+
+    def now(self):
+        """Seconds since the start of the kernel."""
+        return self._os_clock() - self._start
+
+    def go_to(self, when, bell):
+        """Wait until it is WHEN or the bell rings; may come back early."""
+        self._wait(bell, when - self.now())
+
+    def nudge(self, when):
+        """Wall time needs no help to pass."""
+
+
+def make_clock(clock):
+    """A fresh clock for "virtual" or "wall"; a clock object is taken as it is."""
+    if clock == "virtual":
+        return VirtualClock()
+    if clock == "wall":
+        return WallClock()
+    if isinstance(clock, str):
+        raise ValueError(f'There is no clock "{clock}". Choose "virtual" or "wall".')
+    return clock

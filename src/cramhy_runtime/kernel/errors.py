@@ -1,0 +1,47 @@
+"""What the kernel raises.
+
+Requests to end (`Cancelled`, `Interrupted`, `Abandoned`) are no errors: they derive from `BaseException`, so that no
+`except Exception` and no Lisp handler of `error` swallows them on their way out (law 1: nothing outlives its parent).
+What went wrong with a run as a whole (`Deadlock`, `TimeLimit`) and wrong use of the kernel (`KernelError`) are
+ordinary exceptions.
+"""
+
+
+class Cancelled(BaseException):
+    """Delivered once to a task that was asked to end; its cleanup forms run while this unwinds the stack.
+
+    `reason` is what the caller of `Task.cancel` gave.
+    """
+
+    def __init__(self, reason=None):
+        super().__init__(reason)
+        self.reason = reason
+
+    def __str__(self):
+        return "cancelled" if self.reason is None else f"cancelled: {self.reason}"
+
+
+class Interrupted(BaseException):
+    """The user asked the main task to stop (Ctrl-C)."""
+
+    def __str__(self):
+        return "interrupted"
+
+
+class Abandoned(BaseException):
+    """The user asked a second time, while the first request was still unwinding: cleanup is given up."""
+
+    def __str__(self):
+        return "cleanup abandoned"
+
+
+class KernelError(RuntimeError):
+    """The kernel was used in a way that cannot work; the text says what to do instead."""
+
+
+class Deadlock(Exception):
+    """Every task is parked, and neither a timer nor an outside source can wake one. Raised in the main task."""
+
+
+class TimeLimit(Exception):
+    """Kernel time reached the limit given to `start`. Raised in the main task."""

@@ -1,0 +1,81 @@
+"""What the kernel tells people: where tasks are parked, why nothing goes on, and what nobody else heard.
+
+Two hooks, attributes of the package `kernel` that the floors above replace:
+
+* `kernel.describe_frame(frame) -> str or None`: a Python frame in the user's terms; None for a frame that is not the
+  user's, then the next outer one is tried.
+* `kernel.unhandled(task, exception)`: a task died of an exception and nobody looked, or a callback raised one.
+"""
+
+import os
+import sys
+import traceback
+
+from .tasks import BLOCKED, PARKED
+
+LONGEST_LIST = 30  # tasks
+
+_HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def describe_frame(frame):
+    """The default: file, line and function of Python code."""
+    code = frame.f_code
+    return f"{code.co_filename}:{frame.f_lineno} in {code.co_name}"
+
+
+def unhandled(task, exception):
+    """The default: a traceback on stderr."""
+    print(f"Unhandled exception in task {task.name}:", file=sys.stderr)
+    traceback.print_exception(exception, file=sys.stderr)
+
+
+def hooks():
+    """The package, where the hooks are looked up at the time of the report."""
+    return sys.modules[__package__]
+
+
+def where(frame):
+    """FRAME or the innermost frame around it that means something to the user, as text; "" if there is none."""
+    describe = hooks().describe_frame
+    while frame is not None:
+        if not frame.f_code.co_filename.startswith(_HERE):
+            try:
+                text = describe(frame)
+            except Exception as broken:
+                text = f"(the hook describe_frame failed: {broken!r})"
+            if text:
+                return text
+        frame = frame.f_back
+    return ""
+
+
+def waiting_list(kernel):
+    """For each task that waits: its name, what it waits for, and where; the oldest first."""
+    lines = []
+    waiting = [task for task in kernel.tasks if task.state in (PARKED, BLOCKED)]
+    for task in waiting[:LONGEST_LIST]:
+        line = f"  {task.name} waits for {task.describe_why() or 'a wake-up'}"
+        if place := where(kernel.frame_of(task)):
+            line += f"\n      at {place}"
+        lines.append(line)
+    if len(waiting) > LONGEST_LIST:
+        lines.append(f"  and {len(waiting) - LONGEST_LIST} more")
+    return "\n".join(lines)
+
+
+def deadlock_text(kernel):
+    return (
+        "Nothing can happen any more: every task waits, and no timer and no outside event can wake one.\n"
+        f"{waiting_list(kernel)}\n"
+        "Look for the one that should have been woken: a fluent that nobody sets any more, or tasks that wait for each other."
+    )
+
+
+def time_limit_text(kernel, limit):
+    waiting = waiting_list(kernel)
+    return (
+        f"The run reached its time limit of {limit:g} s.\n"
+        + (f"{waiting}\n" if waiting else "")
+        + "If the plan needs longer, give a larger limit; else look for the wait that never ends."
+    )

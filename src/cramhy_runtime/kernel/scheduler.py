@@ -1,0 +1,516 @@
+"""The scheduler: one baton, a queue, timers, an inbox.
+
+At most one task runs at any moment, the one with the baton (law 4). It gives the baton away at named points: it parks,
+yields, ends, or used up its slice. There is no scheduler thread. Whoever gives the baton away looks for the next
+task on its own stack (`_next`), and jumps to it, or goes on if it is the next itself. What `_next` does, in this order:
+
+1. messages from outside (the inbox),
+2. timers that are due, the one created first before others of the same time,
+3. the first task in the queue (or, with a seed, any of them, by lot),
+4. if nothing is runnable, this instant is over: the clock goes to the next timer,
+5. if there is none either, and nobody outside who may send a message: deadlock, which the main task hears of.
+
+So a run is a function of the program, the seed and the order of messages (law 5).
+
+CRAM leaves all this to the threads of SBCL and gains data races; structured concurrency, parking and the clock that
+jumps are taken from trio and SimPy.
+"""
+
+import random
+from _thread import get_ident
+from collections import deque
+
+from . import reports
+from .backends import NoStack, make_backend
+from .budget import SLICE, budget
+from .clocks import Bell, make_clock
+from .endings import PATIENCE, Endings, OutsideSource
+from .errors import Deadlock, Interrupted, KernelError, TimeLimit
+from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
+from .timers import CALLBACK, TimerHeap
+
+ROUND = 0.005  # s of virtual time that pass when every runnable task used up its slice
+STEPS_PER_INSTANT = 100_000  # hand-overs at one instant, after which time passes all the same
+INFINITY = float("inf")
+
+# A task that is out of stack must learn of it before it touches the queue, for a half-done hand-over is a lost task.
+# `isinstance` goes down one level of Python's recursion limit for each level of its tuple, in a few nanoseconds.
+HEADROOM = 100  # levels that a hand-over and modest callbacks need
+_stairs = int
+for _ in range(HEADROOM):
+    _stairs = (_stairs,)
+
+
+class Kernel(Endings):
+    """A set of tasks with their clock. Made by `kernel.start`; the module's functions act on the one that is active."""
+
+    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
+        self.clock = make_clock(clock)
+        self.backend = make_backend(backend)
+        self.time_limit = time_limit
+        self._limit = time_limit
+        self._lots = None if seed is None else random.Random(seed)
+        self._queue = deque()
+        self._timers = TimerHeap()
+        self._inbox = deque()
+        self._bell = Bell()
+        self._tasks = {}
+        self._born = 0
+        self._streak = 0  # slices that ended since a task was last made runnable
+        self._steps = 0  # hand-overs at this instant
+        self._urgent = None  # the main task, when an alarm wakes it ahead of the queue
+        self._settlers = []
+        self._unclaimed = []  # tasks dead of an exception that nobody has looked at yet
+        self._blocking = 0
+        self._outside = 0
+        self._interrupts = 0  # sent, but not yet read from the inbox
+        self._unwinding = False  # one was raised in the main task and is not over
+        self._stopping = False
+        self._gave_up_waiting = False
+        self.stopped = False
+        self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
+        self._scheduler = SchedulerTask(self)
+        self.main = main = self._new_task(None, (), "main", None)
+        main.carrier = self.backend.adopt(self)
+        main.state = RUNNING
+        self.current = main
+        budget.left = SLICE
+
+    # ------------------------------------------------------------------ tasks
+
+    @property
+    def tasks(self):
+        """The tasks that are alive, oldest first; the main task is the first."""
+        return list(self._tasks.values())
+
+    def now(self):
+        """Seconds since the kernel was started."""
+        return self.clock.now()
+
+    def spawn(self, fn, *args, name=None, parent=None):
+        """A new task that will run FN(*ARGS), at the end of the queue. PARENT: the current task if not given."""
+        me = self.current
+        if me.carrier is not None and me.carrier.ident != get_ident():
+            self._refuse("spawn a task")
+        if parent is None:
+            parent = self.main if me is self._scheduler else me
+        task = self._new_task(fn, args, name or getattr(fn, "__name__", "task"), parent)
+        self._enqueue(task)
+        return task
+
+    def _new_task(self, fn, args, name, parent):
+        number = self._born
+        self._born = number + 1
+        task = self._tasks[number] = Task(self, number, fn, args, name, parent)
+        return task
+
+    def _enqueue(self, task):
+        task.state = RUNNABLE
+        task.preempted = False
+        self._queue.append(task)
+        self._streak = 0
+
+    # ------------------------------------------------------------------ park points
+
+    def park(self, why="", until=None):
+        """Give the baton away until `unpark` (True) or until the clock reaches UNTIL (False).
+
+        WHY, text or a function of no arguments that gives one, stands in reports. Raises what the task is asked to
+        end with, before or after.
+        """
+        me = self.current
+        if me.attention:
+            me.deliver()
+        isinstance(None, _stairs)
+        if me.carrier.ident != get_ident():
+            self._refuse("wait")
+        me.why = why
+        if until is not None and until != INFINITY:
+            if until != until:
+                raise ValueError("The time to park until is not a number.")
+            me.timed = True
+            self._timers.add_deadline(until, me)
+        me.state = PARKED
+        self.rest(me)
+        if me.attention:
+            me.deliver()
+        return me.woken
+
+    def unpark(self, task):
+        """Make a parked task runnable; returns True if it was parked, else nothing happens and the result is False."""
+        me = self.current
+        if me.carrier is not None and me.carrier.ident != get_ident():
+            self._refuse("wake a task")
+        if task.state is not PARKED:
+            return False
+        self._wake(task, True)
+        return True
+
+    def _wake(self, task, woken):
+        task.ticket += 1
+        task.woken = woken
+        if task.timed:
+            task.timed = False
+            if woken:
+                self._timers.went_stale()
+        self._enqueue(task)
+
+    def rouse(self, task):
+        """Wake TASK, wherever it waits inside of the kernel, because something is to be raised in it."""
+        if task.state is PARKED:
+            self._wake(task, True)
+        elif task.state is SETTLING:
+            self._settlers.remove(task)
+            self._enqueue(task)
+
+    def sleep(self, seconds):
+        """Park for SECONDS of the kernel's clock; zero and less yields. Wake-ups do not cut it short."""
+        if not seconds > 0:
+            if seconds != seconds:
+                raise ValueError("The time to sleep is not a number.")
+            self.yield_()
+            return
+        until = self.clock.now() + seconds
+        while self.park(lambda: f"the time {until:g} s (sleep {seconds:g})", until):
+            pass
+
+    def yield_(self):
+        """Go to the end of the queue. Counts as a checkpoint: who only yields uses up a slice too."""
+        left = budget.left - 1
+        if left < 0:
+            self.end_slice()
+            return
+        me = self.current
+        if me.attention:
+            me.deliver()
+        isinstance(None, _stairs)
+        if me.carrier.ident != get_ident():
+            self._refuse("yield")
+        self._enqueue(me)
+        self.rest(me)
+        budget.left = min(left, budget.left)
+        if me.attention:
+            me.deliver()
+
+    def end_slice(self):
+        """What a checkpoint does when the slice is over: others get a turn, and requests to end are delivered."""
+        me = self.current
+        if me is self._scheduler:
+            budget.left = SLICE
+            if self._interrupts:
+                raise Interrupted  # Ctrl-C gets the user out of a callback that loops for ever, too
+            return
+        if me.carrier.ident != get_ident():
+            budget.left = 0  # an outside thread came by; the task whose slice it is shall find it over
+            return
+        if me.attention:
+            me.deliver()
+        isinstance(None, _stairs)
+        me.state = RUNNABLE
+        me.preempted = True
+        self._queue.append(me)
+        self._streak += 1
+        self.rest(me)
+        if me.attention:
+            me.deliver()
+
+    def settle(self):
+        """Let the others run until none is runnable at this instant. The clock does not move.
+
+        Tasks that are busy all the time count as done for this instant once each has used up a slice. The REPL calls
+        this after each form, so it also ends what an interrupt began (`interrupt_over`) and reports the dead.
+        """
+        me = self.current
+        if me.attention:
+            me.deliver()
+        isinstance(None, _stairs)
+        if me.carrier.ident != get_ident():
+            self._refuse("settle")
+        me.state = SETTLING
+        me.why = "the others, to settle"
+        self._settlers.append(me)
+        self.rest(me)
+        if me.attention:
+            me.deliver()
+        self._unwinding = False
+        self._report_unclaimed()
+
+    def shield(self):
+        """A context manager: requests to end the current task wait until the block is left."""
+        return shield(self.current)
+
+    def _refuse(self, what):
+        raise KernelError(
+            f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only."
+        )
+
+    # ------------------------------------------------------------------ the baton
+
+    def rest(self, me):
+        """Give the baton away; returns when ME has it again. ME is queued or parked already."""
+        dynamic = me.dynamic
+        if dynamic is not None:
+            dynamic.leave()
+        self.hand_over(me)
+        if dynamic is not None:
+            dynamic.enter()
+
+    def hand_over(self, me):
+        """The same for a task whose dynamic state is put away."""
+        task = self._next()
+        while task.carrier is None:
+            try:
+                task.carrier = self.backend.carrier(self.carry)
+            except NoStack as refused:
+                task._exception = refused.__cause__
+                self._bury(task)
+                task = self._next()
+        self.current = task
+        if task is not me:
+            self.backend.transfer(me.carrier, task.carrier)
+        me.state = RUNNING
+        budget.left = SLICE
+
+    def carry(self, carrier):
+        """The job of every carrier: live the life of the current task, and of new tasks that come next.
+
+        Returns the carrier that gets the baton. A carrier that was taken as a spare, to hold the baton while a task is
+        outside, finds no current task and begins with the search.
+        """
+        task = self.current
+        while True:
+            if task is not self._scheduler:
+                task.state = RUNNING
+                budget.left = SLICE
+                try:
+                    task.result = task.context.run(task.fn, *task.args)
+                except BaseException as exception:
+                    # Without the frame of this function the traceback begins in the user's code.
+                    task._exception = exception.with_traceback(exception.__traceback__.tb_next)
+                self._bury(task)
+            task = self._next()
+            self.current = task
+            if task.carrier is not None:
+                return task.carrier
+            task.carrier = carrier
+
+    def _bury(self, task):
+        """TASK has ended: tell those who wait for it."""
+        self.current = self._scheduler
+        task.state = DEAD
+        task.carrier = task.fn = task.args = task.context = task.alarms = None
+        del self._tasks[task.id]
+        if task.dynamic is not None:
+            task.dynamic.leave()
+        if task.joiners:
+            for joiner in task.joiners:
+                self.unpark(joiner)
+            task.joiners = None
+        elif not task.ended_as_asked():
+            self._unclaimed.append(task)
+        if self._unclaimed:
+            self._report_unclaimed(task)
+        if self._stopping:
+            self.unpark(self.main)
+
+    def _next(self):
+        """Find the task that gets the baton. The heart of the matter; see the top of this file."""
+        self.current = self._scheduler
+        queue, entries, clock = self._queue, self._timers.entries, self.clock
+        while True:
+            if self._inbox:
+                self._read_inbox()
+            if entries and entries[0][0] <= clock.now():
+                self._fire(clock.now())
+            if self._urgent is not None:
+                task, self._urgent = self._urgent, None
+                return task
+            if queue:
+                self._steps += 1
+                if (self._streak >= len(queue) and self._all_busy()) or self._steps > STEPS_PER_INSTANT:
+                    if self._settlers:
+                        return self._settlers.pop()
+                    self._time_passes()
+                    continue
+                if self._lots is None:
+                    task = queue.popleft()
+                else:
+                    task = self._draw_lots()
+                if task.carrier is None and task.cancel_request is not None:
+                    task.never_runs()
+                    self._bury(task)
+                    continue
+                return task
+            if self._settlers:
+                return self._settlers.pop()
+            self._end_of_instant()
+
+    def _all_busy(self):
+        return self._lots is None or all(task.preempted for task in self._queue)
+
+    def _draw_lots(self):
+        queue = self._queue
+        number = int(self._lots.random() * len(queue))
+        task = queue[number]
+        del queue[number]
+        return task
+
+    def _time_passes(self):
+        """Busy tasks have used up this instant, and the others' timers shall not wait for ever."""
+        self._streak = self._steps = 0
+        if not self._blocking:
+            now, when = self.clock.now(), self._timers.next_time()
+            soon = now + ROUND
+            # Not past the next timer: it fires at its time, to the last digit.
+            self.clock.nudge(soon if when is None or when > soon else when)
+        if self._limit is not None and self.clock.now() > self._limit:
+            self._reach_limit()
+
+    def _end_of_instant(self):
+        """Nothing is runnable: go to the next timer, or wait for a message, or tell the main task that it is over."""
+        if self._unclaimed:
+            self._report_unclaimed()
+            return
+        self._steps = 0
+        when, limit, clock = self._timers.next_time(), self._limit, self.clock
+        blocking = self._blocking and not self._gave_up_waiting
+        if when is None and not blocking and not self._outside:
+            self._alarm(Deadlock("" if self._stopping else reports.deadlock_text(self)), True)
+        elif clock.virtual and (blocking or when is None):
+            self._wait(None, PATIENCE if self._stopping else INFINITY)
+            self._gave_up_waiting = self._stopping and not self._inbox
+        elif limit is not None and limit <= clock.now():
+            self._reach_limit()
+        else:
+            if when is None:
+                when = INFINITY
+            self._wait(when if limit is None or when < limit else limit)
+
+    def _wait(self, when, seconds=None):
+        try:
+            if when is None:
+                self._bell.wait(seconds)
+            else:
+                self.clock.go_to(when, self._bell)
+        except KeyboardInterrupt:  # without a handler of ours Python raises it right here, in the main thread
+            self.interrupt()
+
+    def _reach_limit(self):
+        self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
+        self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
+
+    # ------------------------------------------------------------------ timers and messages
+
+    def call_at(self, time, fn):
+        """Call FN in the scheduler when the clock reaches TIME (s). FN must not park. Returns the Timer."""
+        if not time < INFINITY:
+            raise ValueError(f"A timer needs a finite time, not {time}.")
+        return self._timers.add(time, fn)
+
+    def call_every(self, period, fn, first=None):
+        """Call FN every PERIOD seconds, from the time FIRST on (one period from now if not given), without drift."""
+        if not 0 < period < INFINITY:
+            raise ValueError(f"The period of a timer must be more than 0 s and finite, not {period}.")
+        if first is None:
+            first = self.clock.now() + period
+        return self._timers.add(first, fn, period)
+
+    def _fire(self, now):
+        """Fire what is due. What the callbacks add comes in the next turn, so that none can keep the baton for ever."""
+        timers = self._timers
+        entries, newest = timers.entries, timers.order
+        while entries and entries[0][0] <= now and entries[0][1] < newest:
+            _, _, what, ticket = timers.pop()
+            if ticket != CALLBACK:
+                if what.ticket == ticket:
+                    self._wake(what, False)
+                continue
+            fn = what.fn
+            if fn is None:
+                continue
+            if what.period is None:
+                what.fn = None
+            else:
+                what.advance(now)
+                timers.push(what)
+            self._call(fn)
+
+    def _call(self, fn):
+        try:
+            fn()
+        except KeyboardInterrupt:
+            self.interrupt()
+        except Interrupted:
+            pass  # meant for the main task, which gets its own
+        except BaseException as exception:
+            self._report(self._scheduler, exception)
+
+    def post(self, fn):
+        """Have FN called in the scheduler, soon. Safe from any thread and from signal handlers. FN must not park."""
+        self._inbox.append(fn)
+        self._bell.ring()
+
+    def _read_inbox(self):
+        inbox = self._inbox
+        for _ in range(len(inbox)):
+            self._call(inbox.popleft())
+
+    def outside_source(self):
+        """A context manager: while it is open, messages may still come from outside, and waiting is no deadlock.
+
+        May be entered and left in any thread.
+        """
+        return OutsideSource(self)
+
+    def count_outside(self, difference):
+        self._outside += difference
+
+    # ------------------------------------------------------------------ calls that block
+
+    def run_blocking(self, fn, *args):
+        """Run FN(*ARGS) outside of the kernel and return what it returns. The baton goes round meanwhile.
+
+        In virtual time the clock stands still as long as such a call is out. A request to end the task is delivered
+        when FN has returned; an interrupt of the main task breaks FN off, if it comes from a signal handler or if FN
+        runs in a helper thread (which then goes on for nothing).
+        """
+        me = self.current
+        if me.attention:
+            me.deliver()
+        isinstance(None, _stairs)
+        if me.carrier.ident != get_ident():
+            self._refuse("start a blocking call")
+        me.why = lambda: f"the call {getattr(fn, '__name__', fn)!s} outside of the kernel"
+        dynamic = me.dynamic
+        if dynamic is not None:
+            dynamic.leave()
+        try:
+            return self.backend.run_blocking(self, me, lambda: fn(*args))
+        finally:
+            me.state = RUNNING
+            self.current = me
+            budget.left = SLICE
+            if dynamic is not None:
+                dynamic.enter()
+            if me.attention:
+                me.deliver()
+
+    def leave(self, task):
+        """TASK goes outside. Returns the number of this visit, which `comes_back` takes."""
+        self.current = self._scheduler
+        task.state = BLOCKED
+        self._blocking += 1
+        return task.ticket
+
+    def comes_back(self, task, visit=None):
+        """TASK is back from outside, unless it was called back before (then VISIT is an old one)."""
+        if task.state is BLOCKED and (visit is None or visit == task.ticket):
+            task.ticket += 1
+            self._blocking -= 1
+            self._enqueue(task)
+
+    def nothing_can_happen(self):
+        """True if no task could run and no time could pass while the current task is outside."""
+        entries = self._timers.entries
+        due = entries and entries[0][0] <= self.clock.now()
+        return self.clock.virtual and not (self._queue or self._inbox or self._outside or self._blocking or due)

@@ -1,0 +1,218 @@
+"""A task: one thread of control that runs when it holds the baton, and is parked or queued when it does not.
+
+What CRAM calls a `task` object sits one floor up, with its status fluent and its messages; this is the ground under it:
+a function that runs on a stack of its own, a place in the tree (every task has one parent), a request to end that is
+delivered once, a result or an exception that the joiner decides about.
+
+Laws kept here: a request to end is delivered exactly once, at a park point or checkpoint, and cleanup that runs after
+that is not disturbed by another one; a task that is cancelled before it ran never runs; an exception is never lost,
+for whoever does not look at it is told about it (`kernel.unhandled`).
+"""
+
+from contextvars import copy_context
+
+from .budget import budget
+from .errors import Abandoned, Cancelled, KernelError
+
+RUNNABLE = "runnable"
+RUNNING = "running"
+PARKED = "parked"
+SETTLING = "settling"
+BLOCKED = "blocked"  # outside of the kernel, in `run_blocking`
+DEAD = "dead"
+
+HOPELESS = 100  # times that a task may swallow `Abandoned` before it is left where it is, for good
+
+
+class Locals:
+    """Where the floors above keep what they know about a task."""
+
+
+class Task:
+    """Made by `spawn`. Read `name`, `parent`, `state`, `dead`, `result`, `exception`; use `cancel` and `join`."""
+
+    __slots__ = (
+        "kernel", "id", "name", "parent", "local", "dynamic", "result", "cancelled_delivered",
+        "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
+        "fn", "args", "context", "joiners", "cancel_request", "delivered", "swallowed", "_exception", "claimed", "__weakref__",
+    )  # fmt: skip
+
+    def __init__(self, kernel, number, fn, args, name, parent):
+        self.kernel = kernel
+        self.id = number
+        self.name = name
+        self.parent = parent
+        self.local = Locals()
+        self.dynamic = None
+        self.result = None
+        self.cancelled_delivered = False
+        self.state = RUNNABLE
+        self.why = ""
+        self.carrier = None  # the stack it runs on, from its first step to its death
+        self.attention = False  # something may have to be raised in it: the one test that park points make
+        self.woken = False
+        self.ticket = 0  # counts the wake-ups, so that a deadline knows whether it still counts
+        self.timed = False
+        self.preempted = False
+        self.shielded = 0
+        self.alarms = None
+        self.abandoned = False
+        self.fn = fn
+        self.args = args
+        self.context = copy_context()
+        self.joiners = None
+        self.cancel_request = None
+        self.delivered = None
+        self.swallowed = 0
+        self._exception = None
+        self.claimed = False
+
+    @property
+    def dead(self):
+        """True when its function has returned or unwound, and not a moment before."""
+        return self.state is DEAD
+
+    @property
+    def exception(self):
+        """What ended it, or None. Whoever reads this takes care of it: it is not reported as unhandled any more."""
+        self.claimed = True
+        return self._exception
+
+    @property
+    def cancelled(self):
+        """True as soon as it was asked to end, delivered or not."""
+        return self.cancel_request is not None
+
+    def cancel(self, reason=None):
+        """Ask the task to end: `Cancelled(REASON)` is raised once, at its next park point or checkpoint.
+
+        REASON may also be an exception, or a function of no arguments that returns one; that is raised instead.
+        Wakes the task if it is parked. Inside of `shield` the delivery waits. The first request counts: later ones,
+        and requests to a dead task, do nothing.
+        """
+        if self.cancel_request is not None or self.state is DEAD:
+            return
+        self.cancel_request = (reason,)
+        self.attention = True
+        if not self.shielded:
+            self.kernel.rouse(self)
+            if self is self.kernel.current:
+                budget.left = 0
+
+    def join(self, why=None):
+        """Park until the task is dead; returns its result, or None if it has none.
+
+        Does not raise what ended it: that is in `exception`, for the joiner to decide.
+        """
+        kernel = self.kernel
+        me = kernel.current
+        if me is self:
+            raise KernelError(f"Task {self.name} would wait for its own end. Join it from another task.")
+        self.claimed = True
+        while self.state is not DEAD:
+            if self.joiners is None:
+                self.joiners = []
+            self.joiners.append(me)
+            try:
+                kernel.park(why or self._why_joined)
+            finally:
+                if self.state is not DEAD:
+                    self.joiners.remove(me)
+        return self.result
+
+    def _why_joined(self):
+        return f"the end of task {self.name}"
+
+    def describe_why(self):
+        """What it waits for, as text; a reason given as a function is asked only now, when somebody reads it."""
+        try:
+            return str(self.why() if callable(self.why) else self.why)
+        except Exception as broken:  # a report must not fail because a part of it does
+            return f"something that cannot say what it is ({broken!r})"
+
+    def deliver(self):
+        """Raise what this task was asked to end with, if it may be raised now. Called by the task itself."""
+        if self.abandoned:
+            self.swallowed += 1
+            if self.swallowed > HOPELESS:
+                self.kernel.leave_for_dead(self)
+            raise Abandoned
+        if self.alarms:
+            for alarm in self.alarms:
+                if alarm.pierces_shield or not self.shielded:
+                    self.alarms.remove(alarm)
+                    self._look_again()
+                    raise alarm.exception
+        if self.cancel_request is not None and not self.cancelled_delivered and not self.shielded:
+            self.delivered = exception = self._cancellation()
+            self.cancelled_delivered = True
+            self._look_again()
+            raise exception
+
+    def _look_again(self):
+        waiting = self.cancel_request is not None and not self.cancelled_delivered
+        self.attention = waiting or bool(self.alarms) or self.abandoned
+
+    def _cancellation(self):
+        (reason,) = self.cancel_request
+        if callable(reason) and not isinstance(reason, BaseException):
+            reason = reason()
+        return reason if isinstance(reason, BaseException) else Cancelled(reason)
+
+    def never_runs(self):
+        """It was asked to end before its first step: that is its end."""
+        self.delivered = self._exception = self._cancellation()
+        self.cancelled_delivered = True
+
+    def ended_as_asked(self):
+        """True if what ended it is what somebody asked for, so that nobody has to be told."""
+        exception = self._exception
+        return exception is None or exception is self.delivered or isinstance(exception, (Cancelled, Abandoned))
+
+    def __repr__(self):
+        return f"<task {self.id} {self.name}, {self.state}>"
+
+
+class Alarm:
+    """Something for the main task, besides a cancellation: an interrupt, a deadlock, the time limit."""
+
+    __slots__ = ("exception", "pierces_shield")
+
+    def __init__(self, exception, pierces_shield):
+        self.exception = exception
+        self.pierces_shield = pierces_shield
+
+
+class SchedulerTask(Task):
+    """Stands in as the current task while timers fire and messages are read: nobody's stack, so it cannot park."""
+
+    __slots__ = ()
+
+    def __init__(self, kernel):
+        super().__init__(kernel, -1, None, (), "scheduler", None)
+        self.attention = True
+
+    def deliver(self):
+        raise KernelError(
+            "A timer or a posted function tried to wait. It runs inside of the scheduler, where nothing can wait: "
+            "spawn a task that waits, or wake one."
+        )
+
+
+class shield:  # noqa: N801 (reads as a statement: `with shield():`)
+    """`with shield():` delays a request to end until the block is left. Blocks may nest."""
+
+    __slots__ = ("_task",)
+
+    def __init__(self, task):
+        self._task = task
+
+    def __enter__(self):
+        self._task.shielded += 1
+
+    def __exit__(self, *_):
+        task = self._task
+        task.shielded -= 1
+        if task.attention and not task.shielded:
+            budget.left = 0
+        return False

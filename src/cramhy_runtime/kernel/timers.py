@@ -1,0 +1,106 @@
+"""Timers: what happens at a time of the kernel's clock.
+
+One heap holds both kinds of entries: callbacks (`call_at`, `call_every`) and tasks parked with a deadline. Entries are
+tuples `(time, order, what, ticket)`. `order` counts up, so of two entries for the same time the one created first comes
+first; a periodic timer keeps the order it was born with. A task that is woken before its deadline leaves its entry
+behind: the ticket no longer fits, and the entry is skipped, or swept out with others when more than half are stale.
+"""
+
+from heapq import heapify, heappop, heappush
+
+CALLBACK = -1  # the ticket of entries that are timers; tasks' tickets count from 0
+SWEEP_FROM = 64  # stale entries below this number are not worth a sweep
+MAX_LAG = 1.0  # s; a periodic timer that is later than this (the process slept) leaves firings out
+
+
+class Timer:
+    """A callback that fires once, or again and again until `cancel`. Made by `call_at` and `call_every`."""
+
+    __slots__ = ("fn", "time", "order", "first", "period", "count", "_heap")
+
+    def __init__(self, heap, time, order, fn, period=None):
+        self._heap = heap
+        self.fn = fn
+        self.time = self.first = time
+        self.order = order
+        self.period = period
+        self.count = 0
+
+    @property
+    def active(self):
+        """True as long as it will fire (again)."""
+        return self.fn is not None
+
+    def cancel(self):
+        """It fires no more. May be called at any time, in the callback too."""
+        if self.fn is not None:
+            self.fn = None
+            self._heap.went_stale()
+
+    def advance(self, now):
+        """Set `time` to that of the next firing: by multiplication, so that rounding does not add up to a drift."""
+        self.count += 1
+        self.time = self.first + self.count * self.period
+        if self.time < now - MAX_LAG:
+            self.count = max(self.count, int((now - self.first) / self.period))
+            self.time = self.first + self.count * self.period
+
+    def __repr__(self):
+        every = f" every {self.period:g} s" if self.period else ""
+        return f"<timer at {self.time:g} s{every}{'' if self.active else ', cancelled'}>"
+
+
+class TimerHeap:
+    """The timers of one kernel, soonest first."""
+
+    __slots__ = ("entries", "order", "_stale")
+
+    def __init__(self):
+        self.entries = []
+        self.order = 0
+        self._stale = 0
+
+    def add(self, time, fn, period=None):
+        """A new timer that calls FN at TIME, and every PERIOD seconds from then on if there is one."""
+        timer = Timer(self, time, self.order, fn, period)
+        self.order += 1
+        self.push(timer)
+        return timer
+
+    def push(self, timer):
+        heappush(self.entries, (timer.time, timer.order, timer, CALLBACK))
+
+    def add_deadline(self, time, task):
+        """Wake TASK at TIME, unless it was woken before."""
+        heappush(self.entries, (time, self.order, task, task.ticket))
+        self.order += 1
+
+    def pop(self):
+        """Take the first entry out, whether it counts or not."""
+        entry = heappop(self.entries)
+        if self._stale and not _counts(entry):
+            self._stale -= 1
+        return entry
+
+    def went_stale(self):
+        """Some entry no longer counts."""
+        self._stale += 1
+        if self._stale > SWEEP_FROM and self._stale * 2 > len(self.entries):
+            # In place, because the scheduler holds this very list.
+            self.entries[:] = [entry for entry in self.entries if _counts(entry)]
+            heapify(self.entries)
+            self._stale = 0
+
+    def next_time(self):
+        """The time of the first entry that counts, or None."""
+        entries = self.entries
+        while entries:
+            if _counts(entries[0]):
+                return entries[0][0]
+            self.pop()
+        return None
+
+
+def _counts(entry):
+    what, ticket = entry[2], entry[3]
+    return what.fn is not None if ticket == CALLBACK else what.ticket == ticket

@@ -1,0 +1,307 @@
+"""From forms to nodes: macros expanded, names resolved, scopes known.
+
+`Analyzer.form` takes a form and an `Env` and gives a node. The special operators are in ``special_forms.py``; here are names,
+calls and functions. A name that is bound nowhere is taken for a special variable, as SBCL does after its warning: whether it
+has a value shows at run time, with the error that the user knows.
+"""
+
+from __future__ import annotations
+
+from ..conditions import CompileError, Condition, SimpleProgramError, error
+from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list
+from ..faces import python_name
+from ..lambda_lists import parse
+from ..macros import ensure_loaded, macroexpand_1
+from ..packages import is_symbol, sym, symbol_name
+from . import nodes
+from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable
+from .nodes import (Call, CallLocal, CallSetf, CallValue, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,
+                    Parameters, Progn, SetGlobal, SetLocal)
+
+SPECIAL_FORMS: dict = {}
+"""Symbol → method (analyzer, form, env) → node; filled by ``special_forms.py``."""
+
+DECLARE = sym("DECLARE")
+LAMBDA = sym("LAMBDA")
+SETF = sym("SETF")
+
+
+class Analyzer:
+    """Turns the forms of one text into nodes. ``positions`` maps ``id`` of a cons to its place in the text."""
+
+    def __init__(self, filename="<form>", positions=None):
+        self.filename = filename
+        self.positions = positions if positions is not None else {}
+        self._at = None
+
+    # ------------------------------------------------------------------------------------------------------------ errors
+
+    def fail(self, control, *arguments):
+        """A compile error at the form that is being analysed."""
+        condition = CompileError(control, *arguments, position=self.place())
+        return error(condition)
+
+    def place(self):
+        return (self.filename, *self._at[:2]) if self._at else None
+
+    # ------------------------------------------------------------------------------------------------------------- forms
+
+    def form(self, form, env):
+        """The node of ``form``."""
+        if isinstance(form, Cons):
+            position = self.positions.get(id(form))
+            if position is None:
+                return self._compound(form, env)
+            outer, self._at = self._at, position
+            try:
+                node = self._compound(form, env)
+                if node.position is None:
+                    node.position = position
+                return node
+            except CompileError as problem:
+                if problem.position is None:
+                    problem.position = self.place()
+                raise
+            finally:
+                self._at = outer
+        if isinstance(form, Symbol) and not isinstance(form, Keyword):
+            return self._variable(form, env)
+        if form.__class__ is bool:
+            return Constant(True if form else None)
+        return Constant(form)
+
+    def _variable(self, symbol, env):
+        found = env.variable(symbol)
+        if isinstance(found, Variable):
+            return LocalVariable(found.used_from(env.scope))
+        if isinstance(found, SymbolMacro):
+            return self.form(found.expansion, env)
+        if found is None and symbol.compiler_data is not None and "symbol-macro" in symbol.compiler_data:
+            return self.form(symbol.compiler_data["symbol-macro"], env)
+        node = GlobalVariable(symbol)
+        node.position = self._at
+        return node
+
+    def _compound(self, form, env):
+        head = form.car
+        if isinstance(head, Symbol):
+            local = env.function(head)
+            if local is None:
+                special = SPECIAL_FORMS.get(head)
+                if special is not None:
+                    return special(self, form, env)
+            if isinstance(local, LocalFunction):
+                return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
+            expansion, expanded = self.expand(form, env)
+            if expanded:
+                return self.form(expansion, env)
+            return self._call(form, env)
+        if isinstance(head, Cons) and head.car is LAMBDA:
+            return CallValue(self.function(head, env), self.arguments(form, env))
+        return self.fail("~S cannot be called: the head of a form must be a symbol or a lambda expression.", head)
+
+    def expand(self, form, env):
+        """(expansion, whether expanded); the expansion inherits the place of ``form``."""
+        try:
+            expansion, expanded = macroexpand_1(form, env)
+        except Condition as problem:
+            if getattr(problem, "position", self) is None:
+                problem.position = self.place()
+            raise
+        if expanded and isinstance(expansion, Cons) and id(expansion) not in self.positions and self._at is not None:
+            self._keep(expansion)
+            self.positions[id(expansion)] = self._at
+        return expansion, expanded
+
+    def _keep(self, form):
+        # ids are only unique among living objects: expansions live as long as the positions do
+        self.positions.setdefault("kept", []).append(form)
+
+    def arguments(self, form, env):
+        if form.cdr is not None and not isinstance(form.cdr, Cons):
+            return self.fail("The form ~S ends in a dot.", form)
+        return [self.form(argument, env) for argument in form.cdr or ()]
+
+    def _call(self, form, env):
+        node = Call(form.car, self.arguments(form, env))
+        node.position = self._at
+        traits = BUILTIN_TRAITS.get(form.car)
+        if traits:
+            node.single = "single" in traits
+            node.boolean = "boolean" in traits
+        return node
+
+    def body(self, forms, env):
+        """The node of a progn of ``forms`` (an iterable of forms)."""
+        forms = list(forms or ())
+        if len(forms) == 1:
+            return self.form(forms[0], env)
+        if not forms:
+            return Constant(None)
+        return progn([self.form(form, env) for form in forms])
+
+    # ------------------------------------------------------------------------------------------------------ declarations
+
+    def declarations(self, forms, env, documentation=False):
+        """(declaration specifiers, documentation or None, remaining forms) at the head of a body."""
+        specifiers, text = [], None
+        forms = list(forms or ())
+        while forms:
+            head = forms[0]
+            if isinstance(head, Cons) and head.car is DECLARE:
+                specifiers.extend(head.cdr or ())
+                forms.pop(0)
+            elif documentation and isinstance(head, str) and len(forms) > 1 and text is None:
+                text = forms.pop(0)
+            else:
+                break
+        return specifiers, text, forms
+
+    @staticmethod
+    def specials(specifiers):
+        """The symbols that ``specifiers`` declare special."""
+        special = sym("SPECIAL")
+        return {name for item in specifiers if isinstance(item, Cons) and item.car is special for name in item.cdr or ()}
+
+    def binds_special(self, symbol, specials):
+        if not isinstance(symbol, Symbol) or isinstance(symbol, Keyword):
+            return self.fail("~S cannot be bound: a variable must be a symbol that is no constant.", symbol)
+        if symbol.constant:
+            return self.fail("The constant ~S cannot be bound.", symbol)
+        return symbol.special or symbol in specials
+
+    def bind(self, symbol, env, specials):
+        """Bind ``symbol`` in ``env``: the new `Variable`, or the symbol itself when it is special."""
+        if self.binds_special(symbol, specials):
+            env.variables[symbol] = SpecialVariable(symbol)
+            return symbol
+        variable = env.variables[symbol] = Variable(symbol, env.scope)
+        return variable
+
+    # --------------------------------------------------------------------------------------------------------- functions
+
+    def function(self, form, env, name=None):
+        """The `Lambda` of a lambda expression ``(lambda list . body)``."""
+        if not isinstance(form.cdr, Cons):
+            return self.fail("A lambda expression needs a lambda list: ~S", form)
+        return self.lambda_(form.cdr.car, form.cdr.cdr, env, name)
+
+    def lambda_(self, lambda_list, body, env, name=None, block=None):
+        """A function with ``lambda_list`` and the forms ``body``; ``block`` names an implicit block around them."""
+        parsed = parse(lambda_list)
+        scope = FunctionScope(env.scope)
+        inner = Env(env, scope)
+        specifiers, documentation, forms = self.declarations(body, env, documentation=True)
+        specials = self.specials(specifiers)
+        parameters = Parameters(has_keys=parsed.has_keys, allow_other_keys=parsed.allow_other_keys)
+        dynamic = []
+
+        def parameter(symbol):
+            if not isinstance(symbol, Symbol) or isinstance(symbol, Keyword):
+                return self.fail("~S cannot be a parameter of a function.", symbol)
+            if self.binds_special(symbol, specials):
+                inner.variables[symbol] = SpecialVariable(symbol)
+                variable = Variable(symbol, scope)
+                dynamic.append((symbol, variable))
+                return variable
+            variable = inner.variables[symbol] = Variable(symbol, scope)
+            return variable
+
+        parameters.required = [parameter(symbol) for symbol in parsed.required]
+        for symbol, default, supplied in parsed.optional:
+            node = self.form(default, inner) if default is not None else None
+            variable = parameter(symbol)
+            parameters.optional.append((variable, node, parameter(supplied) if supplied is not None else None))
+        if parsed.rest is not None:
+            parameters.rest = parameter(parsed.rest)
+        for key, symbol, default, supplied in parsed.keys:
+            node = self.form(default, inner) if default is not None else None
+            variable = parameter(symbol)
+            parameters.keys.append((variable, node, parameter(supplied) if supplied is not None else None, key))
+        bindings = [(symbol, LocalVariable(variable)) for symbol, variable in dynamic]
+        if parsed.aux:
+            let_star = SPECIAL_FORMS[sym("LET*")]
+            aux = lisp_list(*(lisp_list(symbol, form) for symbol, form in parsed.aux))
+            body_form = Cons(sym("LET*"), Cons(aux, lisp_list(*forms)))
+            body_node = let_star(self, body_form, inner)
+        elif block is not None or block is None and name is None:
+            body_node = self._blocked(block, forms, inner)
+        else:
+            body_node = self._blocked(block, forms, inner)
+        if bindings:
+            body_node = Let(bindings, body_node)
+        node = Lambda(name, parameters, body_node, scope, documentation)
+        return node
+
+    def _blocked(self, block, forms, env):
+        if block is None:
+            return self.body(forms, env)
+        return SPECIAL_FORMS[sym("BLOCK")](self, Cons(sym("BLOCK"), Cons(block, lisp_list(*forms))), env)
+
+    def function_name(self, name, env):
+        """The node of ``#'name``."""
+        if isinstance(name, Cons) and name.car is LAMBDA:
+            return self.function(name, env)
+        if isinstance(name, Cons) and name.car is SETF:
+            local = env.function(("setf", name.cdr.car))
+            if isinstance(local, LocalFunction):
+                return LocalVariable(local.variable.used_from(env.scope))
+            return FunctionReference(name.cdr.car, setf=True)
+        if not is_symbol(name):
+            return self.fail("~S is no name of a function.", name)
+        local = env.function(name)
+        if isinstance(local, LocalFunction):
+            return LocalVariable(local.variable.used_from(env.scope))
+        if local is not None or (isinstance(name, Symbol) and (name.macro is not None or name in SPECIAL_FORMS)
+                                 and isinstance(name.function, UndefinedFunction)):
+            return self.fail("~S names a macro, not a function, so #' cannot refer to it.", name)
+        return FunctionReference(name)
+
+    def set_variable(self, symbol, node, env):
+        """The node that assigns ``node`` to the variable ``symbol``; symbol macros are the caller's."""
+        if not isinstance(symbol, Symbol) or symbol.constant:
+            return self.fail("~S cannot be assigned.", symbol)
+        found = env.variable(symbol)
+        if isinstance(found, Variable):
+            return SetLocal(found.used_from(env.scope, assign=True), node)
+        return SetGlobal(symbol, node)
+
+    def toplevel(self, form, names=None):
+        """The node of a top-level form as the body of a function without parameters."""
+        ensure_loaded()
+        scope = FunctionScope(names=names)
+        env = Env(None, scope)
+        return Lambda(None, Parameters(), self.form(form, env), scope)
+
+
+BUILTIN_TRAITS: dict = {}
+"""Symbol → set of "single", "boolean": what is known about the results of standard functions."""
+
+
+def note_traits(names, *traits):
+    for name in names.upper().split():
+        BUILTIN_TRAITS.setdefault(sym(name), set()).update(traits)
+
+
+note_traits("eq eql equal equalp null not consp listp atom symbolp stringp numberp integerp floatp characterp functionp vectorp "
+            "keywordp zerop plusp minusp evenp oddp endp string= = /= < > <= >= char= boundp fboundp typep", "single", "boolean")
+note_traits("car cdr cons list list* append nconc length reverse nreverse nth nthcdr first second third rest last 1+ 1- + - * / min max "
+            "mod rem abs symbol-name make-symbol symbol-value symbol-function string intern-keyword elt aref svref char mapcar mapc "
+            "mapcan member assoc find position count remove delete sort concatenate format princ prin1 print terpri write-string "
+            "gensym error make-hash-table vector copy-list cadr cddr caar cdar caddr string-upcase string-downcase coerce reduce "
+            "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt", "single")
+
+
+def progn(forms):
+    """A progn of nodes; only the last may return several values."""
+    node = Progn(forms)
+    node.single = forms[-1].single
+    node.boolean = forms[-1].boolean
+    return node
+
+
+def call_setf(symbol, arguments):
+    return CallSetf(symbol, arguments)
+
+
+__all__ = ["Analyzer", "Env", "SPECIAL_FORMS", "note_traits", "progn", "nodes", "python_name", "SimpleProgramError"]

@@ -1,0 +1,107 @@
+"""The objects that compiled code refers to: symbols, quoted lists, standard functions.
+
+Each gets a name (``K17``) that is a global of the code. Code that runs at once has the objects put into its globals. Code that
+is kept in a file brings forms that make them again when it is loaded; an object that no form can make (a hash table inserted
+by ``#.``, say) makes the file one that is compiled anew each time.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from hy import models
+
+from ..data import Character, Cons, DoubleFloat, Symbol
+
+
+class NotStorable(Exception):
+    """An object that no code can rebuild."""
+
+
+def symbol_model(name):
+    return models.Symbol(name)
+
+
+def expression(*items):
+    return models.Expression(items)
+
+
+class Constants:
+    """The table of one text. ``fresh`` are the entries made since it was last asked: (name, kind, object)."""
+
+    def __init__(self, prefix="K"):
+        self.prefix = prefix
+        self.names = {}
+        self.alive = []  # ids are keys: the objects must live as long
+        self.fresh = []
+        self.count = 0
+
+    def name(self, kind, obj):
+        """The global name for ``obj``; kind is "object", or "function" for the global function of the symbol ``obj``."""
+        key = (kind, id(obj))
+        found = self.names.get(key)
+        if found is None:
+            self.count += 1
+            found = self.names[key] = f"{self.prefix}{self.count}"
+            self.alive.append(obj)
+            self.fresh.append((found, kind, obj))
+        return found
+
+    def take_objects(self):
+        """name → object for the entries made since the last call."""
+        fresh, self.fresh = self.fresh, []
+        return {name: obj.function if kind == "function" else obj for name, kind, obj in fresh}
+
+    def take_forms(self):
+        """Statements (Hy models) that make the entries made since the last call."""
+        fresh, self.fresh = self.fresh, []
+        statements = []
+        for name, kind, obj in fresh:
+            value = self.builder(obj, top=True)
+            if kind == "function":
+                value = expression(symbol_model("."), value, symbol_model("function"))
+            statements.append(expression(symbol_model("setv"), symbol_model(name), value))
+        return statements
+
+    def builder(self, obj, top=False):
+        """A Hy expression that makes ``obj``. Inside a list, symbols that have a name already are referred to by it."""
+        if obj is None or obj is True:
+            return symbol_model("None" if obj is None else "True")
+        if not top:
+            known = self.names.get(("object", id(obj)))
+            if known is not None and not any(entry[0] == known for entry in self.fresh):
+                return symbol_model(known)
+        kind = type(obj)
+        if isinstance(obj, Symbol):
+            if obj.package is None:
+                return expression(symbol_model("Lgensym"), models.String(obj.name))
+            return expression(symbol_model("Lintern"), models.String(obj.name), models.String(obj.package.name))
+        if kind is Cons:
+            items, cell = [], obj
+            while isinstance(cell, Cons):
+                items.append(self.builder(cell.car))
+                cell = cell.cdr
+            if cell is None:
+                return expression(symbol_model("Llist"), *items)
+            return expression(symbol_model("Ldotted"), *items, self.builder(cell))
+        if kind is str:
+            return models.String(obj)
+        if kind is int:
+            return models.Integer(obj)
+        if kind is float:
+            return float_model(obj)
+        if kind is DoubleFloat:
+            return expression(symbol_model("Ldouble"), float_model(float(obj)))
+        if kind is Fraction:
+            return expression(symbol_model("Lratio"), models.Integer(obj.numerator), models.Integer(obj.denominator))
+        if kind is Character:
+            return expression(symbol_model("Lcharacter"), models.String(obj.char))
+        if kind is list:
+            return models.List([self.builder(item) for item in obj])
+        raise NotStorable(obj)
+
+
+def float_model(value):
+    if value != value or value in (float("inf"), float("-inf")):
+        return expression(symbol_model("Lfloat"), models.String(str(float(value))))
+    return models.Float(value)

@@ -1,0 +1,610 @@
+"""From nodes to Hy: code that is made of core Hy forms with names that mean one thing.
+
+Every node is generated for a *destination*: its value is wanted as an expression, or assigned to a name, or returned, or only
+its effect is wanted. Lisp is made of expressions and Python partly of statements, so an expression may need statements before
+it; where an argument does, the arguments before it are first saved in variables, because Lisp evaluates from left to right.
+
+``block``, ``go`` and ``return`` inside one Python function become ``break``, ``continue`` and ``return``; only an exit from an
+inner function raises an exception. A Python loop that is left for an outer one sets ``Lexit`` and breaks, and the code after
+the loop goes on from there.
+"""
+
+from __future__ import annotations
+
+from hy import models
+
+from ..data import Cons, Symbol, UndefinedFunction
+from ..faces import python_name
+from ..packages import COMMON_LISP, is_symbol, sym, symbol_name
+from . import nodes
+from .constants import Constants, expression, float_model, symbol_model
+
+NONE = symbol_model("None")
+TRUE = symbol_model("True")
+
+
+class Destination:
+    """Where a value goes. ``multiple``: all values are wanted, not only the first."""
+
+    __slots__ = ("kind", "name", "multiple")
+
+    def __init__(self, kind, name=None, multiple=False):
+        self.kind, self.name, self.multiple = kind, name, multiple
+
+
+EFFECT = Destination("effect")
+VALUE = Destination("value")
+VALUES = Destination("value", multiple=True)
+RETURN = Destination("return", multiple=True)
+
+
+class Frame:
+    """A Python loop around the code being generated; ``exits`` are outer targets that it is left for."""
+
+    def __init__(self, target, segment=0):
+        self.target = target
+        self.segment = segment
+        self.exits = {}
+
+
+ARITHMETIC = {sym(name): f"L{function}" for name, function in (
+    ("+", "add2"), ("-", "sub2"), ("*", "mul2"), ("/", "div2"), ("<", "lt2"), (">", "gt2"), ("<=", "le2"), (">=", "ge2"), ("=", "num_eq2"))}
+
+
+class Generator:
+    """Generates one Python function at a time; `toplevel` is the entry."""
+
+    def __init__(self, constants=None):
+        self.constants = constants or Constants()
+        self.out = []
+        self.effects = 0
+        self.frames = []
+        self.scope = None
+        self.destinations = {}
+        self.jump_codes = {}
+
+    # ------------------------------------------------------------------------------------------------------------- output
+
+    def emit(self, *items, pure=False):
+        self.out.append(expression(*items))
+        if not pure:
+            self.effects += 1
+
+    def call(self, name, *arguments):
+        """A call of a support function: ``call("one", x)`` is ``(Lone x)``."""
+        return expression(symbol_model("L" + name), *arguments)
+
+    def assign(self, name, value):
+        self.emit(symbol_model("setv"), symbol_model(name), value)
+
+    def captured(self, produce):
+        """(statements, result) of ``produce``, its statements kept apart."""
+        outer, self.out = self.out, []
+        try:
+            result = produce()
+            return self.out, result
+        finally:
+            self.out = outer
+
+    def temporary(self, base="Lt"):
+        return self.scope.unique(base)
+
+    def constant(self, obj):
+        return symbol_model(self.constants.name("object", obj))
+
+    def positioned(self, model, node):
+        position = node.position
+        if position is not None:
+            model.start_line, model.start_column, model.end_line, model.end_column = position
+        return model
+
+    # ------------------------------------------------------------------------------------------------------------- driver
+
+    def gen(self, node, destination):
+        """Generate ``node``; for a value destination return the expression, else ``None``."""
+        return getattr(self, node.__class__.__name__)(node, destination)
+
+    def value(self, node):
+        return self.gen(node, VALUE)
+
+    def finish(self, model, node, destination, pure=False):
+        """Deliver an expression to its destination."""
+        kind = destination.kind
+        if not destination.multiple and not node.single and kind != "effect":
+            model = self.call("one", model)
+        if kind == "value":
+            return model
+        if kind == "return":
+            self.emit(symbol_model("return"), model)
+        elif kind == "assign":
+            self.assign(destination.name, model)
+        elif not pure:
+            self.out.append(model)
+            self.effects += 1
+        return None
+
+    def by_statements(self, node, destination, produce):
+        """Generate through ``produce(destination)``, which delivers by statements; for a value use a variable."""
+        if destination.kind != "value":
+            produce(destination)
+            return None
+        name = self.temporary()
+        produce(Destination("assign", name, destination.multiple))
+        return symbol_model(name)
+
+    def stable(self, model, node):
+        """Whether ``model`` means the same after later statements."""
+        if isinstance(node, nodes.Constant | nodes.FunctionReference):
+            return True
+        if isinstance(node, nodes.LocalVariable):
+            return not node.variable.assigned
+        return isinstance(node, nodes.Lambda) and isinstance(model, models.Symbol)
+
+    def arguments(self, arguments, destination=VALUE):
+        """The expressions of ``arguments``, evaluated from left to right."""
+        done = []
+        for node in arguments:
+            before = self.effects
+            statements, model = self.captured(lambda node=node: self.gen(node, destination))
+            if statements and self.effects != before:
+                for index, (earlier, earlier_node) in enumerate(done):
+                    if not self.stable(earlier, earlier_node):
+                        name = self.temporary()
+                        self.assign(name, earlier)
+                        done[index] = symbol_model(name), nodes.Constant(None)
+            self.out.extend(statements)
+            done.append((model, node))
+        return [model for model, _ in done]
+
+    # -------------------------------------------------------------------------------------------------------- values, names
+
+    def Constant(self, node, destination):
+        return self.finish(self.literal(node.value), node, destination, pure=True)
+
+    def literal(self, value):
+        if value is None or value is False:
+            return NONE
+        if value is True:
+            return TRUE
+        kind = type(value)
+        if kind is str:
+            return models.String(value)
+        if kind is int and abs(value) < 1 << 64:
+            return models.Integer(value)
+        if kind is float:
+            return float_model(value)
+        return self.constant(value)
+
+    def reference(self, variable):
+        name = symbol_model(variable.name)
+        return expression(symbol_model("."), name, symbol_model("v")) if variable.boxed else name
+
+    def LocalVariable(self, node, destination):
+        return self.finish(self.reference(node.variable), node, destination, pure=True)
+
+    def GlobalVariable(self, node, destination):
+        model = self.positioned(self.call("value", self.constant(node.symbol)), node)
+        return self.finish(model, node, destination)
+
+    def SetLocal(self, node, destination):
+        variable = node.variable
+        if not variable.boxed:
+            self.gen(node.value, Destination("assign", variable.name))
+        else:
+            self.emit(symbol_model("setv"), self.reference(variable), self.value(node.value))
+        return self.finish(self.reference(variable), node, destination, pure=True)
+
+    def SetGlobal(self, node, destination):
+        value = self.value(node.value)
+        place = expression(symbol_model("."), self.constant(node.symbol), symbol_model("value"))
+        self.emit(symbol_model("setv"), place, value)
+        return self.finish(place, node, destination, pure=True)
+
+    def FunctionReference(self, node, destination):
+        if node.setf:
+            model = self.call("setf_function", self.constant(node.symbol))
+        elif self.standard(node.symbol):
+            model = symbol_model(self.constants.name("function", node.symbol))
+        else:
+            model = self.call("fdefinition", self.constant(node.symbol))
+        return self.finish(model, node, destination, pure=True)
+
+    # --------------------------------------------------------------------------------------------------------------- calls
+
+    @staticmethod
+    def standard(symbol):
+        """Whether ``symbol`` names a function of Common Lisp, which nobody may redefine."""
+        return isinstance(symbol, Symbol) and symbol.package is COMMON_LISP and not isinstance(symbol.function, UndefinedFunction)
+
+    def Call(self, node, destination):
+        symbol = node.symbol
+        arguments = self.arguments(node.arguments)
+        if len(arguments) == 2 and symbol in ARITHMETIC:
+            model = expression(symbol_model(ARITHMETIC[symbol]), *arguments)
+        elif symbol is NOT and len(arguments) == 1:
+            model = self.call("not", *arguments)
+        elif self.standard(symbol):
+            model = expression(symbol_model(self.constants.name("function", symbol)), *arguments)
+        elif is_symbol(symbol) and not isinstance(symbol, Symbol):
+            model = self.call("undefined", self.constant(symbol), *arguments)
+        else:
+            model = expression(expression(symbol_model("."), self.constant(symbol), symbol_model("function")), *arguments)
+        return self.finish(self.positioned(model, node), node, destination)
+
+    def CallLocal(self, node, destination):
+        arguments = self.arguments(node.arguments)
+        return self.finish(self.positioned(expression(self.reference(node.variable), *arguments), node), node, destination)
+
+    def CallValue(self, node, destination):
+        function, *arguments = self.arguments([node.function, *node.arguments])
+        if not isinstance(node.function, nodes.Lambda):
+            function = self.call("callable", function)
+        return self.finish(self.positioned(expression(function, *arguments), node), node, destination)
+
+    def CallSetf(self, node, destination):
+        arguments = self.arguments(node.arguments)
+        model = expression(self.call("setf_function", self.constant(node.symbol)), *arguments)
+        return self.finish(self.positioned(model, node), node, destination)
+
+    def CallSpread(self, node, destination):
+        arguments = self.arguments([node.function])
+        spread = self.arguments(node.arguments, VALUES)
+        unpacked = [expression(symbol_model("unpack-iterable"), self.call("all_values", item)) for item in spread]
+        return self.finish(expression(self.call("callable", arguments[0]), *unpacked), node, destination)
+
+    def Support(self, node, destination):
+        arguments = self.arguments(node.arguments, VALUES)
+        return self.finish(self.positioned(self.call(node.name, *arguments), node), node, destination)
+
+    # ------------------------------------------------------------------------------------------------------------- sequence
+
+    def Progn(self, node, destination):
+        for item in node.forms[:-1]:
+            self.gen(item, EFFECT)
+        return self.gen(node.forms[-1], destination)
+
+    def MultipleValueProg1(self, node, destination):
+        if not node.rest:
+            return self.gen(node.first, destination)
+        name = self.temporary()
+        self.gen(node.first, Destination("assign", name, destination.multiple))
+        for item in node.rest:
+            self.gen(item, EFFECT)
+        saved = nodes.Constant(None)
+        return self.finish(symbol_model(name), saved, destination, pure=True)
+
+    def LoadTimeValue(self, node, destination):
+        if not hasattr(node, "name"):
+            node.name = self.temporary("Lloaded")
+            self.hoisted.append((node.name, node.node))
+        return self.finish(symbol_model(node.name), node, destination, pure=True)
+
+    # --------------------------------------------------------------------------------------------------------------- choice
+
+    def test(self, node):
+        """A Python expression that is true when the value of ``node`` is."""
+        if isinstance(node, nodes.Constant):
+            return NONE if node.value is None or node.value is False else TRUE
+        if isinstance(node, nodes.Call) and node.symbol in NEGATIONS and len(node.arguments) == 1:
+            return expression(symbol_model("not"), self.test(node.arguments[0]))
+        if isinstance(node, nodes.If):
+            test = self.test(node.test)
+            then_out, then = self.captured(lambda: self.test(node.then))
+            else_out, otherwise = self.captured(lambda: self.test(node.otherwise))
+            if not then_out and not else_out:
+                if otherwise is NONE:
+                    return expression(symbol_model("and"), test, then)
+                return expression(symbol_model("if"), test, then, otherwise)
+            name = self.temporary()
+            self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
+            return symbol_model(name)
+        value = self.value(node)
+        if node.boolean:
+            return expression(symbol_model("is-not"), value, NONE)
+        if isinstance(node, nodes.LocalVariable) and not node.variable.boxed:
+            return expression(symbol_model("and"), expression(symbol_model("is-not"), value, NONE),
+                              expression(symbol_model("is-not"), value, symbol_model("False")))
+        return self.call("truth", value)
+
+    @staticmethod
+    def setting(name, value):
+        return expression(symbol_model("setv"), symbol_model(name), value)
+
+    def branch(self, test, then, otherwise):
+        do = symbol_model("do")
+        if otherwise:
+            self.emit(symbol_model("if"), test, expression(do, *then), expression(do, *otherwise))
+        else:
+            self.emit(symbol_model("when"), test, *then) if then else self.emit(do, test)
+
+    def If(self, node, destination):
+        if isinstance(node.test, nodes.Constant):
+            return self.gen(node.then if self.test(node.test) is TRUE else node.otherwise, destination)
+        test = self.test(node.test)
+        then_out, then = self.captured(lambda: self.gen(node.then, destination))
+        else_out, otherwise = self.captured(lambda: self.gen(node.otherwise, destination))
+        if destination.kind != "value":
+            self.branch(test, then_out, else_out)
+            return None
+        if not then_out and not else_out:
+            return expression(symbol_model("if"), test, then, otherwise)
+        name = self.temporary()
+        self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
+        return symbol_model(name)
+
+    # ------------------------------------------------------------------------------------------------------------- binding
+
+    def bind_variable(self, variable, value):
+        self.assign(variable.name, self.call("cell", value) if variable.boxed else value)
+
+    def Let(self, node, destination):
+        values = self.arguments([value for _, value in node.bindings])
+        lexical = [(variable, value) for (variable, _), value in zip(node.bindings, values) if not isinstance(variable, Symbol)]
+        dynamic = [(symbol, value) for (symbol, _), value in zip(node.bindings, values) if isinstance(symbol, Symbol)]
+        for variable, value in lexical:
+            self.bind_variable(variable, value)
+        if not dynamic:
+            return self.gen(node.body, destination)
+        return self.with_specials(node.body, dynamic, destination)
+
+    def with_specials(self, body, dynamic, destination):
+        def produce(inner):
+            for symbol, value in dynamic:
+                self.emit(symbol_model("Lbind"), self.constant(symbol), value)
+            statements, _ = self.captured(lambda: self.gen(body, inner))
+            undo = expression(symbol_model("finally"), self.call("unbind", models.Integer(len(dynamic))))
+            self.emit(symbol_model("try"), *(statements or [NONE]), undo)
+
+        return self.by_statements(body, destination, produce)
+
+    def MultipleValueBind(self, node, destination):
+        value = self.gen(node.values, VALUES)
+        count = models.Integer(len(node.variables))
+        names, dynamic, boxed = [], [], []
+        for variable in node.variables:
+            name = self.temporary() if isinstance(variable, Symbol) or variable.boxed else variable.name
+            names.append(symbol_model(name))
+            if isinstance(variable, Symbol):
+                dynamic.append((variable, symbol_model(name)))
+            elif variable.boxed:
+                boxed.append((variable, symbol_model(name)))
+        if names:
+            self.emit(symbol_model("setv"), models.List(names), self.call("spread", value, count))
+        else:
+            self.out.append(value)
+            self.effects += 1
+        for variable, name in boxed:
+            self.bind_variable(variable, name)
+        if dynamic:
+            return self.with_specials(node.body, dynamic, destination)
+        return self.gen(node.body, destination)
+
+    def Functions(self, node, destination):
+        for variable, _ in node.functions:
+            if variable.boxed:
+                self.assign(variable.name, self.call("cell", NONE))
+        for variable, function in node.functions:
+            if variable.boxed:
+                self.emit(symbol_model("setv"), self.reference(variable), self.function(function))
+            else:
+                self.function(function, variable.name)
+        return self.gen(node.body, destination)
+
+    # --------------------------------------------------------------------------------------------------------------- exits
+
+    def BlockNode(self, node, destination):
+        return self.by_statements(node, destination, lambda inner: self.block(node, inner))
+
+    def block(self, node, destination):
+        block = node.block
+        self.destinations[block] = destination
+        if block.escapes:
+            self.assign(block.variable.name, self.call("block"))
+        statements, _ = self.captured(lambda: self.block_body(node, destination))
+        if not block.escapes:
+            self.out.extend(statements)
+            self.effects += 1
+            return
+        exit_name = self.temporary("Le")
+        handler, _ = self.captured(lambda: self.finish(
+            self.call("block_value", symbol_model(exit_name), self.reference(block.variable)), nodes.Call(None, []), destination))
+        self.emit(symbol_model("try"), *(statements or [NONE]),
+                  expression(symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), *handler),
+                  expression(symbol_model("finally"), self.call("end_block", self.reference(block.variable))))
+
+    def block_body(self, node, destination):
+        if destination.kind == "return":
+            self.gen(node.body, destination)
+            return
+        frame = Frame(node.block)
+        self.frames.append(frame)
+        statements, _ = self.captured(lambda: self.gen(node.body, destination))
+        self.frames.pop()
+        self.emit(symbol_model("while"), TRUE, *statements, expression(symbol_model("break")))
+        self.continue_exits(frame)
+
+    def ReturnFrom(self, node, destination):
+        block = node.block
+        if block.owner is not self.scope:
+            value = self.gen(node.value, VALUES)
+            return self.finish(self.call("return_from", self.reference(block.variable), value), nodes.Constant(None), destination)
+        target = self.destinations[block]
+        self.gen(node.value, target)
+        if target.kind != "return":
+            self.jump(block)
+        return NONE if destination.kind == "value" else None
+
+    def jump(self, target):
+        """Leave the Python loops between here and the frame of ``target``, then break it or, for a tagbody, go on in it."""
+        inner = self.frames[-1]
+        again = target.__class__.__name__ == "Tagbody"
+        if inner.target is target:
+            self.emit(symbol_model("continue" if again else "break"))
+            return
+        code = self.jump_codes.setdefault(target, len(self.jump_codes) + 1)
+        self.scope.uses_exit = True
+        self.assign("Lexit", models.Integer(code))
+        inner.exits[target] = code
+        self.emit(symbol_model("break"))
+
+    def continue_exits(self, frame):
+        """After a loop: go on with the exits for which it was left."""
+        for target, code in frame.exits.items():
+            def onward(target=target):
+                if self.frames[-1].target is target:
+                    self.assign("Lexit", models.Integer(0))
+                self.jump(target)
+
+            statements, _ = self.captured(onward)
+            self.emit(symbol_model("when"), expression(symbol_model("="), symbol_model("Lexit"), models.Integer(code)), *statements)
+
+    def TagbodyNode(self, node, destination):
+        tagbody = node.tagbody
+        tagbody.counter = self.temporary("Lpc")
+        frame = Frame(tagbody)
+        self.assign(tagbody.counter, models.Integer(0))
+        if tagbody.escapes:
+            self.assign(tagbody.variable.name, self.call("block"))
+        self.frames.append(frame)
+        parts = []
+        for index, segment in enumerate(node.segments):
+            frame.segment = index
+            statements, _ = self.captured(lambda segment=segment: [self.gen(item, EFFECT) for item in segment])
+            if statements:
+                test = expression(symbol_model("<="), symbol_model(tagbody.counter), models.Integer(index))
+                last = index == len(node.segments) - 1
+                parts.extend(statements if last else [expression(symbol_model("when"), test, *statements)])
+        self.frames.pop()
+        parts.append(expression(symbol_model("break")))
+        if tagbody.escapes:
+            exit_name = self.temporary("Le")
+            target = expression(symbol_model("setv"), symbol_model(tagbody.counter),
+                                self.call("block_value", symbol_model(exit_name), self.reference(tagbody.variable)))
+            parts = [expression(symbol_model("try"), *parts, expression(
+                symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), target))]
+        self.emit(symbol_model("while"), TRUE, *parts)
+        self.continue_exits(frame)
+        return self.finish(NONE, node, destination, pure=True)
+
+    def Go(self, node, destination):
+        tagbody = node.tagbody
+        if tagbody.owner is not self.scope:
+            return self.finish(self.call("return_from", self.reference(tagbody.variable), models.Integer(node.index)),
+                               nodes.Constant(None), destination)
+        frame = next(frame for frame in self.frames if frame.target is tagbody)
+        if node.index <= frame.segment:
+            self.emit(symbol_model("Lcheckpoint"))
+        self.assign(tagbody.counter, models.Integer(node.index))
+        self.jump(tagbody)
+        return NONE if destination.kind == "value" else None
+
+    def UnwindProtect(self, node, destination):
+        def produce(inner):
+            statements, _ = self.captured(lambda: self.gen(node.body, inner))
+            cleanup, _ = self.captured(lambda: self.gen(node.cleanup, EFFECT))
+            shielded = expression(symbol_model("with"), models.List([symbol_model("_"), self.call("shield")]), *(cleanup or [NONE]))
+            self.emit(symbol_model("try"), *(statements or [NONE]), expression(symbol_model("finally"), shielded))
+
+        return self.by_statements(node, destination, produce)
+
+    # ----------------------------------------------------------------------------------------------------------- functions
+
+    def Lambda(self, node, destination):
+        return self.finish(self.function(node), node, destination, pure=True)
+
+    def function(self, node, name=None):
+        """Emit the definition of a function and return the expression for it."""
+        given = name
+        if name is None:
+            base = node.name.cdr.car if isinstance(node.name, Cons) else node.name
+            name = self.scope.unique(python_name(symbol_name(base)) if base is not None else "Lfunction")
+        saved = self.out, self.frames, self.scope
+        self.out, self.frames, self.scope = [], [], node.scope
+        node.scope.uses_exit = False
+        parameters = self.parameters(node)
+        self.gen(node.body, RETURN)
+        statements = self.out
+        scope = node.scope
+        self.out, self.frames, self.scope = saved
+        header = []
+        names = [symbol_model(variable.name) for variable in scope.nonlocals if not variable.boxed]
+        if names:
+            header.append(expression(symbol_model("nonlocal"), *names))
+        if scope.uses_exit:
+            header.append(self.setting("Lexit", models.Integer(0)))
+        simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == symbol_model("return")
+        if simple:
+            return self.positioned(expression(symbol_model("fn"), models.List(parameters), statements[0][1]), node)
+        definition = expression(symbol_model("defn"), symbol_model(name), models.List(parameters), *header, *statements)
+        self.out.append(self.positioned(definition, node))
+        return symbol_model(name)
+
+    def parameters(self, node):
+        """The Python parameters of ``node``; what they need done on entry is emitted."""
+        spec = node.parameters
+        parameters = [symbol_model(variable.name) for variable in spec.required]
+        for variable, default, supplied in spec.optional:
+            plain = default is None and supplied is None
+            parameters.append(models.List([symbol_model(variable.name), NONE if plain else symbol_model("Lunsupplied")]))
+        if spec.rest is not None or spec.has_keys:
+            rest = spec.rest.name if spec.rest is not None else self.temporary("Lkeys")
+            parameters.append(expression(symbol_model("unpack-iterable"), symbol_model(rest)))
+        frozen = [variable for variable in node.scope.frozen if variable.fresh]
+        if frozen and not (spec.rest is not None or spec.has_keys):
+            parameters.append(symbol_model("*"))
+        parameters += [models.List([symbol_model(variable.name), symbol_model(variable.name)]) for variable in frozen]
+        if spec.has_keys:
+            keywords = self.temporary("Lpython")
+            parameters.append(expression(symbol_model("unpack-mapping"), symbol_model(keywords)))
+        for variable, default, supplied in spec.optional:
+            self.default(variable, default, supplied)
+        if spec.has_keys:
+            table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
+            values = self.call("keywords", symbol_model(rest), symbol_model(keywords), self.constant_keys(table),
+                               TRUE if spec.allow_other_keys else NONE)
+            if spec.keys:
+                self.emit(symbol_model("setv"), models.List([symbol_model(variable.name) for variable, *_ in spec.keys]), values)
+            else:
+                self.out.append(values)
+        if spec.rest is not None:
+            self.assign(spec.rest.name, self.call("list_from", symbol_model(spec.rest.name)))
+        for variable, default, supplied, _ in spec.keys:
+            self.default(variable, default, supplied)
+        return parameters
+
+    def constant_keys(self, table):
+        return models.Tuple([models.Tuple([self.constant(key), NONE if plain else symbol_model("Lunsupplied")]) for key, plain in table])
+
+    def default(self, variable, default, supplied):
+        missing = expression(symbol_model("is"), symbol_model(variable.name), symbol_model("Lunsupplied"))
+        if supplied is not None:
+            self.assign(supplied.name, expression(symbol_model("if"), missing, NONE, TRUE))
+        elif default is None:
+            return
+        value = default if default is not None else nodes.Constant(None)
+        statements, _ = self.captured(lambda: self.gen(value, Destination("assign", variable.name)))
+        self.emit(symbol_model("when"), missing, *statements)
+
+    # ------------------------------------------------------------------------------------------------------------- top level
+
+    def toplevel(self, node, name="toplevel", result="Lresult"):
+        """Statements (Hy models) that run the top-level function ``node`` and leave its values in ``result``.
+
+        The constants that they need must be made before: see `Constants`.
+        """
+        self.hoisted = []
+        self.out, self.frames, self.scope = [], [], node.scope.parent or node.scope
+        self.effects = 0
+        self.jump_codes = {}
+        function = self.function(node, name)
+        statements = self.out
+        while self.hoisted:
+            loaded, inner = self.hoisted.pop()
+            self.out = []
+            called = self.function(inner, f"{loaded}_function")
+            statements = [*self.out, self.setting(loaded, self.call("one", expression(called))), *statements]
+        return [*statements, self.setting(result, expression(function))]
+
+
+NOT = sym("NOT")
+NEGATIONS = {sym("NOT"), sym("NULL")}

@@ -1,0 +1,191 @@
+"""What compiled code calls.
+
+The names that generated code uses begin with ``L``: no Lisp name becomes such a Python name, so they cannot clash.
+`NAMESPACE` maps them to the functions here; the globals of every piece of compiled code contain it.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from cramhy_runtime import kernel
+
+from .. import arithmetic
+from ..conditions import ControlError_, error, program_error, type_error, unbound_variable
+from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
+                    list_from, lisp_list, one, truth)
+from ..dynamic import Bindings, bind, unbind
+from ..functions import function_of
+from ..packages import intern, is_symbol, keyword, printed, sym
+
+
+class Cell:
+    """A variable of its own for each turn of a loop."""
+
+    __slots__ = ("v",)
+
+    def __init__(self, v):
+        self.v = v
+
+
+class BlockExit(BaseException):
+    """Unwinds to a ``block`` or ``tagbody`` of an outer function. One object per entry of the block, its own token."""
+
+    value = None
+    active = True
+
+
+def block_value(exit_, token):
+    """The values that ``token`` was left with; any other exit goes on."""
+    if exit_ is not token:
+        raise exit_
+    return exit_.value
+
+
+def return_from(token, value):
+    """Leave the block of ``token`` with ``value``."""
+    if not token.active:
+        error(ControlError_("attempt to leave a block or tagbody whose form has already returned"))
+    token.value = value
+    raise token
+
+
+def end_block(token):
+    token.active = False
+
+
+class ThrowExit(BaseException):
+    def __init__(self, tag, value):
+        self.tag, self.value = tag, value
+
+
+_catchers = Symbol("*CATCH-TAGS*")
+_catchers.value = ()
+
+
+def catch(tag, thunk):
+    """``catch``: the values of ``thunk``, or those thrown to ``tag``."""
+    bind(_catchers, (tag, _catchers.value))
+    try:
+        return thunk()
+    except ThrowExit as exit_:
+        if exit_.tag is not tag:
+            raise
+        return exit_.value
+    finally:
+        unbind(1)
+
+
+def throw(tag, value):
+    """``throw``: a control-error when no ``catch`` for ``tag`` is active."""
+    tags = _catchers.value
+    while tags:
+        if tags[0] is tag:
+            raise ThrowExit(tag, value)
+        tags = tags[1]
+    return error(ControlError_("attempt to THROW to a tag that does not exist: ~S", tag))
+
+
+def progv(symbols, values, thunk):
+    """``progv``: bind specials computed at run time; symbols without a value become unbound."""
+    symbols, values = list(symbols or ()), list(values or ())
+    for index, symbol in enumerate(symbols):
+        bind(symbol, values[index] if index < len(values) else UNBOUND)
+    try:
+        return thunk()
+    finally:
+        unbind(len(symbols))
+
+
+def value_of(symbol):
+    """The value of a special variable; unbound is an error with restarts."""
+    value = symbol.value
+    return unbound_variable(symbol) if value is UNBOUND else value
+
+
+def fdefinition(symbol):
+    """``#'symbol``: its global function; an undefined one is an error here, not when it is called."""
+    if isinstance(symbol, Symbol):
+        function = symbol.function
+        if not isinstance(function, UndefinedFunction):
+            return function
+        if symbol.macro is None:
+            return function()
+    from ..conditions import types
+
+    return error(types.UndefinedFunction(symbol))
+
+
+def setf_function(symbol):
+    """``#'(setf symbol)``."""
+    function = symbol.setf_function if isinstance(symbol, Symbol) else None
+    if function is None:
+        from ..conditions import types
+
+        return error(types.UndefinedFunction(lisp_list(sym("SETF"), symbol)))
+    return function
+
+
+def undefined(symbol, *arguments):
+    return UndefinedFunction(symbol)(*arguments)
+
+
+def spread(value, count):
+    """The first ``count`` values, with nil for missing ones."""
+    if value.__class__ is not MultipleValues:
+        return (value,) + (None,) * (count - 1) if count else ()
+    if len(value) >= count:
+        return value[:count]
+    return value + (None,) * (count - len(value))
+
+
+def keywords(rest, python, table, allow_others):
+    """The values of &key parameters, in the order of ``table``, a tuple of (keyword, value when missing).
+
+    rest: the arguments after the positional ones, keyword objects and values. python: keyword arguments of a Python caller.
+    """
+    if not rest and not python:
+        return [missing for _, missing in table]
+    if len(rest) % 2:
+        return program_error("odd number of &KEY arguments")
+    given = {}
+    for index in range(0, len(rest), 2):
+        given.setdefault(rest[index], rest[index + 1])
+    for name, value in python.items():
+        given.setdefault(keyword(name.upper().replace("_", "-")), value)
+    values = [given.pop(key, missing) for key, missing in table]
+    if given and not allow_others:
+        allow = keyword("ALLOW-OTHER-KEYS")
+        if not truth(given.pop(allow, None)):
+            for key in given:
+                known = ", ".join(repr(key) for key, _ in table) or "none"
+                return program_error(f"unknown &KEY argument: ~S (the function takes {known})", key)
+    return values
+
+
+def dotted(*items):
+    """The list of all but the last of ``items``, ending in the last."""
+    return list_from(items[:-1], items[-1])
+
+
+def value_list(value):
+    return list_from(all_values(value))
+
+
+def not_(value):
+    return None if truth(value) else True
+
+
+NAMESPACE = {
+    "Lone": one, "Ltruth": truth, "Lnot": not_, "Lvalue": value_of, "Lfdefinition": fdefinition, "Lsetf_function": setf_function,
+    "Lundefined": undefined, "Lcallable": function_of, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
+    "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
+    "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield, "Lkeywords": keywords,
+    "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
+    "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
+    "Lcharacter": Character, "Lfloat": float,
+    "Ladd2": arithmetic.add2, "Lsub2": arithmetic.sub2, "Lmul2": arithmetic.mul2, "Ldiv2": arithmetic.div2, "Llt2": arithmetic.lt2,
+    "Lgt2": arithmetic.gt2, "Lle2": arithmetic.le2, "Lge2": arithmetic.ge2, "Lnum_eq2": arithmetic.num_eq2,
+}
+
+__all__ = ["NAMESPACE", "Bindings", "Cons", "Keyword", "printed"]

@@ -1,0 +1,410 @@
+"""The classes of conditions of Common Lisp, as Python exceptions.
+
+``lisp_name`` is the symbol that names the class (``PACKAGE::NAME``, COMMON-LISP by default); ``initargs`` maps the names of
+``make-condition`` arguments and slots to attributes; `Condition.report` is the text that ``~a`` prints. Source: ANSI 9.2; the
+texts are those of SBCL 2.2.9, on which the course runs. SBCL's own classes keep their names, because users see them.
+"""
+
+from __future__ import annotations
+
+import re
+
+from .data import UNBOUND
+from .packages import is_symbol, printed, string_designator, symbol_name
+
+__all__ = []
+
+
+def public(cls):
+    __all__.append(cls.__name__)
+    return cls
+
+
+def formatted(control, arguments):
+    """The text of a format control (string or function) with ``arguments``."""
+    if not arguments and isinstance(control, str) and "~" not in control:
+        return control
+    from .format import format_to_string
+
+    return format_to_string(control, *arguments)
+
+
+def shown(obj):
+    """``obj`` as ``prin1`` prints it, for messages."""
+    from .printer import prin1_to_string
+
+    return prin1_to_string(obj)
+
+
+@public
+class Condition(BaseException):
+    """The root of all conditions."""
+
+    lisp_name = "CONDITION"
+    initargs: dict = {}
+    restarts = ()
+    context = ""
+
+    def __init__(self, *arguments, **slots):
+        super().__init__(*arguments)
+        for name, value in slots.items():
+            setattr(self, name, value)
+
+    def report(self):
+        """The text for the user."""
+        from .classes import class_name
+
+        return f"Condition {printed(class_name(type(self)))} was signalled."
+
+    def __str__(self):
+        try:
+            return self.report()
+        except Exception as problem:  # a broken :report must not hide the condition itself
+            return f"{type(self).__name__} (its report fails: {type(problem).__name__})"
+
+
+@public
+class SeriousCondition(Condition):
+    lisp_name = "SERIOUS-CONDITION"
+
+
+@public
+class Error(SeriousCondition, Exception):
+    lisp_name = "ERROR"
+
+
+@public
+class Warning_(Condition):
+    lisp_name = "WARNING"
+
+
+@public
+class StyleWarning(Warning_):
+    lisp_name = "STYLE-WARNING"
+
+
+@public
+class SimpleCondition(Condition):
+    """A condition whose report is a format control with arguments."""
+
+    lisp_name = "SIMPLE-CONDITION"
+    initargs = {"FORMAT-CONTROL": "format_control", "FORMAT-ARGUMENTS": "format_arguments"}
+    format_control = UNBOUND
+    format_arguments = None
+
+    def __init__(self, format_control=UNBOUND, *arguments, **slots):
+        super().__init__(**slots)
+        self.format_control = format_control
+        self.format_arguments = arguments
+
+    def report(self):
+        if self.format_control is UNBOUND or self.format_control is None:
+            return Condition.report(self)
+        return formatted(self.format_control, tuple(self.format_arguments or ()))
+
+
+@public
+class SimpleError(SimpleCondition, Error):
+    lisp_name = "SIMPLE-ERROR"
+
+
+@public
+class SimpleWarning(SimpleCondition, Warning_):
+    lisp_name = "SIMPLE-WARNING"
+
+
+@public
+class SimpleStyleWarning(SimpleCondition, StyleWarning):
+    lisp_name = "SB-INT::SIMPLE-STYLE-WARNING"
+
+
+@public
+class TypeError_(Error):
+    """``datum`` is not of the type ``expected_type``."""
+
+    lisp_name = "TYPE-ERROR"
+    initargs = {"DATUM": "datum", "EXPECTED-TYPE": "expected_type"}
+
+    def __init__(self, datum=None, expected_type=None, **slots):
+        super().__init__(**slots)
+        self.datum, self.expected_type = datum, expected_type
+
+    def report(self):
+        expected = self.expected_type if isinstance(self.expected_type, str) else shown(self.expected_type)
+        return f"The value\n  {shown(self.datum)}\nis not of type\n  {expected}{self.context}"
+
+
+@public
+class SimpleTypeError(SimpleCondition, TypeError_):
+    lisp_name = "SIMPLE-TYPE-ERROR"
+
+    def __init__(self, format_control=UNBOUND, *arguments, datum=None, expected_type=None, **slots):
+        SimpleCondition.__init__(self, format_control, *arguments, **slots)
+        self.datum, self.expected_type = datum, expected_type
+
+
+@public
+class ProgramError(Error):
+    lisp_name = "PROGRAM-ERROR"
+
+
+@public
+class SimpleProgramError(SimpleCondition, ProgramError):
+    lisp_name = "SB-INT::SIMPLE-PROGRAM-ERROR"
+
+
+@public
+class ControlError_(SimpleCondition, Error):
+    lisp_name = "CONTROL-ERROR"
+
+
+@public
+class CellError(Error):
+    lisp_name = "CELL-ERROR"
+    initargs = {"NAME": "name"}
+
+    def __init__(self, name=None, **slots):
+        super().__init__(**slots)
+        self.name = name
+
+
+@public
+class UnboundVariable(CellError):
+    lisp_name = "UNBOUND-VARIABLE"
+
+    def report(self):
+        return f"The variable {shown(self.name)} is unbound."
+
+
+@public
+class UndefinedFunction(CellError):
+    lisp_name = "UNDEFINED-FUNCTION"
+
+    def report(self):
+        return f"The function {printed(self.name) if is_symbol(self.name) else shown(self.name)} is undefined."
+
+
+@public
+class UnboundSlot(CellError):
+    lisp_name = "UNBOUND-SLOT"
+    initargs = {"NAME": "name", "INSTANCE": "instance"}
+
+    def __init__(self, name=None, instance=None, **slots):
+        super().__init__(name, **slots)
+        self.instance = instance
+
+    def report(self):
+        return f"The slot {printed(self.name)} is unbound in the object {shown(self.instance)}."
+
+
+@public
+class ArithmeticError_(Error):
+    lisp_name = "ARITHMETIC-ERROR"
+    initargs = {"OPERATION": "operation", "OPERANDS": "operands"}
+
+    def __init__(self, operation=None, operands=None, **slots):
+        super().__init__(**slots)
+        self.operation, self.operands = operation, operands
+
+    def report(self):
+        head = f"arithmetic error {symbol_name(_class_symbol(type(self)))} signalled"
+        if self.operation is None:
+            return head
+        call = " ".join([printed(self.operation), *(shown(operand) for operand in self.operands or ())])
+        return f"{head}\nOperation was ({call})."
+
+
+@public
+class DivisionByZero(ArithmeticError_):
+    lisp_name = "DIVISION-BY-ZERO"
+
+
+@public
+class FloatingPointOverflow(ArithmeticError_):
+    lisp_name = "FLOATING-POINT-OVERFLOW"
+
+
+@public
+class FloatingPointInvalidOperation(ArithmeticError_):
+    lisp_name = "FLOATING-POINT-INVALID-OPERATION"
+
+
+@public
+class PackageError(SimpleCondition, Error):
+    lisp_name = "PACKAGE-ERROR"
+    initargs = {"PACKAGE": "package"}
+
+    def __init__(self, package=None, text=UNBOUND, *arguments, **slots):
+        SimpleCondition.__init__(self, text, *arguments, **slots)
+        self.package = package
+
+
+@public
+class PackageDoesNotExist(PackageError):
+    """A name that designates no package; the report names packages with a similar name."""
+
+    lisp_name = "SB-EXT::PACKAGE-DOES-NOT-EXIST"
+
+    def report(self):
+        return f"The name {shown(self.package)} does not designate any package."
+
+
+@public
+class StreamError(Error):
+    lisp_name = "STREAM-ERROR"
+    initargs = {"STREAM": "stream"}
+
+    def __init__(self, stream=None, **slots):
+        super().__init__(**slots)
+        self.stream = stream
+
+
+@public
+class EndOfFile(StreamError):
+    lisp_name = "END-OF-FILE"
+
+    def report(self):
+        return f"end of file on {shown(self.stream)}"
+
+
+@public
+class ParseError(Error):
+    lisp_name = "PARSE-ERROR"
+
+
+@public
+class SimpleParseError(SimpleCondition, ParseError):
+    lisp_name = "SB-INT::SIMPLE-PARSE-ERROR"
+
+
+@public
+class ReaderError(SimpleCondition, ParseError, StreamError):
+    """Text that is not Lisp: ``position`` is (file, line, column), of the user's text."""
+
+    lisp_name = "READER-ERROR"
+    position = None
+
+    def __init__(self, text=UNBOUND, *arguments, position=None, stream=None, **slots):
+        SimpleCondition.__init__(self, text, *arguments, **slots)
+        self.position, self.stream = position, stream
+
+
+@public
+class ReaderPackageError(ReaderError):
+    lisp_name = "SB-INT::SIMPLE-READER-PACKAGE-ERROR"
+
+
+@public
+class FileError(SimpleCondition, Error):
+    lisp_name = "FILE-ERROR"
+    initargs = {"PATHNAME": "pathname"}
+
+    def __init__(self, pathname=None, text=UNBOUND, *arguments, **slots):
+        SimpleCondition.__init__(self, text, *arguments, **slots)
+        self.pathname = pathname
+
+
+@public
+class PrintNotReadable(Error):
+    lisp_name = "PRINT-NOT-READABLE"
+    initargs = {"OBJECT": "object"}
+
+
+@public
+class StorageCondition(SimpleCondition, SeriousCondition):
+    lisp_name = "STORAGE-CONDITION"
+
+
+@public
+class CaseFailure(TypeError_):
+    """No clause of ``ecase`` or ``etypecase`` fits."""
+
+    lisp_name = "SB-KERNEL::CASE-FAILURE"
+
+    def __init__(self, datum=None, operator="ECASE", possibilities=None, **slots):
+        super().__init__(datum, possibilities, **slots)
+        self.operator, self.possibilities = operator, possibilities
+
+    def report(self):
+        return f"{shown(self.datum)} fell through {self.operator} expression.\nWanted one of {shown(self.possibilities)}."
+
+
+@public
+class CompileError(SimpleCondition, ProgramError):
+    """A form that cannot be compiled: ``position`` is (file, line, column)."""
+
+    lisp_name = "CRAMHY::COMPILE-ERROR"
+    position = None
+
+    def __init__(self, text=UNBOUND, *arguments, position=None, **slots):
+        super().__init__(text, *arguments, **slots)
+        self.position = position
+
+
+@public
+class PythonError(Error):
+    """An exception of Python code that is not a condition; ``exception`` is the original."""
+
+    lisp_name = "CRAMHY::PYTHON-ERROR"
+    initargs = {"EXCEPTION": "exception"}
+
+    def __init__(self, exception=None, **slots):
+        super().__init__(**slots)
+        self.exception = exception
+        self.__cause__ = exception
+
+    def report(self):
+        return f"Python raised {type(self.exception).__name__}: {self.exception}"
+
+
+def _class_symbol(cls):
+    from .classes import class_name
+
+    return class_name(cls)
+
+
+_ARITY = re.compile(r"^(?P<name>.*)\(\) (?:takes (?:from )?\d+(?: to \d+)? positional arguments? but (?P<given>\d+) (?:was|were) given"
+                    r"|missing (?P<missing>\d+) required positional arguments?: .*)$")
+
+
+def _argument_count(exception):
+    """How many arguments the failed call gave, if ``exception`` is Python's complaint about their number; else ``None``."""
+    match = _ARITY.match(str(exception))
+    if not match or (exception.__traceback__ and exception.__traceback__.tb_next and _deeper_call(exception)):
+        return None
+    if match["given"]:
+        return int(match["given"])
+    return _required(match["name"], exception) - int(match["missing"])
+
+
+def _deeper_call(exception):
+    return False
+
+
+def _required(qualified_name, exception):
+    # Python's message tells what is missing, not what was given; the called function is found by its name.
+    import gc
+
+    for function in gc.get_objects():
+        if getattr(function, "__qualname__", None) == qualified_name and hasattr(function, "__code__"):
+            return function.__code__.co_argcount - len(function.__defaults__ or ())
+    return int(_ARITY.match(str(exception))["missing"])
+
+
+def condition_for(exception):
+    """The condition that says in Lisp what the Python ``exception`` says."""
+    if isinstance(exception, ZeroDivisionError):
+        return DivisionByZero()
+    if isinstance(exception, OverflowError):
+        return FloatingPointOverflow()
+    if isinstance(exception, RecursionError):
+        return StorageCondition("Control stack exhausted: a function calls itself too deeply, perhaps without end.")
+    if isinstance(exception, TypeError):
+        given = _argument_count(exception)
+        if given is not None:
+            return SimpleProgramError("invalid number of arguments: ~S", given)
+    return PythonError(exception)
+
+
+def string_of(designator):
+    return string_designator(designator)

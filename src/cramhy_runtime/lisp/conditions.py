@@ -1,0 +1,428 @@
+"""Conditions: signalling before unwinding, handlers, and restarts.
+
+In Common Lisp an error is first *signalled*: handlers run on top of the stack that found the problem, innermost first, and may
+leave it by a non-local exit, call a restart, or decline. Only when all have declined does the debugger appear. Python's
+``except`` runs when the stack is gone, so it can do none of this; therefore the runtime raises errors through `error` and its
+relatives, and keeps a stack of handler clusters per task (trap 1 of cpl.md section 17).
+
+Conditions are Python exceptions all the same: when no debugger is installed, an unhandled one is raised, so a plan called
+from Python fails as Python code fails. ``error`` is under `Exception`; ``plan-failure``, a serious condition but no error, is
+not, so ``except Exception`` does not swallow failures. An exception of foreign Python code is offered to handlers when it
+passes their frame, that is, after its own frames have unwound; `from_python` makes the condition that they see.
+
+The classes are in ``condition_types.py``. Source: ANSI chapter 9; texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+from . import condition_types as types
+from .condition_types import *  # noqa: F403  the classes are this module's interface too
+from .data import Symbol, UNBOUND, truth
+from .dynamic import binding
+from .packages import is_symbol, printed, sym
+
+_handlers = Symbol("*HANDLER-CLUSTERS*")
+_handlers.value = None
+_restarts = Symbol("*RESTART-CLUSTERS*")
+_restarts.value = None
+
+DEBUGGER_HOOK = sym("*DEBUGGER-HOOK*")
+DEBUGGER_HOOK.value, DEBUGGER_HOOK.special = None, True
+BREAK_ON_SIGNALS = sym("*BREAK-ON-SIGNALS*")
+BREAK_ON_SIGNALS.value, BREAK_ON_SIGNALS.special = None, True
+
+_debugger = None
+
+
+def install_debugger(function):
+    """Make ``function(condition)`` the debugger of last resort; ``None`` means: raise the condition. Returns the old one."""
+    global _debugger
+    old, _debugger = _debugger, function
+    return old
+
+
+# ---------------------------------------------------------------------------------------------------------------- handlers
+
+
+def matches(condition, specifier):
+    """Whether ``condition`` is of the type ``specifier``: a Python class, a class name, or any Lisp type specifier."""
+    if isinstance(specifier, type):
+        return isinstance(condition, specifier)
+    if specifier is True:
+        return True
+    if specifier is None:
+        return False
+    from .types import typep
+
+    return typep(condition, specifier) is not None
+
+
+def signal_condition(condition):
+    """Offer ``condition`` to the handlers, innermost first. Returns when all have declined."""
+    if truth(BREAK_ON_SIGNALS.value) and matches(condition, BREAK_ON_SIGNALS.value):
+        invoke_debugger(condition)
+    clusters = _handlers.value
+    while clusters is not None:
+        cluster, outer = clusters
+        _offer(condition, cluster, outer)
+        clusters = outer
+
+
+def _offer(condition, cluster, outer):
+    # A handler runs with only the handlers outside its own cluster in force (ANSI 9.1.4).
+    for specifier, handler in cluster:
+        if matches(condition, specifier):
+            with binding(_handlers, outer):
+                handler(condition)
+
+
+def handler_bind(clauses, thunk):
+    """Call ``thunk`` with ``clauses`` in force, a list of (type specifier, function); returns its values."""
+    outer = _handlers.value
+    with binding(_handlers, (clauses, outer)):
+        try:
+            return thunk()
+        except types.Condition:
+            raise
+        except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
+            _offer(from_python(exception), clauses, outer)
+            raise
+
+
+class HandlerExit(BaseException):
+    """Unwinds to the ``handler-case`` whose clause was chosen."""
+
+    def __init__(self, token, index, condition):
+        self.token, self.index, self.condition = token, index, condition
+
+
+def handler_case(clauses, thunk, no_error=None):
+    """Call ``thunk``; on a condition of a clause's type unwind, and return what the clause's function returns for it.
+
+    ``clauses`` is a list of (type specifier, function of one argument); ``no_error`` gets the values of a normal return.
+    """
+    token = object()
+
+    def chooser(index):
+        def handler(condition):
+            raise HandlerExit(token, index, condition)
+
+        return handler
+
+    bound = [(specifier, chooser(index)) for index, (specifier, _) in enumerate(clauses)]
+    try:
+        result = handler_bind(bound, thunk)
+    except HandlerExit as exit_:
+        if exit_.token is not token:
+            raise
+        chosen = exit_
+    else:
+        if no_error is None:
+            return result
+        from .data import all_values
+
+        return no_error(*all_values(result))
+    return clauses[chosen.index][1](chosen.condition)
+
+
+def ignore_errors(thunk):
+    """``ignore-errors``: the values of ``thunk``, or nil and the error."""
+    from .data import MultipleValues
+
+    return handler_case([(types.Error, lambda condition: MultipleValues((None, condition)))], thunk)
+
+
+# --------------------------------------------------------------------------------------------------------------- signalling
+
+
+def make_condition(datum, arguments=(), default=types.SimpleError):
+    """The condition that the designator ``datum`` with ``arguments`` stands for (ANSI 9.1.2.1)."""
+    if isinstance(datum, types.Condition):
+        return datum
+    if isinstance(datum, type) and issubclass(datum, types.Condition):
+        return _instance(datum, arguments)
+    if isinstance(datum, str) or datum.__class__.__name__ == "LispString" or callable(datum) and not is_symbol(datum):
+        return default(datum if callable(datum) else str(datum), *arguments)
+    if is_symbol(datum):
+        from .classes import find_class_or_error
+
+        return _instance(find_class_or_error(datum), arguments)
+    return type_error(datum, "(OR CONDITION SYMBOL STRING)")
+
+
+def _instance(cls, arguments):
+    from .classes import make_instance
+
+    return make_instance(cls, *arguments)
+
+
+def signal(datum, *arguments):
+    """``cl:signal``: offer the condition to the handlers; nil when all decline."""
+    signal_condition(make_condition(datum, arguments, types.SimpleCondition))
+
+
+def error(datum, *arguments):
+    """``cl:error``: signal, then enter the debugger. Never returns normally."""
+    condition = make_condition(datum, arguments)
+    signal_condition(condition)
+    invoke_debugger(condition)
+
+
+def cerror(continue_format, datum, *arguments):
+    """``cl:cerror``: as `error`, with a restart CONTINUE that makes it return nil."""
+    condition = make_condition(datum, arguments)
+    report = continue_format if isinstance(datum, types.Condition) else (lambda: types.formatted(continue_format, arguments))
+    with_simple_restart(sym("CONTINUE"), report, lambda: error(condition))
+
+
+def warn(datum, *arguments):
+    """``cl:warn``: signal a warning; unless muffled, print ``WARNING: text`` to ``*error-output*``. Returns nil."""
+    condition = make_condition(datum, arguments, types.SimpleWarning)
+    if not isinstance(condition, types.Warning_):
+        return type_error(condition, "WARNING")
+
+    def report_it():
+        signal_condition(condition)
+        from .streams import warning_line
+
+        warning_line(condition)
+
+    with_simple_restart(sym("MUFFLE-WARNING"), "Skip warning.", report_it)
+
+
+def style_warn(control, *arguments):
+    warn(types.SimpleStyleWarning(control, *arguments))
+
+
+def invoke_debugger(condition):
+    """Call ``*debugger-hook*``, then the installed debugger; without one raise ``condition`` itself."""
+    hook = DEBUGGER_HOOK.value
+    if truth(hook):
+        with binding(DEBUGGER_HOOK, None):
+            (hook.function if isinstance(hook, Symbol) else hook)(condition, hook)
+    if _debugger is not None:
+        _debugger(condition)
+    condition.restarts = compute_restarts(condition)
+    raise condition
+
+
+def break_(control="break", *arguments):
+    """``cl:break``: enter the debugger directly, with a restart CONTINUE."""
+    with_simple_restart(sym("CONTINUE"), "Return from BREAK.",
+                        lambda: invoke_debugger(make_condition(control, arguments, types.SimpleCondition)))
+
+
+# ----------------------------------------------------------------------------------------------------------------- restarts
+
+
+class Restart:
+    """A way to go on, offered to handlers and shown by the debugger.
+
+    ``function`` takes the arguments of ``invoke-restart``; ``report`` is a string or a function of no arguments or a stream.
+    """
+
+    def __init__(self, name, function, report=None, interactive=None, test=None):
+        self.name = name
+        self.function = function
+        self.report_function = report
+        self.interactive = interactive
+        self.test = test
+
+    def report(self):
+        """The text that the debugger shows."""
+        report = self.report_function
+        if report is None:
+            return self.name.name if self.name is not None else ""
+        if callable(report):
+            return report()
+        return str(report)
+
+    def __repr__(self):
+        return f"#<RESTART {printed(self.name)}>"
+
+
+class RestartExit(BaseException):
+    """Unwinds to the form that established a restart."""
+
+    def __init__(self, token, index, arguments):
+        self.token, self.index, self.arguments = token, index, arguments
+
+
+def restart_bind(restarts, thunk):
+    """Call ``thunk`` with the `Restart` objects ``restarts`` available, the first one innermost."""
+    with binding(_restarts, (restarts, _restarts.value)):
+        return thunk()
+
+
+def restart_case(clauses, thunk):
+    """Call ``thunk`` with restarts that unwind to here.
+
+    ``clauses`` is a list of (name, function, report, interactive, test); the function's values are returned when its restart
+    is invoked.
+    """
+    token = object()
+
+    def unwinder(index):
+        def unwind(*arguments):
+            raise RestartExit(token, index, arguments)
+
+        return unwind
+
+    restarts = [Restart(clause[0], unwinder(index), *clause[2:]) for index, clause in enumerate(clauses)]
+    try:
+        return restart_bind(restarts, thunk)
+    except RestartExit as exit_:
+        if exit_.token is not token:
+            raise
+        chosen = exit_
+    return clauses[chosen.index][1](*chosen.arguments)
+
+
+def with_simple_restart(name, report, thunk):
+    """``with-simple-restart``: the values of ``thunk``, or nil and T when the restart ``name`` was invoked."""
+    from .data import MultipleValues
+
+    return restart_case([(name, lambda: MultipleValues((None, True)), report)], thunk)
+
+
+def compute_restarts(condition=None):
+    """The restarts that can be invoked now, innermost first."""
+    found, clusters = [], _restarts.value
+    while clusters is not None:
+        cluster, clusters = clusters
+        found += [restart for restart in cluster if restart.test is None or truth(restart.test(condition))]
+    return found
+
+
+def find_restart(designator, condition=None):
+    """The innermost restart of that name, or the `Restart` itself; ``None`` when there is none."""
+    for restart in compute_restarts(condition):
+        if restart is designator or (restart.name is designator and designator is not None):
+            return restart
+    return None
+
+
+def invoke_restart(designator, *arguments):
+    """``cl:invoke-restart``: call the restart's function, which usually does not return."""
+    restart = find_restart(designator)
+    if restart is None:
+        return error(types.ControlError_(f"No restart {printed(designator) if is_symbol(designator) else designator} is active."))
+    return restart.function(*arguments)
+
+
+def invoke_restart_interactively(designator):
+    restart = find_restart(designator) if not isinstance(designator, Restart) else designator
+    arguments = restart.interactive() if restart.interactive else ()
+    return restart.function(*(arguments or ()))
+
+
+def _standard_restart(name):
+    symbol = sym(name)
+
+    def invoke(*arguments):
+        condition = arguments[-1] if arguments and isinstance(arguments[-1], types.Condition) else None
+        values = arguments[:1] if name in ("USE-VALUE", "STORE-VALUE") else ()
+        restart = find_restart(symbol, condition)
+        if restart is not None:
+            return restart.function(*values)
+        if name in ("ABORT", "MUFFLE-WARNING"):
+            error(types.ControlError_(f"No restart {name} is active."))
+        return None
+
+    invoke.__name__ = name.lower().replace("-", "_")
+    return invoke
+
+
+abort = _standard_restart("ABORT")
+continue_ = _standard_restart("CONTINUE")
+muffle_warning = _standard_restart("MUFFLE-WARNING")
+use_value = _standard_restart("USE-VALUE")
+store_value = _standard_restart("STORE-VALUE")
+
+
+# ------------------------------------------------------------------------------------------- errors that the runtime signals
+
+
+def type_error(datum, expected, context=""):
+    """Signal a type-error: ``datum`` is not of type ``expected`` (printed form of a type); ``context`` is appended."""
+    condition = types.TypeError_(datum, expected)
+    condition.context = context
+    return error(condition)
+
+
+def unbound_variable(symbol):
+    """Signal that ``symbol`` has no value. Restarts: CONTINUE (look again), USE-VALUE, STORE-VALUE; returns the value."""
+    name = printed(symbol)
+
+    def again():
+        return symbol.value if symbol.value is not UNBOUND else unbound_variable(symbol)
+
+    def store(value):
+        symbol.value = value
+        return value
+
+    return restart_case([(sym("CONTINUE"), again, f"Retry using {name}."),
+                         (sym("USE-VALUE"), lambda value: value, "Use specified value.", _ask_value),
+                         (sym("STORE-VALUE"), store, "Set specified value and use it.", _ask_value)],
+                        lambda: error(types.UnboundVariable(symbol)))
+
+
+def undefined_function(symbol, arguments, keywords):
+    """Signal that ``symbol`` has no function; the restarts of SBCL decide what the call returns."""
+    from .data import UndefinedFunction
+
+    def again():
+        function = symbol.function if isinstance(symbol, Symbol) else UndefinedFunction(symbol)
+        return function(*arguments, **keywords)
+
+    def use(function):
+        return (function.function if isinstance(function, Symbol) else function)(*arguments, **keywords)
+
+    return restart_case([(sym("CONTINUE"), again, f"Retry calling {printed(symbol)}."),
+                         (sym("USE-VALUE"), use, "Call specified function.", _ask_value),
+                         (sym("RETURN-VALUE"), lambda *values: _values(values), "Return specified values.", _ask_value),
+                         (sym("RETURN-NOTHING"), lambda: _values(()), "Return zero values.")],
+                        lambda: error(types.UndefinedFunction(symbol)))
+
+
+def _values(items):
+    from .data import values
+
+    return values(*items)
+
+
+def _ask_value():
+    from .streams import ask_for_form
+
+    return (ask_for_form("Enter a form to be evaluated: "),)
+
+
+def package_error(package, text):
+    return error(types.PackageError(package, text))
+
+
+def package_does_not_exist(name):
+    return error(types.PackageDoesNotExist(name))
+
+
+def program_error(control, *arguments):
+    return error(types.SimpleProgramError(control, *arguments))
+
+
+def wrong_argument_count(given):
+    """Signal the program-error of a call with ``given`` arguments, SBCL's text."""
+    return error(types.SimpleProgramError("invalid number of arguments: ~S", given))
+
+
+def from_python(exception):
+    """The condition that handlers see for a Python exception: itself if it is one, else a wrapper with its cause."""
+    if isinstance(exception, types.Condition):
+        return exception
+    known = getattr(exception, "__lisp_condition__", None)
+    if known is None:
+        known = types.condition_for(exception)
+        try:
+            exception.__lisp_condition__ = known
+        except AttributeError:
+            pass
+    return known

@@ -1,0 +1,254 @@
+"""Functions about functions, forms and the environment (ANSI chapters 3, 5, 9, 25)."""
+
+from __future__ import annotations
+
+import sys
+
+from cramhy_runtime import kernel
+
+from . import conditions
+from .conditions import error, type_error
+from .data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, list_from, one
+from .definitions import data
+from .evaluator import compile_lambda
+from .evaluator import evaluate as eval_
+from .functions import functionp
+from .macros import macroexpand as expand_macros
+from .macros import macroexpand_1 as expand_macro
+from .packages import is_symbol, sym
+
+LISP_NAMES = """eval compiled-function-p fdefinition macro-function
+macroexpand macroexpand-1 special-operator-p constantp compile get-setf-expansion documentation
+get-internal-real-time get-internal-run-time get-universal-time sleep lisp-implementation-type lisp-implementation-version
+machine-type machine-instance machine-version software-type software-version
+error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
+abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
+simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
+arithmetic-error-operation arithmetic-error-operands stream-error-stream file-error-pathname
+function-lambda-expression provide describe disassemble room ed"""
+
+
+compiled_function_p = functionp
+
+
+def fdefinition(name):
+    from .compiler.support import fdefinition as definition
+    from .compiler.support import setf_function
+
+    return setf_function(name.cdr.car) if isinstance(name, Cons) else definition(name)
+
+
+def macro_function(symbol, environment=None):
+    from .macros import ensure_loaded
+    from .macros import macro_function as expander
+
+    ensure_loaded()
+    return expander(symbol, environment)
+
+
+def set_macro_function(function, symbol, environment=None):
+    symbol.macro = lambda form, env: one(function(form, env))
+    return function
+
+
+def macroexpand(form, environment=None):
+    expansion, expanded = expand_macros(form, environment)
+    return MultipleValues((expansion, True if expanded else None))
+
+
+def macroexpand_1(form, environment=None):
+    expansion, expanded = expand_macro(form, environment)
+    return MultipleValues((expansion, True if expanded else None))
+
+
+def special_operator_p(symbol):
+    from .compiler import special_forms  # noqa: F401
+    from .compiler.analyze import SPECIAL_FORMS
+
+    return True if symbol in SPECIAL_FORMS else None
+
+
+def constantp(form, environment=None):
+    if isinstance(form, Cons):
+        return True if form.car is sym("QUOTE") else None
+    return True if not isinstance(form, Symbol) or isinstance(form, Keyword) or form.constant else None
+
+
+def compile_(name, definition=None):
+    """Three values; everything is compiled, so only a lambda expression gives work."""
+    if definition is None:
+        function = name if not isinstance(name, Symbol) else name.function
+    else:
+        function = compile_lambda(definition) if isinstance(definition, Cons) else definition
+        if isinstance(name, Symbol):
+            name.function = function
+            function = name
+    return MultipleValues((function if name is None or isinstance(name, Symbol) is False else name, None, None))
+
+
+def get_setf_expansion(place, environment=None):
+    from .places import get_setf_expansion as expansion
+
+    return expansion(place, environment)
+
+
+def documentation(obj, kind=None):
+    kind = kind.name if isinstance(kind, Symbol) else "FUNCTION"
+    if kind == "VARIABLE":
+        return (obj.compiler_data or {}).get("variable-documentation")
+    if kind == "FUNCTION" and isinstance(obj, Symbol):
+        if obj.macro is not None:
+            return getattr(obj.macro, "documentation", None)
+        return None if isinstance(obj.function, UndefinedFunction) else obj.function.__doc__
+    if kind in ("TYPE", "STRUCTURE") and is_symbol(obj):
+        from .classes import find_class
+
+        return getattr(find_class(obj, None), "__doc__", None)
+    return getattr(obj, "__doc__", None)
+
+
+def set_documentation(text, obj, kind=None):
+    kind = kind.name if isinstance(kind, Symbol) else "FUNCTION"
+    if kind == "VARIABLE":
+        data(obj)["variable-documentation"] = text
+    elif isinstance(obj, Symbol) and not isinstance(obj.function, UndefinedFunction):
+        obj.function.__doc__ = text
+    return text
+
+
+def get_internal_real_time():
+    return int(kernel.now() * 1_000_000)
+
+
+def get_internal_run_time():
+    import resource
+
+    return int(resource.getrusage(resource.RUSAGE_SELF).ru_utime * 1_000_000)
+
+
+def get_universal_time():
+    """Seconds since 1900, by the kernel's clock."""
+    return int(kernel.active().epoch + kernel.now()) + 2208988800
+
+
+def sleep(seconds):
+    """``cl:sleep``; a task sleeps by the kernel's clock, so it can be evaporated meanwhile."""
+    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) and not hasattr(seconds, "numerator"):
+        return type_error(seconds, "(REAL 0)")
+    if seconds < 0:
+        return type_error(seconds, "(REAL 0)")
+    kernel.sleep(float(seconds))
+    return None
+
+
+def lisp_implementation_type():
+    return "cramhy"
+
+
+def lisp_implementation_version():
+    import cramhy_runtime
+
+    return cramhy_runtime.__version__
+
+
+def machine_type():
+    return "Python"
+
+
+def machine_instance():
+    return "localhost"
+
+
+def machine_version():
+    return sys.version.split()[0]
+
+
+def software_type():
+    return sys.platform
+
+
+def software_version():
+    return ""
+
+
+signal, warn, cerror, break_ = conditions.signal, conditions.warn, conditions.cerror, conditions.break_
+invoke_debugger = conditions.invoke_debugger
+
+
+def compute_restarts(condition=None):
+    return list_from(conditions.compute_restarts(condition))
+
+
+find_restart, invoke_restart = conditions.find_restart, conditions.invoke_restart
+invoke_restart_interactively = conditions.invoke_restart_interactively
+abort, continue_, muffle_warning = conditions.abort, conditions.continue_, conditions.muffle_warning
+use_value, store_value = conditions.use_value, conditions.store_value
+
+
+def restart_name(restart):
+    return restart.name
+
+
+def make_condition(kind, *arguments):
+    return conditions.make_condition(kind, arguments)
+
+
+def _reader(attribute):
+    return lambda condition: getattr(condition, attribute)
+
+
+simple_condition_format_control = _reader("format_control")
+type_error_datum, type_error_expected_type = _reader("datum"), _reader("expected_type")
+cell_error_name, unbound_slot_instance = _reader("name"), _reader("instance")
+arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _reader("operands")
+stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
+
+
+def simple_condition_format_arguments(condition):
+    arguments = condition.format_arguments
+    return list_from(arguments) if isinstance(arguments, tuple) else arguments
+
+
+def function_lambda_expression(function):
+    return MultipleValues((None, None, getattr(function, "__lisp_name__", None)))
+
+
+def provide(name):
+    return True
+
+
+def describe(obj, stream=None):
+    """Print what is known about ``obj``."""
+    from .printer import prin1_to_string
+    from .streams import standard_output
+
+    output = standard_output()
+    output.fresh_line()
+    output.write(prin1_to_string(obj) + "\n")
+    if isinstance(obj, Symbol):
+        if not isinstance(obj.function, UndefinedFunction):
+            output.write(f"  names a function{': ' + obj.function.__doc__ if obj.function.__doc__ else ''}\n")
+        if obj.macro is not None:
+            output.write("  names a macro\n")
+        text = (obj.compiler_data or {}).get("variable-documentation")
+        if obj.special:
+            output.write(f"  names a special variable{': ' + text if text else ''}\n")
+    return MultipleValues()
+
+
+def disassemble(function):
+    import dis
+
+    dis.dis(function.function if isinstance(function, Symbol) else function)
+
+
+def room(detail=None):
+    return None
+
+
+def ed(target=None):
+    return error("There is no editor here: edit the file with your own.")
+
+
+SETTERS = {"MACRO-FUNCTION": set_macro_function, "DOCUMENTATION": set_documentation}
+

@@ -1,0 +1,256 @@
+"""The data of Common Lisp as Python objects.
+
+``nil`` is ``None``, ``t`` is ``True``, a cons is a `Cons`, a symbol is an interned `Symbol`. Integers, ratios and strings are
+Python's own. A plain ``float`` stands for the single-float, because literals and ordinary arithmetic make singles and should
+run at Python's speed; `DoubleFloat` marks the doubles that ROS messages and ``1.0d0`` give, and keeps its type through
+arithmetic (contagion). A function that returns several values returns one `MultipleValues`; `one` takes the first.
+
+What is equal in Python need not be ``eql`` in Lisp (``True == 1 == 1.0``), so nothing here compares by ``==`` on behalf of
+Lisp: see ``lisp/equality.py``.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+
+class _Marker:
+    """A named object that is nothing but itself."""
+
+    __slots__ = ("name",)
+
+    def __init__(self, name):
+        self.name = name
+
+    def __repr__(self):
+        return self.name
+
+
+UNBOUND = _Marker("#<unbound>")
+"""The value of a symbol or slot that has none."""
+UNSUPPLIED = _Marker("#<unsupplied>")
+"""Default of an &optional or &key parameter where ``nil`` and "not given" differ."""
+
+
+class Symbol:
+    """A name with a value, a function, a property list and a home package.
+
+    ``value`` is the current dynamic value: see ``lisp/dynamic.py`` for how tasks keep theirs apart.
+    ``function`` is always callable; that of an undefined function signals ``undefined-function``.
+    """
+
+    __slots__ = ("name", "package", "value", "function", "macro", "setf_function", "plist", "special", "constant",
+                 "compiler_data", "__weakref__")
+
+    def __init__(self, name, package=None):
+        self.name = name
+        self.package = package
+        self.value = UNBOUND
+        self.function = UndefinedFunction(self)
+        self.macro = None
+        self.setf_function = None
+        self.plist = None
+        self.special = False
+        self.constant = False
+        self.compiler_data = None
+
+    def __repr__(self):
+        return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
+
+    def __reduce__(self):
+        from . import packages
+
+        return (packages.intern, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
+
+
+class Keyword(Symbol):
+    """A symbol of the package KEYWORD: its value is itself."""
+
+    __slots__ = ()
+
+    def __init__(self, name, package=None):
+        super().__init__(name, package)
+        self.value = self
+        self.constant = True
+
+    def __repr__(self):
+        return ":" + self.name
+
+
+class UndefinedFunction:
+    """What stands in the function cell of a symbol without a function: calling it is the error.
+
+    So a call needs no test, and the error names the symbol that the user wrote.
+    """
+
+    __slots__ = ("symbol",)
+
+    def __init__(self, symbol):
+        self.symbol = symbol
+
+    def __call__(self, *arguments, **keywords):
+        from .conditions import undefined_function
+
+        return undefined_function(self.symbol, arguments, keywords)
+
+
+class Cons:
+    """A pair. Iterating gives the elements of the list that starts here; a dotted tail ends it."""
+
+    __slots__ = ("car", "cdr")
+
+    def __init__(self, car, cdr=None):
+        self.car = car
+        self.cdr = cdr
+
+    def __iter__(self):
+        cell = self
+        while isinstance(cell, Cons):
+            yield cell.car
+            cell = cell.cdr
+
+    def __repr__(self):
+        parts, cell, limit = [], self, 50
+        while isinstance(cell, Cons) and limit:
+            parts.append(repr(cell.car) if cell.car is not None else "NIL")
+            cell, limit = cell.cdr, limit - 1
+        if cell is not None:
+            parts += [".", "..." if isinstance(cell, Cons) else repr(cell)]
+        return "(" + " ".join(parts) + ")"
+
+
+def lisp_list(*items):
+    """The list of ``items``; ``None`` when there are none."""
+    head = None
+    for item in reversed(items):
+        head = Cons(item, head)
+    return head
+
+
+def list_from(iterable, tail=None):
+    """The list of the elements of ``iterable``, ending in ``tail``."""
+    head = tail
+    for item in reversed(iterable if isinstance(iterable, (list, tuple)) else list(iterable)):
+        head = Cons(item, head)
+    return head
+
+
+def python_list(lst):
+    """The elements of the Lisp list ``lst`` as a Python list."""
+    return [] if lst is None else list(lst)
+
+
+class MultipleValues(tuple):
+    """What a form returns that returns no values, or two or more. Exactly one value is returned bare."""
+
+    __slots__ = ()
+
+
+NO_VALUES = MultipleValues()
+
+
+def values(*items):
+    """``cl:values``: return ``items`` as the values of the calling form."""
+    return items[0] if len(items) == 1 else MultipleValues(items)
+
+
+def one(value):
+    """The primary value: ``nil`` when there are no values."""
+    if value.__class__ is MultipleValues:
+        return value[0] if value else None
+    return value
+
+
+def all_values(value):
+    """All values of a form as a tuple."""
+    return value if value.__class__ is MultipleValues else (value,)
+
+
+def truth(value):
+    """Whether ``value`` is true in Lisp: everything but ``nil``, so ``0`` and ``""`` are true; Python's ``False`` is false."""
+    return value is not None and value is not False
+
+
+def boolean(flag):
+    """The Lisp truth value for a Python condition: ``True`` or ``None``."""
+    return True if flag else None
+
+
+class Character:
+    """A character object, ``#\\a``. Interned: two characters with the same code are the same object."""
+
+    __slots__ = ("char",)
+    _interned: dict = {}
+
+    def __new__(cls, char):
+        found = cls._interned.get(char)
+        if found is None:
+            found = super().__new__(cls)
+            found.char = char
+            cls._interned[char] = found
+        return found
+
+    @property
+    def code(self):
+        return ord(self.char)
+
+    def __repr__(self):
+        return f"Character({self.char!r})"
+
+    def __reduce__(self):
+        return Character, (self.char,)
+
+
+class DoubleFloat(float):
+    """A double-float: ``5.0d0``. Arithmetic with any real gives a double again; see ANSI 12.1.4.4 (float contagion)."""
+
+    __slots__ = ()
+
+    def __repr__(self):
+        return float.__repr__(self) + "d0"
+
+    def __reduce__(self):
+        return DoubleFloat, (float(self),)
+
+
+def _keep_double(name):
+    operation = getattr(float, name)
+
+    def method(self, other):
+        if other.__class__ is Fraction:
+            other = float(other)
+        result = operation(self, other)
+        return result if result is NotImplemented else DoubleFloat(result)
+
+    method.__name__ = name
+    return method
+
+
+for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
+    setattr(DoubleFloat, f"__{_name}__", _keep_double(f"__{_name}__"))
+DoubleFloat.__neg__ = lambda self: DoubleFloat(float.__neg__(self))
+DoubleFloat.__pos__ = lambda self: self
+DoubleFloat.__abs__ = lambda self: DoubleFloat(float.__abs__(self))
+
+
+class LispString:
+    """A string that can be changed in place: made by ``make-string``, ``copy-seq`` of itself, or with a fill pointer.
+
+    Literals and the results of most functions are plain ``str``, which is what Python callers see.
+    """
+
+    __slots__ = ("chars", "fill_pointer", "adjustable")
+
+    def __init__(self, chars="", fill_pointer=None, adjustable=False):
+        self.chars = list(chars)
+        self.fill_pointer = fill_pointer
+        self.adjustable = adjustable
+
+    def __str__(self):
+        return "".join(self.chars if self.fill_pointer is None else self.chars[: self.fill_pointer])
+
+    def __len__(self):
+        return len(self.chars) if self.fill_pointer is None else self.fill_pointer
+
+    def __repr__(self):
+        return f"LispString({str(self)!r})"

@@ -1,0 +1,113 @@
+"""Definitions at run time: what ``defun``, ``defvar``, ``defmacro``, ``defsetf`` and ``defconstant`` do when they are run.
+
+The macros in ``hy_src/cramhy/cl.hy`` compute the functions; here they are entered under their symbols. A function knows its
+Lisp name (``__lisp_name__``) and the file it came from, for printing, ``describe`` and the warning about redefinition.
+"""
+
+from __future__ import annotations
+
+from .conditions import CompileError, error, type_error, warn
+from .conditions import types as condition_types
+from .data import Cons, Symbol, UNBOUND, UndefinedFunction, one
+from .evaluator import macro_lambda
+from .faces import python_name
+from .packages import COMMON_LISP, printed, symbol_name
+
+
+def _check_name(symbol, what):
+    if not isinstance(symbol, Symbol):
+        return error(CompileError("~S cannot be defined as a ~A: its name must be a symbol.", symbol, what))
+    if symbol.package is COMMON_LISP:
+        return error(CompileError("~S belongs to Common Lisp and cannot be redefined as a ~A. Choose another name, or shadow the "
+                                  "symbol with (:shadow #:~A) in the package definition.", symbol, what, symbol.name.lower()))
+    return symbol
+
+
+def source_of(function):
+    """The file that the compiled function came from, or ``None``."""
+    code = getattr(function, "__code__", None)
+    return code.co_filename if code is not None else None
+
+
+def define_function(name, function, documentation=None):
+    """``defun``: make ``function`` the global function of ``name``, a symbol or ``(setf symbol)``. Returns the name."""
+    function.__doc__ = documentation
+    if isinstance(name, Cons):
+        symbol = name.cdr.car
+        function.__lisp_name__ = name
+        symbol.setf_function = function
+        return name
+    _check_name(name, "function")
+    function.__lisp_name__ = name
+    function.__name__ = function.__qualname__ = python_name(symbol_name(name))
+    old = name.function
+    if name.macro is not None:
+        name.macro = None
+    elif not isinstance(old, UndefinedFunction) and (source_of(old) != source_of(function) or source_of(function).startswith("<")):
+        warn(RedefinitionWarning(f"redefining {printed(name)} in DEFUN"))
+    name.function = function
+    return name
+
+
+class RedefinitionWarning(condition_types.SimpleStyleWarning):
+    """A function is defined again, from another place."""
+
+    lisp_name = "SB-KERNEL::REDEFINITION-WITH-DEFUN"
+    announced_as = "WARNING"
+
+
+def define_macro(name, expander, documentation=None):
+    """``defmacro``: ``expander`` is a function of the form and the environment. Returns the name."""
+    _check_name(name, "macro")
+    expander.__doc__ = documentation
+    expander.__lisp_name__ = name
+    name.macro = lambda form, environment: one(expander(form, environment))
+    name.macro.documentation = documentation
+    return name
+
+
+def define_variable(symbol, thunk=None, documentation=None, always=False):
+    """``defvar`` and, with ``always``, ``defparameter``: proclaim ``symbol`` special and give it its value.
+
+    thunk: computes the value; called for ``defvar`` only while the variable is unbound; ``None``: no value is given.
+    """
+    proclaim_special(symbol)
+    if thunk is not None and (always or symbol.value is UNBOUND):
+        symbol.value = one(thunk())
+    if documentation is not None:
+        data(symbol)["variable-documentation"] = documentation
+    return symbol
+
+
+def define_constant(symbol, value, documentation=None):
+    symbol.value = value
+    symbol.special = symbol.constant = True
+    if documentation is not None:
+        data(symbol)["variable-documentation"] = documentation
+    return symbol
+
+
+def proclaim_special(symbol):
+    if not isinstance(symbol, Symbol):
+        return type_error(symbol, "SYMBOL")
+    if symbol.constant:
+        return error("The constant ~S cannot be a variable.", symbol)
+    symbol.special = True
+    return symbol
+
+
+def define_symbol_macro(symbol, expansion):
+    data(symbol)["symbol-macro"] = expansion
+    return symbol
+
+
+def data(symbol):
+    """The compiler's notes about ``symbol``, a dict."""
+    if symbol.compiler_data is None:
+        symbol.compiler_data = {}
+    return symbol.compiler_data
+
+
+def macro_function_form(name, lambda_list, body):
+    """(lambda expression, documentation) of a macro: see `evaluator.macro_lambda`."""
+    return macro_lambda(name, lambda_list, body)

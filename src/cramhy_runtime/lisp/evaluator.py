@@ -1,0 +1,214 @@
+"""Evaluating forms: compile, let Hy make Python of it, run.
+
+`evaluate` serves the REPL, ``eval``, macros and ``#.``: the constants of a form are put into the globals of its code. The
+loader compiles whole files with `Unit`, whose code can be kept. Top-level ``progn``, ``eval-when``, ``locally`` and
+``macrolet`` are taken apart first, so that a macro defined in one of their forms is known to the next (ANSI 3.2.3.1).
+"""
+
+from __future__ import annotations
+
+import ast
+
+from .compiler.support import NAMESPACE
+from .conditions import CompileError, Condition, error
+from .data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
+from .lambda_lists import destructure, gensym
+from .packages import COMMON_LISP, sym
+
+PACKAGE = sym("*PACKAGE*")
+PACKAGE.special = True
+COMMON_LISP.export(PACKAGE)
+
+_compiler = None
+
+
+def compiler():
+    """The compiler's classes, imported when something is first compiled: a cached program starts without Hy."""
+    global _compiler
+    if _compiler is None:
+        from . import hy_backend
+
+        _compiler = hy_backend
+    return _compiler
+
+
+class Unit:
+    """A text being compiled: its file name, its globals, its constants and the places of its forms.
+
+    stored: whether the code must be able to run in another process; then constants are made by code.
+    """
+
+    def __init__(self, filename="<form>", positions=None, namespace=None, stored=False):
+        backend = compiler()
+        self.filename = filename
+        self.positions = positions if positions is not None else {}
+        self.namespace = namespace if namespace is not None else new_namespace(filename)
+        self.stored = stored
+        self.constants = backend.Constants()
+        self.names = {}
+
+    def compile(self, form):
+        """The code object of one top-level form. Running it leaves the values in the global ``Lresult``."""
+        backend = compiler()
+        analyzer = backend.Analyzer(self.filename, self.positions)
+        analyzer._at = self.positions.get(id(form))
+        try:
+            node = analyzer.toplevel(form, self.names)
+        except RecursionError:
+            error(CompileError("The form is nested too deeply to be compiled.", position=analyzer.place()))
+        generator = backend.Generator(self.constants)
+        statements = generator.toplevel(node)
+        if self.stored:
+            statements = [*self.constants.take_forms(), *statements]
+        else:
+            self.namespace.update(self.constants.take_objects())
+        tree = backend.python_tree(statements, self.filename)
+        self.names.clear()
+        return compile(tree, self.filename, "exec")
+
+    def run(self, code):
+        """Run compiled code; its values."""
+        exec(code, self.namespace)
+        return self.namespace.pop("Lresult", None)
+
+    def evaluate(self, form):
+        """Compile and run one form; top-level forms with forms inside go one by one."""
+        result = None
+        for part in self.toplevel_parts(form):
+            result = self.run(self.compile(part))
+        return result
+
+    def toplevel_parts(self, form):
+        """The forms that ``form`` consists of as a top-level form, each after the one before it has been dealt with."""
+        if isinstance(form, Cons) and isinstance(form.car, Symbol):
+            head = form.car
+            if head is PROGN:
+                if form.cdr is None:
+                    yield None
+                for part in form.cdr or ():
+                    yield from self.toplevel_parts(part)
+                return
+            if head is EVAL_WHEN and isinstance(form.cdr, Cons):
+                situations = set(form.cdr.car or ())
+                if situations & {sym(":EXECUTE"), sym(":LOAD-TOPLEVEL"), sym(":COMPILE-TOPLEVEL"), sym("EVAL"), sym("LOAD"),
+                                 sym("COMPILE")}:
+                    yield from self.toplevel_parts(Cons(PROGN, form.cdr.cdr))
+                return
+            if head.macro is not None or not compiler().is_special(head):
+                expansion, expanded = self.expand(form)
+                if expanded:
+                    yield from self.toplevel_parts(expansion)
+                    return
+        yield form
+
+    def expand(self, form):
+        from .macros import macroexpand_1
+
+        try:
+            expansion, expanded = macroexpand_1(form)
+        except Condition as problem:
+            if getattr(problem, "position", self) is None and id(form) in self.positions:
+                problem.position = (self.filename, *self.positions[id(form)][:2])
+            raise
+        if expanded and isinstance(expansion, Cons) and id(form) in self.positions:
+            self.positions.setdefault("kept", []).append(expansion)
+            self.positions.setdefault(id(expansion), self.positions[id(form)])
+        return expansion, expanded
+
+
+def new_namespace(filename):
+    """Globals for compiled code."""
+    return {"__name__": "cramhy_code", "__file__": filename, "__builtins__": __builtins__, **NAMESPACE}
+
+
+PROGN = sym("PROGN")
+EVAL_WHEN = sym("EVAL-WHEN")
+
+_session = None
+
+
+def session_unit():
+    """The unit for forms that come from no file."""
+    global _session
+    if _session is None:
+        _session = Unit("<form>")
+    return _session
+
+
+def evaluate(form, filename=None, positions=None):
+    """``eval``: all values of ``form`` in the null lexical environment.
+
+    filename and positions: where the form came from, for errors and tracebacks.
+    """
+    quick = _atom(form)
+    if quick is not NotImplemented:
+        return quick
+    unit = session_unit()
+    if filename is None:
+        return unit.evaluate(form)
+    outer = unit.filename, unit.positions
+    unit.filename, unit.positions = filename, positions if positions is not None else {}
+    try:
+        return unit.evaluate(form)
+    finally:
+        unit.filename, unit.positions = outer
+
+
+def _atom(form):
+    """The value of a form that needs no compiler."""
+    if isinstance(form, Cons):
+        if form.car is QUOTE and isinstance(form.cdr, Cons) and form.cdr.cdr is None:
+            return form.cdr.car
+        return NotImplemented
+    if isinstance(form, Keyword) or not isinstance(form, Symbol):
+        return None if form is False else form
+    return NotImplemented
+
+
+QUOTE = sym("QUOTE")
+
+
+def compile_lambda(form, environment=None):
+    """The function of a lambda expression; ``environment`` gives the local macros that it may use."""
+    unit = session_unit()
+    backend = compiler()
+    analyzer = backend.Analyzer(unit.filename, unit.positions)
+    node = analyzer.toplevel(form) if environment is None else backend.toplevel_with_macros(analyzer, form, environment)
+    statements = backend.Generator(unit.constants).toplevel(node)
+    unit.namespace.update(unit.constants.take_objects())
+    return one(unit.run(compile(backend.python_tree(statements, unit.filename), unit.filename, "exec")))
+
+
+def macro_lambda(name, lambda_list, body):
+    """The lambda expression ``(lambda (form environment) ...)`` of a macro defined by ``defmacro`` or ``macrolet``."""
+    form, environment = gensym("FORM"), gensym("ENVIRONMENT")
+    whole_first = isinstance(lambda_list, Cons) and getattr(lambda_list.car, "name", None) == "&WHOLE"
+    arguments = lambda_list
+    prefix = []
+    if whole_first:
+        prefix = [(lambda_list.cdr.car, form)]
+        arguments = lambda_list.cdr.cdr
+    bindings = prefix + destructure(arguments, lisp_list(sym("CDR"), form), f"the macro {getattr(name, 'name', name)}", environment)
+    forms, declarations = list(body or ()), []
+    documentation = forms.pop(0) if len(forms) > 1 and isinstance(forms[0], str) else None
+    while forms and isinstance(forms[0], Cons) and forms[0].car is sym("DECLARE"):
+        declarations.append(forms.pop(0))
+    block = Cons(sym("BLOCK"), Cons(name, list_from(forms)))
+    let = lisp_list(sym("LET*"), list_from([lisp_list(symbol, value) for symbol, value in bindings]), *declarations, block)
+    return lisp_list(sym("LAMBDA"), lisp_list(form, environment), let), documentation
+
+
+def macro_expander(name, lambda_list, body, environment=None):
+    """The expander function of a local macro."""
+    function, _ = macro_lambda(name, lambda_list, body)
+    compiled = compile_lambda(function, environment)
+    return lambda form, env: one(compiled(form, env))
+
+
+def values_of(result):
+    """The values of a form as a Python list."""
+    return list(result) if isinstance(result, MultipleValues) else [result]
+
+
+def parse_tree(tree):
+    return ast.fix_missing_locations(tree)

@@ -1,0 +1,327 @@
+"""What the expansions of standard macros call: the functions of the package CRAMHY.
+
+A macro only rearranges forms; the work is done here. Users do not call these by name.
+"""
+
+from __future__ import annotations
+
+from . import conditions
+from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError, error, program_error, type_error
+from .data import Cons, MultipleValues, Symbol, UNSUPPLIED, all_values, list_from, one, truth
+from .evaluator import PACKAGE
+from .packages import (COMMON_LISP, KEYWORD, all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
+                       printed, string_designator, sym, symbol_name)
+
+# ------------------------------------------------------------------------------------------------------------ destructuring
+
+
+def check_shape(lst, least, most, what, lambda_list):
+    """Check that ``lst`` has ``least`` to ``most`` elements (no upper bound: nil); returns it."""
+    count, cell = 0, lst
+    while isinstance(cell, Cons):
+        count += 1
+        cell = cell.cdr
+    if cell is not None and not (most is None and count >= least):
+        return error("~S, given to ~A, is not a proper list.", lst, what)
+    if count < least or (most is not None and count > most):
+        wanted = str(least) if least == most else f"at least {least}" if most is None else f"{least} to {most}"
+        return error("Error while parsing arguments to ~A:\n  too ~A elements in\n    ~S\n  to satisfy lambda list\n    ~S:\n  "
+                     "~A expected, but got ~D", what, "few" if count < least else "many", lst, lambda_list,
+                     "exactly " + wanted if least == most else wanted, count)
+    return lst
+
+
+def key_table(arguments, known, allow_others):
+    """The keyword arguments in the list ``arguments`` as a dict; unknown and odd ones are errors."""
+    items = list(arguments or ())
+    if len(items) % 2:
+        return program_error("odd number of keyword arguments in ~S", arguments)
+    table = {}
+    for index in range(0, len(items), 2):
+        table.setdefault(items[index], items[index + 1])
+    allow = keyword("ALLOW-OTHER-KEYS")
+    names = set(known or ())
+    if not allow_others and not truth(table.get(allow)):
+        for key in table:
+            if key not in names and key is not allow:
+                return program_error("unknown keyword ~S in ~S; known are ~S", key, arguments, known)
+    return table
+
+
+def key_given_p(table, key):
+    return True if key in table else None
+
+
+def key_value(table, key):
+    return table.get(key)
+
+
+# --------------------------------------------------------------------------------------------------------- choice and checks
+
+
+def case_failure(value, operator, possibilities):
+    return error(CaseFailure(value, operator, possibilities))
+
+
+def ask_for_value(value, operator, possibilities):
+    """Signal that no clause fits, with a restart STORE-VALUE; returns the value to try next."""
+    return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, "Supply a new value.")],
+                                   lambda: error(CaseFailure(value, operator, possibilities)))
+
+
+def assertion_failed(form, datum=UNSUPPLIED, *arguments):
+    condition = SimpleError("The assertion ~S failed.", form) if datum is UNSUPPLIED else conditions.make_condition(datum, arguments)
+    return conditions.restart_case([(sym("CONTINUE"), lambda: None, "Retry assertion.")], lambda: error(condition))
+
+
+def check_type_failed(value, place, kind, name):
+    text = name if name is not None else None
+    condition = SimpleTypeError("The value of ~S is ~S, which is not ~:[of type ~S~;~:*~A~].", place, value, text, kind,
+                                datum=value, expected_type=kind)
+    return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, f"Supply a new value for {symbol_name(place) if is_symbol(place) else 'the place'}.")],
+                                   lambda: error(condition))
+
+
+# ---------------------------------------------------------------------------------------------------------------- conditions
+
+
+def handler_bind(clauses, thunk):
+    from .compiler.support import function_of
+
+    return conditions.handler_bind([(clause.car, function_of(clause.cdr.car)) for clause in clauses or ()], thunk)
+
+
+def handler_case(clauses, thunk, no_error):
+    return conditions.handler_case([(clause.car, clause.cdr.car) for clause in clauses or ()], thunk, no_error)
+
+
+def ignore_errors(thunk):
+    return conditions.ignore_errors(thunk)
+
+
+def restart_report(report):
+    """The report of a restart: a string, or a function of a stream made into one that gives the text."""
+    if report is None or isinstance(report, str):
+        return report
+
+    def text():
+        from .streams import StringOutputStream
+
+        stream = StringOutputStream()
+        report(stream)
+        return stream.text() if hasattr(stream, "text") else stream.get_text()
+
+    return text
+
+
+def restart_case(clauses, thunk):
+    """``restart-case``: clauses are lists (name function report interactive test)."""
+    return conditions.restart_case([tuple(clause) for clause in clauses or ()], thunk)
+
+
+def restart_bind(bindings, thunk):
+    restarts = []
+    for name, function, *options in bindings or ():
+        options = {option.name: value for option, value in zip(options[::2], options[1::2])}
+        restarts.append(conditions.Restart(name, function, restart_report(options.get("REPORT-FUNCTION")),
+                                           options.get("INTERACTIVE-FUNCTION"), options.get("TEST-FUNCTION")))
+    return conditions.restart_bind(restarts, thunk)
+
+
+def with_simple_restart(name, report, thunk):
+    return conditions.with_simple_restart(name, report, thunk)
+
+
+# ------------------------------------------------------------------------------------------------------------------ packages
+
+
+def define_package(name, options):
+    """``defpackage``: make or update the package; clauses as in the standard. Returns the package."""
+    name = string_designator(name)
+    clauses = {}
+    for option in options or ():
+        clauses.setdefault(symbol_name(option.car), []).append(list(option.cdr or ()))
+
+    def names(clause):
+        return [string_designator(item) for items in clauses.get(clause, ()) for item in items]
+
+    unknown = set(clauses) - {"NICKNAMES", "USE", "SHADOW", "SHADOWING-IMPORT-FROM", "IMPORT-FROM", "EXPORT", "INTERN", "SIZE",
+                              "DOCUMENTATION", "DESIG-PROPERTIES", "LOCK", "IMPLEMENT"}
+    if unknown:
+        return error(CompileError("DEFPACKAGE ~A: there is no option :~A. Did you forget a parenthesis?", name, sorted(unknown)[0]))
+    package = find_package(name)
+    if package is None:
+        package = make_package(name, names("NICKNAMES"))
+    else:
+        for nickname in names("NICKNAMES"):
+            if find_package(nickname) is not package:
+                package.nicknames.append(nickname)
+                from .packages import register
+
+                register(package)
+    for symbol in names("SHADOW"):
+        package.shadow(symbol)
+    for source, *imported in clauses.get("SHADOWING-IMPORT-FROM", ()):
+        for symbol in imported:
+            package.shadowing_import(_existing(source, symbol, name))
+    for other in names("USE"):
+        package.use_package(find_package_or_error(other))
+    for source, *imported in clauses.get("IMPORT-FROM", ()):
+        for symbol in imported:
+            package.import_symbol(_existing(source, symbol, name))
+    for symbol in names("INTERN"):
+        package.intern(symbol)
+    for symbol in names("EXPORT"):
+        package.export(package.intern(symbol))
+    for text in clauses.get("DOCUMENTATION", ()):
+        package.documentation = text[0]
+    return package
+
+
+def _existing(source, symbol, importer):
+    package = find_package_or_error(source)
+    name = string_designator(symbol)
+    found, status = package.lookup(name)
+    if not status:
+        near = near_names(name, [*package.external, *package.internal])
+        hint = f" Did you mean {' or '.join(near)}?" if near else ""
+        return conditions.package_error(package, f"DEFPACKAGE {importer}: no symbol named {name} in package {package.name}.{hint}")
+    return found
+
+
+def set_package(designator):
+    """``in-package``: make it the current package; one that does not exist is an error that names its neighbours."""
+    package = find_package_or_error(designator)
+    PACKAGE.value = package
+    return package
+
+
+def package_symbols(package, external_only):
+    package = find_package_or_error(package)
+    symbols = dict(package.external)
+    if not truth(external_only):
+        symbols.update(package.internal)
+        for other in package.use:
+            for name, symbol in other.external.items():
+                symbols.setdefault(name, symbol)
+    return list_from(list(symbols.values()))
+
+
+def all_symbols():
+    return list_from([symbol for package in all_packages() for table in (package.external, package.internal)
+                      for symbol in table.values()])
+
+
+def package_iterator(packages, kinds):
+    """The generator function of ``with-package-iterator``: four values a call, nil at the end."""
+    kinds = {kind.name for kind in kinds or ()}
+
+    def entries():
+        items = packages if isinstance(packages, Cons) else [packages]
+        for designator in items:
+            package = find_package_or_error(designator)
+            for kind, tables in (("EXTERNAL", [package.external]), ("INTERNAL", [package.internal]),
+                                 ("INHERITED", [other.external for other in package.use])):
+                if kind in kinds:
+                    for table in tables:
+                        for symbol in table.values():
+                            yield MultipleValues((True, symbol, keyword(kind), package))
+
+    iterator = entries()
+    return lambda: next(iterator, None)
+
+
+# -------------------------------------------------------------------------------------------------------------- places, plists
+
+
+def put_property(plist, indicator, value):
+    """The property list with ``indicator`` set: changed in place when it is there, else extended in front."""
+    cell = plist
+    while isinstance(cell, Cons):
+        if cell.car is indicator or _eql(cell.car, indicator):
+            cell.cdr.car = value
+            return plist
+        cell = cell.cdr.cdr
+    return Cons(indicator, Cons(value, plist))
+
+
+def _eql(a, b):
+    return type(a) is type(b) and not isinstance(a, str) and a == b
+
+
+def remove_property(plist, indicator):
+    """Two values: the property list without ``indicator``, and whether it was there."""
+    items = list(plist or ())
+    for index in range(0, len(items) - 1, 2):
+        if items[index] is indicator or _eql(items[index], indicator):
+            return MultipleValues((list_from(items[:index] + items[index + 2:]), True))
+    return MultipleValues((plist, None))
+
+
+# ------------------------------------------------------------------------------------------------------------------ the REPL's
+
+
+def time_(thunk):
+    """``time``: run ``thunk`` and print how long it took, by the kernel's clock and by the processor's."""
+    import resource
+
+    from cramhy_runtime import kernel
+
+    from .streams import standard_output
+
+    before, used = kernel.now(), resource.getrusage(resource.RUSAGE_SELF).ru_utime
+    result = thunk()
+    output = standard_output()
+    output.fresh_line()
+    output.write(f"Evaluation took:\n  {kernel.now() - before:.3f} seconds of plan time\n"
+                 f"  {resource.getrusage(resource.RUSAGE_SELF).ru_utime - used:.3f} seconds of processor time\n")
+    return result
+
+
+_traced: dict = {}
+
+
+def trace(names):
+    """``trace``: print the calls of the named functions; without names, the list of those traced."""
+    from .printer import prin1_to_string
+    from .streams import trace_output
+
+    depth = [0]
+    for name in names or ():
+        if name in _traced or not isinstance(name, Symbol) or name.package is COMMON_LISP:
+            continue
+
+        def traced(*arguments, _name=name, _function=name.function, **keywords):
+            call = prin1_to_string(Cons(_name, list_from(arguments)))
+            trace_output().write(f"{'  ' * depth[0]}  {depth[0]}: {call}\n")
+            depth[0] += 1
+            try:
+                result = _function(*arguments, **keywords)
+            finally:
+                depth[0] -= 1
+            shown = " ".join(prin1_to_string(value) for value in all_values(result))
+            trace_output().write(f"{'  ' * depth[0]}  {depth[0]}: {printed(_name)} returned {shown}\n")
+            return result
+
+        _traced[name] = name.function
+        name.function = traced
+    return names if names is not None else list_from(list(_traced))
+
+
+def untrace(names):
+    for name in names or list(_traced):
+        if name in _traced:
+            name.function = _traced.pop(name)
+    return True
+
+
+def proclaim(specifier):
+    from .definitions import proclaim_special
+
+    if isinstance(specifier, Cons) and symbol_name(specifier.car) == "SPECIAL":
+        for symbol in specifier.cdr or ():
+            proclaim_special(symbol)
+    return None
+
+
+__all__ = ["KEYWORD", "one", "type_error"]

@@ -1,0 +1,136 @@
+"""Macros: expanders by symbol, and the bridge from macros written in Hy.
+
+An expander is a Python function ``(form, environment) -> form`` kept in ``symbol.macro``. The standard macros and those of the
+plan language are written in Hy, in ``hy_src/cramhy``, with Hy's quasiquote; `define_operator` enters them here. What they
+return is made of Hy models and of the forms that they were given; `from_hy` turns it into Lisp data, reading unqualified
+symbols in the macro file's package. So a macro is written once and serves ``.lisp`` files, the REPL and ``.hy`` files.
+"""
+
+from __future__ import annotations
+
+import importlib
+from fractions import Fraction
+
+from .conditions import CompileError, Condition, error
+from .data import Character, Cons, Symbol, list_from
+from .packages import find_package_or_error, intern, is_symbol, keyword, sym, symbol_name
+
+FILES = ("cl", "support", "cut", "prolog", "cpl", "desig", "cpm", "roslisp", "lisp_unit")
+"""The modules of ``hy_src/cramhy`` that define operators, in order."""
+
+_loaded = False
+
+
+def ensure_loaded():
+    """Load the macro files, once; called before the first compilation, so that a cached program starts without them."""
+    global _loaded
+    if _loaded:
+        return
+    _loaded = True
+    for name in FILES:
+        if importlib.util.find_spec(f"cramhy.{name}"):
+            importlib.import_module(f"cramhy.{name}")
+
+
+def macro_function(symbol, environment=None):
+    """The expander of ``symbol``: a local macro of ``environment``, or the global one; ``None`` when it is no macro."""
+    if environment is not None:
+        local = environment.function(symbol)
+        if local is not None:
+            return getattr(local, "expander", None)
+    return symbol.macro if isinstance(symbol, Symbol) else None
+
+
+def define_operator(package, name, function):
+    """Enter a macro written in Hy: ``function`` gets the forms of the call as Python arguments, returns models or forms."""
+    home = find_package_or_error(package)
+    symbol = home.intern(name.upper())
+
+    def expander(form, environment):
+        try:
+            expansion = function(*(form.cdr or ()))
+        except Condition:
+            raise
+        except (TypeError, ValueError) as problem:
+            return malformed(form, symbol, problem)
+        return from_hy(expansion, home)
+
+    expander.hy_function = function
+    symbol.macro = expander
+    if symbol_name(symbol) not in home.external:
+        home.export(symbol)
+    return symbol
+
+
+def malformed(form, symbol, problem):
+    """Signal that a call of the macro ``symbol`` has not the shape that it must have."""
+    why = str(problem)
+    for marker in ("positional argument", "unpack", "iterable", "takes", "missing"):
+        if marker in why:
+            why = "it has the wrong number of parts, or a part is not a list."
+            break
+    return error(CompileError("The ~A form ~S is malformed: ~A", symbol, form, why))
+
+
+def from_hy(model, package):
+    """Lisp data for a Hy model; forms inside it that are Lisp data already stay as they are."""
+    from hy import models
+
+    kind = type(model)
+    if kind in (Cons, str, int, float, Fraction, Character, type(None), bool) or isinstance(model, Symbol):
+        return None if model is False else model
+    if isinstance(model, models.Symbol):
+        return _symbol(str(model), package)
+    if isinstance(model, models.Keyword):
+        return keyword(model.name.upper())
+    if isinstance(model, (models.Expression, models.List, models.Tuple)) or kind in (list, tuple):
+        items = [from_hy(item, package) for item in model]
+        dot = sym("CRAMHY::|.|")
+        if len(items) > 2 and items[-2] is dot:
+            return list_from(items[:-2], items[-1])
+        return list_from(items)
+    if isinstance(model, models.String):
+        return str(model)
+    if isinstance(model, models.Integer):
+        return int(model)
+    if isinstance(model, models.Float):
+        return float(model)
+    return model
+
+
+def _symbol(text, package):
+    if text == ".":
+        return intern(".", "CRAMHY")
+    if text.startswith("%"):
+        return intern(text[1:].upper(), "CRAMHY")
+    head, colons, name = text.partition("::") if "::" in text else text.partition(":")
+    if colons and head and name:
+        return intern(name.upper(), head.upper())
+    return package.intern(text.upper())
+
+
+def macroexpand_1(form, environment=None):
+    """(expansion, True) when ``form`` is a macro call or a symbol macro, else (form, False)."""
+    ensure_loaded()
+    if isinstance(form, Cons) and is_symbol(form.car):
+        expander = macro_function(form.car, environment)
+        if expander is not None:
+            return expander(form, environment), True
+    elif isinstance(form, Symbol):
+        local = environment.variable(form) if environment is not None else None
+        expansion = getattr(local, "expansion", None)
+        if expansion is None and local is None and form.compiler_data is not None:
+            expansion = form.compiler_data.get("symbol-macro")
+        if expansion is not None:
+            return expansion, True
+    return form, False
+
+
+def macroexpand(form, environment=None):
+    """``form`` expanded until its head is no macro any more, and whether anything was expanded."""
+    expanded = False
+    while True:
+        form, more = macroexpand_1(form, environment)
+        if not more:
+            return form, expanded
+        expanded = True

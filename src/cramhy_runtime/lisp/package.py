@@ -1,0 +1,52 @@
+"""The packages COMMON-LISP, COMMON-LISP-USER and CRAMHY: which function each symbol names.
+
+Every module of this room lists its Lisp names in ``LISP_NAMES`` and its setters in ``SETTERS``; here they come together.
+"""
+
+from __future__ import annotations
+
+import importlib
+
+from . import cl_names, definitions, expansion_support, places, streams
+from .faces import define_face, lispify
+from .packages import COMMON_LISP, Package, find_package, register, sym
+
+MODULES = ("equality", "functions", "lists", "list_sets", "sequences", "strings", "characters", "hash_tables", "arrays", "vectors", "numbers",
+           "arithmetic", "bits", "irrational", "rounding", "random_state", "types", "classes", "generic", "structures", "streams", "printer", "pretty",
+           "format", "reader", "symbols", "control")
+"""The modules that define functions of Common Lisp; later ones win where two define a name."""
+
+HELPERS = {
+    definitions: "define-function define-macro define-variable define-constant define-symbol-macro",
+    places: "define-modifier define-setf-function define-setf-form define-expander",
+    expansion_support: """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
+        handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart define-package set-package
+        package-symbols all-symbols package-iterator put-property remove-property time trace untrace""",
+}
+
+
+def fill():
+    """Define the faces; called once, when ``cramhy_runtime.lisp`` is imported."""
+    for name in cl_names.NAMES.split():
+        if name not in ("nil", "t"):
+            COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
+    for name in MODULES:
+        if importlib.util.find_spec(f"{__package__}.{name}") is None:
+            continue
+        module = importlib.import_module(f"{__package__}.{name}")
+        names = " ".join(lisp_name for lisp_name in module.LISP_NAMES.split()
+                         if lisp_name in _standard) if hasattr(module, "LISP_NAMES") else ""
+        define_face("COMMON-LISP", functions={module: names}, variables=getattr(module, "VARIABLES", None))
+        for lisp_name, setter in getattr(module, "SETTERS", {}).items():
+            sym(lisp_name).setf_function = lispify(setter)
+    define_face("COMMON-LISP", functions={"proclaim": expansion_support.proclaim})
+    if find_package("CRAMHY") is None:
+        register(Package("CRAMHY"))
+    define_face("CRAMHY", functions=HELPERS)
+    for marker in ("&OPTIONAL", "&REST", "&KEY"):
+        sym(marker).plist = None
+
+
+_standard = set(cl_names.NAMES.split())
+
+__all__ = ["fill", "streams"]

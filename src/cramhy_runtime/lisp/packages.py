@@ -1,0 +1,265 @@
+"""Packages: which symbol a name means.
+
+A package maps names to symbols; it may use other packages (and sees their external symbols) and shadow names. NIL and T are
+the Python objects ``None`` and ``True``, so a package table may hold them besides `Symbol` objects. Source: ANSI chapter 11;
+message texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+from .data import Keyword, MultipleValues, Symbol
+
+
+class Package:
+    """A package. ``internal`` and ``external`` map names to the symbols present in it."""
+
+    def __init__(self, name, nicknames=(), use=(), documentation=None):
+        self.name = name
+        self.nicknames = list(nicknames)
+        self.use = list(use)
+        self.used_by = []
+        self.internal = {}
+        self.external = {}
+        self.shadowing = set()
+        self.documentation = documentation
+        for other in self.use:
+            other.used_by.append(self)
+
+    def __repr__(self):
+        return f'#<PACKAGE "{self.name}">'
+
+    @property
+    def names(self):
+        return [self.name, *self.nicknames]
+
+    def lookup(self, name):
+        """(symbol, status): status is ``"internal"``, ``"external"``, ``"inherited"`` or ``None``."""
+        if name in self.external:
+            return self.external[name], "external"
+        if name in self.internal:
+            return self.internal[name], "internal"
+        for other in self.use:
+            if name in other.external:
+                return other.external[name], "inherited"
+        return None, None
+
+    def intern(self, name):
+        """The symbol ``name`` means here; a new internal one (external in KEYWORD) when there is none."""
+        found, status = self.lookup(name)
+        if status:
+            return found
+        if self is KEYWORD:
+            symbol = Keyword(name, self)
+            self.external[name] = symbol
+        else:
+            symbol = Symbol(name, self)
+            self.internal[name] = symbol
+        return symbol
+
+    def present(self, name):
+        """Whether a symbol ``name`` is in this package itself, not inherited."""
+        return name in self.external or name in self.internal
+
+    def import_symbol(self, symbol):
+        """Make ``symbol`` present here. An equally named other symbol is an error of class package-error."""
+        name = symbol_name(symbol)
+        found, status = self.lookup(name)
+        if status and found is not symbol:
+            from .conditions import package_error
+
+            package_error(self, f"Importing {printed(symbol)} into {self.name} would conflict with {printed(found)}, which is "
+                                f"already there. Shadow one of them with :shadow or :shadowing-import-from.")
+        if not self.present(name):
+            self.internal[name] = symbol
+            if isinstance(symbol, Symbol) and symbol.package is None:
+                symbol.package = self
+
+    def shadowing_import(self, symbol):
+        name = symbol_name(symbol)
+        self.external.pop(name, None)
+        self.internal[name] = symbol
+        self.shadowing.add(name)
+
+    def shadow(self, name):
+        """Make sure that a symbol ``name`` is present here, whatever is inherited."""
+        if not self.present(name):
+            self.internal[name] = Symbol(name, self)
+        self.shadowing.add(name)
+        return self.intern(name)
+
+    def export(self, symbol):
+        name = symbol_name(symbol)
+        if name in self.external:
+            return
+        if name not in self.internal:
+            self.import_symbol(symbol)
+        self.external[name] = self.internal.pop(name)
+
+    def unexport(self, symbol):
+        name = symbol_name(symbol)
+        if name in self.external:
+            self.internal[name] = self.external.pop(name)
+
+    def unintern(self, symbol):
+        name = symbol_name(symbol)
+        for table in (self.external, self.internal):
+            if table.get(name, table) is symbol:
+                del table[name]
+                self.shadowing.discard(name)
+                if isinstance(symbol, Symbol) and symbol.package is self:
+                    symbol.package = None
+                return True
+        return None
+
+    def use_package(self, other):
+        """Inherit the external symbols of ``other``; a clash of names is an error unless shadowed here."""
+        if other is self or other in self.use:
+            return
+        for name, symbol in other.external.items():
+            found, status = self.lookup(name)
+            if status and found is not symbol and name not in self.shadowing:
+                from .conditions import package_error
+
+                package_error(self, f"{self.name} cannot use {other.name}: both {printed(symbol)} and {printed(found)} would be "
+                                    f"called {name} in it. Shadow one of them with (:shadowing-import-from PACKAGE #:{name}).")
+        self.use.append(other)
+        other.used_by.append(self)
+
+    def unuse_package(self, other):
+        if other in self.use:
+            self.use.remove(other)
+            other.used_by.remove(self)
+
+
+_packages: dict[str, Package] = {}
+
+
+def register(package):
+    """Enter ``package`` under its name and nicknames. A name that is taken is a package-error."""
+    for name in package.names:
+        if _packages.get(name, package) is not package:
+            from .conditions import package_error
+
+            package_error(package, f"A package named {name} already exists.")
+    for name in package.names:
+        _packages[name] = package
+    return package
+
+
+def make_package(name, nicknames=(), use=()):
+    """A new registered package that uses the packages ``use``."""
+    return register(Package(name, nicknames, [find_package_or_error(other) for other in use]))
+
+
+def delete_package(package):
+    for name in package.names:
+        _packages.pop(name, None)
+    for other in list(package.use):
+        package.unuse_package(other)
+
+
+def rename_package(package, name, nicknames=()):
+    for old in package.names:
+        _packages.pop(old, None)
+    package.name, package.nicknames = name, list(nicknames)
+    return register(package)
+
+
+def all_packages():
+    """Every registered package once, in order of definition."""
+    return list(dict.fromkeys(_packages.values()))
+
+
+def symbol_name(symbol):
+    """The name of a symbol, NIL and T included."""
+    return "NIL" if symbol is None else "T" if symbol is True else symbol.name
+
+
+def symbol_package(symbol):
+    return COMMON_LISP if symbol is None or symbol is True else symbol.package
+
+
+def printed(symbol):
+    package = symbol_package(symbol)
+    return f"{package.name}::{symbol_name(symbol)}" if package else f"#:{symbol_name(symbol)}"
+
+
+def is_symbol(obj):
+    return obj is None or obj is True or isinstance(obj, Symbol)
+
+
+def string_designator(designator):
+    """The string that a string, symbol or character stands for."""
+    if designator.__class__ is str:
+        return designator
+    if is_symbol(designator):
+        return symbol_name(designator)
+    return str(getattr(designator, "char", designator))
+
+
+def find_package(designator):
+    """The package a name, symbol or package stands for, or ``None``."""
+    if isinstance(designator, Package):
+        return designator
+    return _packages.get(string_designator(designator))
+
+
+def find_package_or_error(designator):
+    package = find_package(designator)
+    if package is None:
+        from .conditions import package_does_not_exist
+
+        return package_does_not_exist(designator)
+    return package
+
+
+def near_names(name, candidates, most=3):
+    """Names like ``name``, for "did you mean": the closest first."""
+    import difflib
+
+    return difflib.get_close_matches(name, list(candidates), n=most, cutoff=0.6)
+
+
+def package_names():
+    return list(_packages)
+
+
+def intern(name, package="COMMON-LISP"):
+    """The symbol ``name`` in ``package`` (a name or a `Package`); made there if there is none."""
+    found = package if isinstance(package, Package) else _packages.get(package)
+    return (found or find_package_or_error(package)).intern(name)
+
+
+def find_symbol(name, package):
+    """Two values as Python sees them: (symbol, status), status ``None`` when not there."""
+    return find_package_or_error(package).lookup(name)
+
+
+_shorthand: dict[str, object] = {}
+
+
+def sym(designator):
+    """Shorthand for the runtime's own code: ``sym("CAR")``, ``sym("CPL-IMPL::PAR")``, ``sym(":NAME")``."""
+    found = _shorthand.get(designator)
+    if found is None:
+        package, _, name = designator.rpartition(":")
+        package = package.rstrip(":")
+        if designator.startswith(":"):
+            package = "KEYWORD"
+        found = _shorthand[designator] = intern(name, package or "COMMON-LISP")
+    return found
+
+
+def keyword(name):
+    """The keyword ``:NAME``."""
+    return KEYWORD.intern(name)
+
+
+KEYWORD = register(Package("KEYWORD"))
+COMMON_LISP = register(Package("COMMON-LISP", ["CL"]))
+COMMON_LISP.external.update(NIL=None, T=True)
+COMMON_LISP_USER = register(Package("COMMON-LISP-USER", ["CL-USER"], [COMMON_LISP]))
+
+
+def lisp_values(*items):
+    return MultipleValues(items)

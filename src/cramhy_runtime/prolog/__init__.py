@@ -1,0 +1,5 @@
+"""CRAM's Prolog: terms, unification, clauses compiled to Python, built-ins, fact groups, rete; and the lazy lists and patterns
+of ``cram-utilities`` on which they are built. Source: reference page ``prolog.md``.
+
+For other rooms the interface is `cramhy_runtime.prolog.query` (ask) and `cramhy_runtime.prolog.natives` (define predicates).
+"""

@@ -1,0 +1,358 @@
+"""Control: conjunction, disjunction, negation, conditions, cut, and the calling of goals that are data.
+
+Each construct is a function of the machine, the list of its argument terms, its continuation and the *barrier*: the height of
+the choice point stack at which the enclosing clause or query was entered, where ``(cut)`` cuts to. ``and`` and the branches of
+``->`` and ``*->`` pass the barrier on; ``or`` is a barrier of its own, and so are all others (prolog.md section 10; there
+a cut inside ``not``, ``once``, ``call``, ``findall`` and the like destroys the whole construct, here it stops at its barrier).
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.conditions import type_error, wrong_argument_count
+from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from
+from cramhy_runtime.lisp.packages import sym
+
+from .database import arguments_of, find_predicate, undefined_step, valid_functor
+from .machine import FAIL, Machine, SOLVED, fail
+from .terms import Restore, TermTail, Var, copy_term, deref, raw, unify, unset_variables
+
+_PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
+
+CONTROL: dict = {}
+"""Functor → control function; replaced by `extend` while users have facts for the functor."""
+_BASE: dict = {}
+
+
+def _control(name, least=0, most=None):
+    """Decorator: the control construct ``name``, called with its arguments as a list; their number is checked."""
+
+    def define(function):
+        def call(m, terms, k, b):
+            arguments = arguments_of(Cons(None, terms))
+            if len(arguments) < least or (most is not None and len(arguments) > most):
+                return wrong_argument_count(len(arguments))
+            return function(m, k, b, *arguments)
+
+        symbol = sym(name)
+        CONTROL[symbol] = _BASE[symbol] = call
+        return function
+
+    return define
+
+
+def extend(name, entry):
+    """Make a control construct fall back on the clauses that users have for it, when it has no solution."""
+    base = _BASE.get(name)
+    if base is None:
+        return
+    if entry is None or not entry.clauses:
+        CONTROL[name] = base
+        return
+
+    def with_fallback(m, terms, k, b):
+        height = len(m.choices)
+        arguments = arguments_of(Cons(name, terms))
+        m.choices.append((len(m.trail), (find_predicate(name, len(arguments)).call, k, *arguments)))
+        return base(m, terms, (_handled, k, height), b if b <= height else height)
+
+    CONTROL[name] = with_fallback
+
+
+def _handled(m, step):
+    _, k, height = step
+    if height < len(m.choices):
+        m.choices[height] = (m.choices[height][0], FAIL)
+    return k
+
+
+# ------------------------------------------------------------------------------------------------------------ solving goals
+
+
+def solve(m, goal, k, b):
+    """The step that proves a goal term. Goals are looked up when they are reached, so they can be data."""
+    if goal.__class__ is not Cons:
+        goal = deref(goal)
+        if goal is None:
+            return undefined_step(m, Cons(None, None))
+        if goal.__class__ is not Cons:
+            return type_error(raw(goal, m.names), "LIST")
+    functor = goal.car
+    construct = CONTROL.get(functor)
+    if construct is not None:
+        return construct(m, goal.cdr, k, b)
+    if functor.__class__ is Var or not valid_functor(functor):
+        return undefined_step(m, goal)
+    arguments, cell = [], goal.cdr
+    while cell.__class__ is Cons:
+        arguments.append(cell.car)
+        cell = cell.cdr
+    if cell is not None:
+        arguments = arguments_of(goal)
+    predicate = find_predicate(functor, len(arguments))
+    return (predicate.call, k, *arguments)
+
+
+def _solve_rest(m, step):
+    _, k, goals, b = step
+    return solve_all(m, goals, k, b)
+
+
+def solve_all(m, goals, k, b):
+    """The step that proves a list of goals one after the other."""
+    goals = goals if goals.__class__ is Cons else deref(goals)
+    if goals is None:
+        return k
+    rest = goals.cdr if goals.cdr.__class__ is Cons else deref(goals.cdr)
+    return solve(m, goals.car, k if rest is None else (_solve_rest, k, rest, b), b)
+
+
+def _and(m, terms, k, b):
+    return solve_all(m, terms, k, b)
+
+
+CONTROL[sym("AND")] = _BASE[sym("AND")] = _and
+
+
+def _or(m, terms, k, b):
+    """A barrier: a cut in a branch drops the other alternatives of that branch and the branches after it."""
+    terms = deref(terms)
+    return FAIL if terms is None else _branch(m, (None, k, terms, len(m.choices)))
+
+
+def _branch(m, step):
+    _, k, terms, height = step
+    rest = deref(terms.cdr)
+    if rest is not None:
+        m.choices.append((len(m.trail), (_branch, k, rest, height)))
+    return solve(m, terms.car, k, height)
+
+
+CONTROL[sym("OR")] = _BASE[sym("OR")] = _or
+
+
+@_control("CRAM-PROLOG::CUT", 0, 0)
+def _cut(m, k, b):
+    del m.choices[b:]
+    return k
+
+
+@_control("CRAM-PROLOG::TRUE", 0, 0)
+def _true(m, k, b):
+    return k
+
+
+@_control("CRAM-PROLOG::FAIL", 0, 0)
+def _fail(m, k, b):
+    return fail(m)
+
+
+@_control("NOT", 1, 1)
+def _not(m, k, b, goal):
+    height = len(m.choices)
+    m.choices.append((len(m.trail), k))
+    return solve(m, goal, (_refute, None, height), height + 1)
+
+
+def _refute(m, step):
+    del m.choices[step[2]:]
+    return fail(m)
+
+
+@_control("CRAM-PROLOG::ONCE")
+def _once(m, k, b, *goals):
+    height = len(m.choices)
+    return solve_all(m, list_from(goals), (_commit, k, height), height)
+
+
+def _commit(m, step):
+    _, k, height = step
+    del m.choices[height:]
+    return k
+
+
+@_control("CRAM-PROLOG::CALL", 1, 1)
+def _call(m, k, b, goal):
+    return solve(m, goal, k, len(m.choices))
+
+
+_FAIL_GOAL = Cons(sym("CRAM-PROLOG::FAIL"), None)
+
+
+@_control("CRAM-PROLOG::->", 2, 3)
+def _if(m, k, b, condition, then, otherwise=_FAIL_GOAL):
+    height = len(m.choices)
+    m.choices.append((len(m.trail), (_continue_with, k, otherwise, b)))
+    return solve(m, condition, (_then, k, then, b, height), height + 1)
+
+
+def _continue_with(m, step):
+    _, k, goal, b = step
+    return solve(m, goal, k, b)
+
+
+def _then(m, step):
+    _, k, goal, b, height = step
+    del m.choices[height:]
+    return solve(m, goal, k, b)
+
+
+@_control("CRAM-PROLOG::*->", 2, 3)
+def _soft_if(m, k, b, condition, then, otherwise=_FAIL_GOAL):
+    height = len(m.choices)
+    m.choices.append((len(m.trail), (_continue_with, k, otherwise, b)))
+    return solve(m, condition, (_soft_then, k, then, b, height), height + 1)
+
+
+def _soft_then(m, step):
+    _, k, goal, b, height = step
+    m.choices[height] = (m.choices[height][0], FAIL)
+    return solve(m, goal, k, b)
+
+
+_NOT, _AND = sym("NOT"), sym("AND")
+
+
+@_control("CRAM-PROLOG::FORALL", 2, 2)
+def _forall(m, k, b, condition, action):
+    unmet = list_from([_AND, Cons(sym("CRAM-PROLOG::CALL"), Cons(condition)), list_from([_NOT, action])])
+    return _not(m, k, b, unmet)
+
+
+# ------------------------------------------------------------------------------------------------------ collecting solutions
+
+
+class Instances:
+    """The instances of ``template`` for all solutions of ``goal``, proved in a machine of its own.
+
+    The goal is copied, so the instances stay what they are when this proof backtracks, and can be computed later. Variables
+    that a solution leaves unset are those of this proof, or new ones.
+    """
+
+    __slots__ = ("proof", "template", "originals")
+
+    def __init__(self, template, goal):
+        copies = {}
+        goal, self.template = copy_term(goal, copies), copy_term(template, copies)
+        self.originals = {copy: variable for variable, copy in copies.items()}
+        names = {copy.name: copy for copy in self.originals if copy.name is not None}
+        self.proof = Machine(names)
+        self.proof.prove((_solve_goal, SOLVED, goal))
+
+    def remaining(self):
+        """All instances still to come, as a Python list."""
+        found, next_solution, template = [], self.proof.next_solution, self.template
+        if template.__class__ is Var:
+            while next_solution():
+                value = template.ref
+                if value.__class__ in _PLAIN:
+                    found.append(value)
+                else:
+                    found.append(copy_term(template, self.originals.copy()))
+            return found
+        while next_solution():
+            found.append(copy_term(template, self.originals.copy()))
+        return found
+
+    def lazy_list(self):
+        """The instances as a lazy list, its first element computed now."""
+        if not self.proof.next_solution():
+            return None
+        return Cons(copy_term(self.template, self.originals.copy()), TermTail(self.lazy_list, self.remaining))
+
+
+def _solve_goal(m, step):
+    return solve(m, step[2], step[1], 0)
+
+
+@_control("CRAM-PROLOG::FINDALL", 3, 3)
+def _findall(m, k, b, template, goal, result):
+    return k if m.unify(result, Instances(template, goal).lazy_list()) else fail(m)
+
+
+@_control("CRAM-PROLOG::BAGOF", 3, 3)
+def _bagof(m, k, b, template, goal, result):
+    found = Instances(template, goal).lazy_list()
+    return k if found is not None and m.unify(result, found) else fail(m)
+
+
+@_control("CRAM-PROLOG::SETOF", 3, 3)
+def _setof(m, k, b, template, goal, result):
+    found = Instances(template, goal).remaining()
+    if not found:
+        return fail(m)
+    kept = [item for i, item in enumerate(found) if not any(_same(item, other) for other in found[i + 1:])]
+    return k if m.unify(result, list_from(kept)) else fail(m)
+
+
+def _same(a, b):
+    """``equal`` for terms: nothing needs to be set to make them the same."""
+    trail = []
+    if a is b:
+        return True
+    same = unify(a, b, trail) and not trail
+    for variable in trail:
+        variable.ref = Var.ref
+    return same
+
+
+@_control("CRAM-PROLOG::EVERY", 2, 2)
+def _every(m, k, b, generator, pattern):
+    """Prove ``pattern`` for all solutions of ``generator`` together: its other variables have one value throughout."""
+    goals = Instances(pattern, generator).remaining()
+    return solve_all(m, list_from(goals), k, len(m.choices))
+
+
+# ------------------------------------------------------------------------------------------------------------ filter-bindings
+
+
+def _filter_bindings(names_of_query):
+    def filter_bindings(m, k, b, variables=None, *goals):
+        goals = list_from(goals)
+        return solve_all(m, goals, (_keep_only, k, variables, goals, names_of_query), len(m.choices))
+
+    return filter_bindings
+
+
+def _keep_only(m, step):
+    """Unset every variable in reach but those listed; what the listed ones have stays, as it is now."""
+    _, k, variables, goals, names_of_query = step
+    kept, dropped = _written_variables(variables), _written_variables(goals)
+    if names_of_query:
+        for variable in m.names.values():
+            if variable.__class__ is Var:
+                dropped.setdefault(variable)
+    values = [(variable, copy_term(variable, {v: v for v in unset_variables(variable, {})})) for variable in kept]
+    for variable in dropped:
+        if variable not in kept and variable.ref is not Var.ref:
+            m.trail.append(Restore(variable))
+            variable.ref = Var.ref
+    for variable, value in values:
+        if variable.ref is not Var.ref:
+            m.trail.append(Restore(variable))
+            variable.ref = value
+    return k
+
+
+def _written_variables(term):
+    found, stack = {}, [term]
+    while stack:
+        item = stack.pop()
+        while item.__class__ is Cons:
+            stack.append(item.cdr)
+            item = item.car
+        if item.__class__ is Var:
+            found.setdefault(item)
+    return found
+
+
+_FILTER = sym("CRAM-PROLOG::FILTER-BINDINGS")
+_control("CRAM-PROLOG::FILTER-BINDINGS")(_filter_bindings(True))
+_FILTER_IN_QUERY = CONTROL[_FILTER]
+_control("CRAM-PROLOG::FILTER-BINDINGS")(_filter_bindings(False))
+_FILTER_IN_CLAUSE = CONTROL[_FILTER]
+CONTROL[_FILTER] = _BASE[_FILTER] = _FILTER_IN_QUERY
+
+
+def in_clause(functor):
+    """The control function for a goal that stands in a clause."""
+    return _FILTER_IN_CLAUSE if functor is _FILTER and CONTROL[functor] is _FILTER_IN_QUERY else CONTROL[functor]

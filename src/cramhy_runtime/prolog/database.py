@@ -1,0 +1,188 @@
+"""The database: functors, their clauses, and the code that each compiles to.
+
+All clauses of a functor form one predicate, whatever their number of arguments; since goals with other numbers of arguments
+cannot unify, code is kept per functor and number of arguments, and made when a goal first needs it. A functor may have a
+*handler*, tried first: when it gives no solution the clauses are tried (prolog.md 5.1); or *native facts*, Python code that
+stands for the clauses of a built-in fact group and is followed by those that users add.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.conditions import warn
+from cramhy_runtime.lisp.data import Cons, list_from
+from cramhy_runtime.lisp.packages import is_symbol
+
+from .machine import FAIL, fail
+from .patterns import variable
+from .terms import deref, raw
+
+
+class Predicate:
+    """The code for goals with ``functor`` and ``arity`` arguments: ``call(machine, (call, continuation, *arguments))``."""
+
+    __slots__ = ("functor", "arity", "call")
+
+    def __init__(self, functor, arity):
+        self.functor, self.arity = functor, arity
+        self.call = self.compile_and_call
+
+    def compile_and_call(self, m, step):
+        """The first call: make the code, then call it. A change of the database brings this function back."""
+        entry = functors.get(self.functor)
+        self.call = entry.code(self.arity) if entry is not None and entry.defined else _undefined(self.functor)
+        return self.call(m, (self.call, *step[1:]))
+
+    def __repr__(self):
+        return f"<{self.functor!r}/{self.arity}>"
+
+
+class Clause:
+    """A fact or rule: Lisp data of the ``head`` and of the list of ``goals``, and the group that it belongs to."""
+
+    __slots__ = ("head", "goals", "group")
+
+    def __init__(self, head, goals, group):
+        self.head, self.goals, self.group = head, goals, group
+
+
+class Functor:
+    """What is known of a functor.
+
+    ``handler`` is a call function; ``native`` maps numbers of arguments (``None``: any) to call functions that stand for the
+    clauses of the built-in fact group ``native_group``; ``clauses`` are those of users, in order.
+    """
+
+    __slots__ = ("name", "handler", "native", "native_group", "clauses")
+
+    def __init__(self, name):
+        self.name = name
+        self.handler = self.native = self.native_group = None
+        self.clauses = []
+
+    @property
+    def defined(self):
+        return bool(self.clauses or self.handler or self.native)
+
+    def groups(self):
+        """The names of the fact groups with clauses of this functor, oldest first."""
+        found = {self.native_group: None} if self.native else {}
+        for clause in self.clauses:
+            found.setdefault(clause.group)
+        return list(found)
+
+    def code(self, arity):
+        """The call function for goals with ``arity`` arguments."""
+        from .compiler import compile_clauses
+
+        native = self.native and (self.native.get(arity) or self.native.get(None) or _failing)
+        predicate = find_predicate(self.name, arity)
+        from_clauses = compile_clauses(predicate, self.clauses) if self.clauses else None
+        if self.handler is not None:
+            return _with_fallback(self.handler, from_clauses) if from_clauses else self.handler
+        if native:
+            return _one_after_other(native, from_clauses) if from_clauses else native
+        return from_clauses
+
+
+functors: dict[object, Functor] = {}
+_predicates: dict[tuple, Predicate] = {}
+
+
+def find_predicate(functor, arity):
+    """The `Predicate` for a functor and a number of arguments; there is one whether it is defined or not."""
+    found = _predicates.get((functor, arity))
+    if found is None:
+        found = _predicates[functor, arity] = Predicate(functor, arity)
+    return found
+
+
+def functor_entry(name):
+    """The `Functor` of that name, made if need be."""
+    found = functors.get(name)
+    if found is None:
+        found = functors[name] = Functor(name)
+    return found
+
+
+def changed(name):
+    """Forget the compiled code of a functor. If its goals may be compiled into other predicates, forget all code."""
+    from . import control
+    from .compiler import INLINED
+
+    everything = name in INLINED or name in control.CONTROL
+    control.extend(name, functors.get(name))
+    for predicate in list(_predicates.values()):
+        if predicate.functor is name or everything:
+            predicate.call = predicate.compile_and_call
+
+
+def valid_functor(name):
+    """A functor is a symbol, but neither ``nil`` nor a variable."""
+    return name is not None and is_symbol(name) and not variable(name)
+
+
+def extended(name):
+    """Whether users have added clauses to a built-in."""
+    entry = functors.get(name)
+    return entry is not None and bool(entry.clauses)
+
+
+# ------------------------------------------------------------------------------------------------------------------- calling
+
+
+def arguments_of(goal):
+    """The argument terms of a goal; its end may be a variable that stands for a list."""
+    arguments, cell = [], deref(goal.cdr)
+    while cell.__class__ is Cons:
+        arguments.append(cell.car)
+        cell = deref(cell.cdr)
+    return arguments
+
+
+def warn_undefined(m, goal):
+    """The warning for a goal whose functor nobody has defined."""
+    warn("Trying to prove goal ~a with undefined functor ~s.", raw(goal, m.names), raw(goal.car, m.names))
+
+
+def _undefined(functor):
+    def call(m, step):
+        return undefined_step(m, Cons(functor, list_from(step[2:])))
+
+    return call
+
+
+def undefined_step(m, goal):
+    """Warn about the undefined functor of ``goal``, and fail."""
+    warn_undefined(m, goal)
+    return fail(m)
+
+
+def _failing(m, step):
+    return fail(m)
+
+
+def _one_after_other(first, second):
+    def call(m, step):
+        m.choices.append((len(m.trail), (second, *step[1:])))
+        return first(m, step)
+
+    return call
+
+
+def _with_fallback(handler, clauses):
+    """Try the clauses only when the handler gives no solution at all."""
+
+    def call(m, step):
+        height = len(m.choices)
+        m.choices.append((len(m.trail), (clauses, *step[1:])))
+        return handler(m, (handler, (_handled, step[1], height), *step[2:]))
+
+    return call
+
+
+def _handled(m, step):
+    choices, height = m.choices, step[2]
+    if height < len(choices):
+        choices[height] = (choices[height][0], FAIL)
+    return step[1]
+

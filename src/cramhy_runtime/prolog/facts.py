@@ -1,0 +1,81 @@
+"""Fact groups: named sets of clauses that are defined, redefined and removed together.
+
+``(def-fact-group name (extendable-predicate...) (<- head goal...)...)`` calls `define_fact_group`. Clauses of a predicate stand
+in the order of their groups, within a group as in the text; a redefined group moves to the end. A group may add clauses to a
+predicate of another group only if it lists it as extendable, so that a typing error does not extend something by accident.
+Source: prolog.md section 6.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn, type_error
+from cramhy_runtime.lisp.data import Cons, list_from, python_list
+
+from .database import Clause, changed, functor_entry, functors, valid_functor
+from .patterns import rename_vars
+
+_groups: dict = {}
+
+
+def define_fact_group(name, extendable, facts):
+    """Define the group ``name`` with ``facts``, a list of (head goal...); returns a list of (functor fact...).
+
+    Warns when the group exists and replaces it. Errors: an invalid functor, or one that another group has and ``extendable``
+    does not list; then nothing of the new group is stored, but the old one is gone.
+    """
+    if name in _groups:
+        style_warn("Redefining prolog fact-group ~a.", name)
+        remove_fact_group(name)
+    extendable = python_list(extendable) if extendable is None or isinstance(extendable, Cons) else list(extendable)
+    for functor in extendable:
+        if not valid_functor(functor):
+            return error(SimpleError("Extendible predicates in the definition of fact group ~a~%            "
+                                     "contained an invalid functor ~a.", name, functor))
+    clauses = {}
+    for fact in facts or ():
+        head = fact.car
+        if not isinstance(head, Cons):
+            return type_error(head, "LIST")
+        functor = head.car
+        if not valid_functor(functor):
+            return error(SimpleError("Functor ~a of fact head ~a is not valid.", functor, head))
+        others = functors[functor].groups() if functor in functors else None
+        if others and functor not in extendable:
+            return error(SimpleError("Functor ~a is being redefined in fact-group ~a.~%                "
+                                     "Other definitions were in fact-groups ~a.", functor, name, list_from(others)))
+        fact = rename_vars(fact, gensym_var_names=None)
+        clauses.setdefault(functor, []).append((fact, Clause(fact.car, python_list(fact.cdr) or None, name)))
+    _groups[name] = list(clauses)
+    for functor, new in clauses.items():
+        functor_entry(functor).clauses += [clause for _, clause in new]
+        changed(functor)
+    return list_from([Cons(functor, list_from([fact for fact, _ in new])) for functor, new in clauses.items()])
+
+
+def remove_fact_group(name):
+    """Remove all clauses of the group ``name``."""
+    for functor in _groups.pop(name, ()):
+        entry = functors.get(functor)
+        if entry is None:
+            continue
+        entry.clauses = [clause for clause in entry.clauses if clause.group is not name]
+        if entry.native_group is name:
+            entry.native = entry.native_group = None
+        changed(functor)
+
+
+def built_in_group(name, functor):
+    """Note that ``functor`` belongs to the built-in group ``name``."""
+    functors_of_group = _groups.setdefault(name, [])
+    if functor not in functors_of_group:
+        functors_of_group.append(functor)
+
+
+def fact_outside_group(*fact):
+    """What ``<-`` does outside of a fact group."""
+    return error("Facts cannot be declared outside fact-groups.")
+
+
+def fact_group_names():
+    """The names of all fact groups, oldest first."""
+    return list(_groups)

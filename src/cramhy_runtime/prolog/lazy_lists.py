@@ -1,0 +1,402 @@
+"""Lazy lists: ordinary cons lists whose rest is computed when somebody looks.
+
+The last cdr of a lazy list is a `LazyTail` instead of ``nil``. Looking at it (`lazy_cdr`, `force_ll`, unification) computes the
+next cells and puts them in its place, so all holders of the list share the work, and a completely forced list is an ordinary
+proper list. The first element is computed when the list is created, each further one when it is first asked for.
+
+Two laws beyond the original: a tail is computed once, even when the list was copied, because the tail remembers its value; and
+a second task that asks for a tail while a first one computes it waits for the first. Source: prolog.md section 4, cpl.md 13.1.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp.conditions import error
+from cramhy_runtime.lisp.data import Cons, Symbol, UNSUPPLIED, all_values, list_from, one, truth
+from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.packages import symbol_name
+
+_environment = Symbol("*LAZY-LIST-ENVIRONMENT*")
+_environment.value = None
+_environment.special = True
+
+
+class LazyTail:
+    """The rest of a lazy list, not yet computed. ``generator`` takes no arguments and returns the rest: a list or ``None``.
+
+    ``drain``, if given, returns all remaining elements at once, which is quicker for whoever wants the whole list.
+    """
+
+    __slots__ = ("generator", "drain", "value", "worker", "waiting")
+
+    def __init__(self, generator, drain=None):
+        self.generator = generator
+        self.drain = drain
+        self.worker = None
+        self.waiting = None
+
+    def force(self, completely=False):
+        """The rest of the list; computed at the first call, remembered afterwards. ``completely``: all of it, where possible."""
+        if self.generator is None:
+            return self.value
+        task = kernel.current()
+        while self.worker is not None:
+            if self.worker is task:
+                return error("A lazy list needs its own next element to compute that element.")
+            self.waiting = [*(self.waiting or ()), task]
+            kernel.park("the element of a lazy list that another task computes")
+        if self.generator is None:
+            return self.value
+        self.worker = task
+        try:
+            if completely and self.drain is not None:
+                rest = list_from(self.drain())
+            else:
+                rest = self.generator()
+                while isinstance(rest, LazyTail):
+                    rest = rest.force()
+            self.value, self.generator, self.drain = rest, None, None
+        finally:
+            self.worker = None
+            waiting, self.waiting = self.waiting, None
+            for other in waiting or ():
+                kernel.unpark(other)
+        return rest
+
+    def __repr__(self):
+        return "#<lazy tail>" if self.generator is not None else f"#<forced tail {self.value!r}>"
+
+
+def tail(generator, drain=None):
+    """A `LazyTail` for ``generator`` that runs in the lazy-list environment in force now."""
+    environment = _environment.value
+    if environment is None:
+        return LazyTail(generator, drain)
+
+    def in_environment():
+        with binding(_environment, environment):
+            with binding(*(item for symbol, thunk in environment for item in (symbol, one(thunk())))):
+                return generator()
+
+    return LazyTail(in_environment)
+
+
+def with_lazy_list_dynamic_environment(definitions, thunk):
+    """Call ``thunk``; lazy lists created inside compute each element with ``definitions`` bound anew.
+
+    ``definitions`` is a list of (symbol, thunk giving its value). Source: prolog.md section 4.
+    """
+    with binding(_environment, tuple(definitions)):
+        return thunk()
+
+
+def from_iterator(iterator):
+    """The lazy list of what a Python iterator gives, its first element computed now; ``None`` when there is none."""
+    step = iter(iterator).__next__
+
+    def rest():
+        try:
+            return Cons(step(), tail(rest))
+        except StopIteration:
+            return None
+
+    return rest()
+
+
+# ------------------------------------------------------------------------------------------------------------- the operator
+
+
+class _Leave(BaseException):
+    """Unwinds from ``cont``, ``next`` or ``finish`` to the step of its `lazy_list`."""
+
+    def __init__(self, token, kind, value, parameters):
+        self.token, self.kind, self.value, self.parameters = token, kind, value, parameters
+
+
+def lazy_list(initial, body):
+    """``cut:lazy-list``: the list whose elements ``body(cont, next_, finish, *parameters)`` gives, called once per element.
+
+    ``initial`` is a sequence with the parameters of the first call. In the body ``cont(value, *parameters)`` delivers an
+    element and names the parameters for the next one, ``next_(*parameters)`` calls the body again at once,
+    ``finish(value)`` delivers the last element; each leaves the body. What the body returns is the rest of the list.
+    """
+
+    def step(parameters):
+        while True:
+            token = object()
+
+            def leave(kind):
+                def leaving(value=None, *arguments):
+                    raise _Leave(token, kind, value, arguments)
+
+                return leaving
+
+            def again(*arguments):
+                raise _Leave(token, "next", None, arguments)
+
+            try:
+                return one(body(leave("cont"), again, leave("finish"), *parameters))
+            except _Leave as left:
+                if left.token is not token:
+                    raise
+                leaving = left
+            if leaving.kind == "finish":
+                return Cons(leaving.value, None)
+            if leaving.kind == "cont":
+                arguments = leaving.parameters
+                return Cons(leaving.value, tail(lambda: step(arguments)))
+            parameters = leaving.parameters
+            kernel.checkpoint()
+
+    return step(tuple(initial))
+
+
+# ---------------------------------------------------------------------------------------------------------------- functions
+
+
+def _callable(designator):
+    return designator.function if isinstance(designator, Symbol) else designator
+
+
+def lazy_car(ll):
+    """The first element; ``nil`` for ``nil``."""
+    return None if ll is None else ll.car
+
+
+def lazy_cdr(ll):
+    """The rest, computed if need be; ``nil`` for ``nil``."""
+    if ll is None:
+        return None
+    rest = ll.cdr
+    if isinstance(rest, LazyTail):
+        rest = ll.cdr = rest.force()
+    return rest
+
+
+def lazy_elt(ll, index):
+    """Element ``index``, counted from 0; ``nil`` past the end."""
+    for _ in range(index):
+        ll = lazy_cdr(ll)
+    return lazy_car(ll)
+
+
+def force_ll(ll):
+    """Compute the whole list; returns it, a proper list now."""
+    cell = ll
+    while isinstance(cell, Cons):
+        rest = cell.cdr
+        if isinstance(rest, LazyTail):
+            rest = cell.cdr = rest.force(True)
+        cell = rest
+    return ll
+
+
+def lazy_list_p(lc):
+    """True while ``lc`` is a cons list that still has an uncomputed tail."""
+    if not isinstance(lc, Cons):
+        return None
+    while isinstance(lc, Cons):
+        lc = lc.cdr
+        if isinstance(lc, LazyTail) and lc.generator is None:
+            lc = lc.value
+    return True if isinstance(lc, LazyTail) else None
+
+
+def elements(ll):
+    """A Python iterator over the elements, forcing as it goes."""
+    while isinstance(ll, Cons):
+        yield ll.car
+        ll = lazy_cdr(ll)
+
+
+def lazy_mapcar(fun, list_1, *more_lists):
+    """Lazy ``mapcar``; ends with the shortest list. One call of ``fun`` per element, the first one now."""
+    function = _callable(fun)
+
+    def step(lists):
+        if any(ll is None for ll in lists):
+            return None
+        return Cons(one(function(*(ll.car for ll in lists))), tail(lambda: step([lazy_cdr(ll) for ll in lists])))
+
+    return step([list_1, *more_lists])
+
+
+def lazy_mapcan(fun, list_1, *more_lists):
+    """The lazy concatenation of the lists that ``fun`` returns; empty ones are skipped."""
+    function = _callable(fun)
+
+    def step(lists):
+        while not any(ll is None for ll in lists):
+            heads = [ll.car for ll in lists]
+            part = one(function(*heads))
+            if part is not None and part is not False:
+                if not isinstance(part, Cons):
+                    return error("Applied fun ~a to ~a but result ~a is not a list~%", fun, heads[0], part)
+                rest = lists
+                return _followed_by(part, lambda: step([lazy_cdr(ll) for ll in rest]))
+            lists = [lazy_cdr(ll) for ll in lists]
+        return None
+
+    return step([list_1, *more_lists])
+
+
+def _followed_by(part, generate_rest):
+    """``part`` lazily copied, then what ``generate_rest`` returns."""
+
+    def rest():
+        more = lazy_cdr(part)
+        return generate_rest() if more is None else _followed_by(more, generate_rest)
+
+    return Cons(part.car, tail(rest))
+
+
+def lazy_filter(pred, ll):
+    """The elements for which ``pred`` is true; a true second value with it makes that element the last one."""
+    function = _callable(pred)
+
+    def step(cell):
+        while cell is not None:
+            result = all_values(function(cell.car))
+            if result and truth(result[0]):
+                if len(result) > 1 and truth(result[1]):
+                    return Cons(cell.car, None)
+                kept = cell
+                return Cons(cell.car, tail(lambda: step(lazy_cdr(kept))))
+            cell = lazy_cdr(cell)
+        return None
+
+    return step(ll)
+
+
+def lazy_fold(fun, sequence, *, initial_value=UNSUPPLIED):
+    """Left fold over the whole list; without ``initial_value`` it starts with the first element."""
+    function, result, cell = _callable(fun), initial_value, sequence
+    if result is UNSUPPLIED:
+        result, cell = lazy_car(cell), lazy_cdr(cell)
+    for element in elements(cell):
+        result = one(function(result, element))
+    return result
+
+
+def lazy_append(l_1=None, *further_lists):
+    """The lazy concatenation of lists; empty ones are skipped."""
+    lists = [l_1, *further_lists]
+    while lists and lists[0] is None:
+        lists = lists[1:]
+    if not lists:
+        return None
+    return _followed_by(lists[0], lambda: lazy_append(*lists[1:]))
+
+
+def lazy_take(n, ll):
+    """The first ``n`` elements, lazily; the source is computed only as far as it is read."""
+    if n <= 0 or ll is None:
+        return None
+    return Cons(ll.car, tail(lambda: lazy_take(n - 1, lazy_cdr(ll) if n > 1 else None)))
+
+
+def lazy_skip(n, ll):
+    """The list without its first ``n`` elements. (The original drops one element whatever ``n`` is.)"""
+    for _ in range(n):
+        ll = lazy_cdr(ll)
+    return ll
+
+
+def lazy_flatten(list_):
+    """The atoms of a nested list, lazily, without ``nil``."""
+
+    def step(stack):
+        while stack is not None:
+            cell, outer = stack
+            if cell is None:
+                stack = outer
+                continue
+            if isinstance(cell.car, Cons):
+                stack = (cell.car, (lazy_cdr(cell), outer))
+            elif cell.car is None:
+                stack = (lazy_cdr(cell), outer)
+            else:
+                return Cons(cell.car, tail(lambda: step((lazy_cdr(cell), outer))))
+        return None
+
+    return step((list_, None))
+
+
+def lazy_rests(list_):
+    """All tails of a list, the list itself first."""
+    return None if list_ is None else Cons(list_, tail(lambda: lazy_rests(lazy_cdr(list_))))
+
+
+def lazy_dolist(list_, function):
+    """Call ``function`` with each element in turn: the work of the macro ``lazy-dolist``."""
+    for element in elements(list_):
+        function(element)
+        kernel.checkpoint()
+
+
+def copy_lazy_list(src):
+    """A copy of the computed part that shares the tail."""
+    cars = []
+    while isinstance(src, Cons):
+        cars.append(src.car)
+        src = src.cdr
+    for car in reversed(cars):
+        src = Cons(car, src)
+    return src
+
+
+# ----------------------------------------------------------------------------------------------------------------- promises
+
+
+class Promise:
+    """What ``(delay expr)`` returns: computed by the first `force`, then remembered."""
+
+    __slots__ = ("thunk", "value")
+
+    def __init__(self, thunk):
+        self.thunk = thunk
+
+    def __repr__(self):
+        return "#<PROMISE>"
+
+
+def delay(thunk):
+    """A promise of what ``thunk`` returns: the work of the macro ``delay``."""
+    return Promise(thunk)
+
+
+def delay_p(obj):
+    return True if isinstance(obj, Promise) else None
+
+
+def force(obj):
+    """The value of a promise; any other object is returned as it is."""
+    if not isinstance(obj, Promise):
+        return obj
+    if obj.thunk is not None:
+        obj.value, obj.thunk = one(obj.thunk()), None
+    return obj.value
+
+
+# ----------------------------------------------------------------------------------------------------------------- printing
+
+
+def _print_tail(obj, stream):
+    from cramhy_runtime.lisp.printer import write
+
+    if obj.generator is None:
+        write(obj.value, stream)
+    else:
+        stream.write(f"#S(CRAM-UTILITIES::LAZY-CONS-ELEM :GENERATOR #<FUNCTION (LAMBDA () :IN LAZY-LIST) {{{id(obj):010X}}}>)")
+
+
+def install_printer():
+    """Tell the printer how an uncomputed tail looks."""
+    from cramhy_runtime.lisp.printer import define_printer
+
+    define_printer(LazyTail, _print_tail)
+
+
+def name_of(designator):
+    """The name of a function designator, for messages."""
+    return symbol_name(designator) if isinstance(designator, Symbol) else str(designator)

@@ -1,0 +1,146 @@
+"""Calling Lisp from a proof: ``lisp-fun``, ``lisp-pred`` and the comparisons.
+
+A variable among the arguments is replaced by its value, or passed as its symbol when it has none; everything else, lists with
+variables in them too, is passed as it is written. The first value is unified with the result; variables in returned data are
+the variables of the proof. An ``error`` in the call becomes a warning and the goal fails, unless ``*break-on-lisp-errors*``;
+plan failures and other conditions that are no errors go through. Source: prolog.md section 8.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.conditions import Error, StorageCondition, handler_bind, type_error, undefined_function, warn
+from cramhy_runtime.lisp.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, truth
+from cramhy_runtime.lisp.packages import Package, find_package, register, sym
+
+from .lazy_lists import force_ll
+from .patterns import CUT
+from .terms import TermTail, Var, import_term, raw, resolve, unify
+
+PROLOG = find_package("CRAM-PROLOG") or register(Package("CRAM-PROLOG", ["PROLOG"]))
+BREAK_ON_LISP_ERRORS = PROLOG.intern("*BREAK-ON-LISP-ERRORS*")
+BREAK_ON_LISP_ERRORS.value, BREAK_ON_LISP_ERRORS.special = None, True
+
+
+class _CallFailed(BaseException):
+    """Unwinds from the error in a called Lisp function to the goal that called it."""
+
+    def __init__(self, token, condition):
+        self.token, self.condition = token, condition
+
+
+def resolve_argument(m, term):
+    """What a Lisp function gets for a variable."""
+    kind = term.__class__
+    if kind is Symbol or kind is int or kind is str:
+        return term
+    return resolve(term, m.names)
+
+
+def raw_argument(m, term):
+    """What a Lisp function gets for a list that is written in the goal: the list as it is written."""
+    return raw(term, m.names)
+
+
+def argument(m, term):
+    """What a Lisp function gets for an argument term of a goal."""
+    return resolve(term, m.names) if term.__class__ is Var else raw(term, m.names) if term.__class__ is Cons else term
+
+
+def call_lisp(function, arguments, kind, written):
+    """(True, value) of a call, or (False, None) after the warning about the error in it.
+
+    ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it.
+    """
+    if truth(BREAK_ON_LISP_ERRORS.value):
+        return True, _apply(function, arguments)
+    token = object()
+
+    def leave(condition):
+        raise _CallFailed(token, condition)
+
+    try:
+        return True, handler_bind([(Error, leave)], lambda: _apply(function, arguments))
+    except _CallFailed as failed:
+        if failed.token is not token:
+            raise
+        problem = failed.condition
+    except RecursionError:
+        problem = StorageCondition("Control stack exhausted.")
+    warn(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
+    return False, None
+
+
+def _apply(function, arguments):
+    if function.__class__ is not Symbol and function.__class__ is not Keyword:
+        return type_error(function, "SYMBOL")
+    if function.package is not CUT:
+        arguments = [_whole(item) for item in arguments]
+    code = function.function
+    if code.__class__ is UndefinedFunction:
+        return undefined_function(function, tuple(arguments), {})
+    value = code(*arguments)
+    if value.__class__ is MultipleValues:
+        return value[0] if value else None
+    return value
+
+
+def _whole(item):
+    """A list that ``findall`` bound, completely computed: what plan code expects of a list."""
+    if item.__class__ is Cons:
+        cell = item
+        while cell.__class__ is Cons:
+            cell = cell.cdr
+        if cell.__class__ is TermTail:
+            force_ll(item)
+    return item
+
+
+def lisp_fun(m, function, arguments, result):
+    """Call ``function`` and unify its first value with ``result``. For compiled code: the arguments are prepared."""
+    done, value = call_lisp(function, arguments, "function", function)
+    if not done:
+        return False
+    kind = value.__class__
+    if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
+        value = import_term(value, m.names)
+    trail = m.trail
+    height = len(trail)
+    if unify(result, value, trail):
+        return True
+    while len(trail) > height:
+        trail.pop().ref = Var.ref
+    return False
+
+
+def lisp_pred(m, predicate, arguments):
+    """Whether ``predicate`` is true of the arguments. The predicate is taken as it is written, never a variable's value."""
+    done, value = call_lisp(predicate, arguments, "predicate", predicate)
+    return done and truth(value)
+
+
+_COMPARISONS = {sym("<"): int.__lt__, sym(">"): int.__gt__, sym("<="): int.__le__, sym(">="): int.__ge__}
+_FLOAT_COMPARISONS = {sym("<"): float.__lt__, sym(">"): float.__gt__, sym("<="): float.__le__, sym(">="): float.__ge__}
+
+
+def compare(m, operator, a, b):
+    """A comparison of two numbers; anything else goes through the Lisp function, which signals what is wrong."""
+    if a.__class__ is int and b.__class__ is int:
+        return _COMPARISONS[operator](a, b)
+    if isinstance(a, float) and isinstance(b, float):
+        return _FLOAT_COMPARISONS[operator](a, b)
+    return lisp_pred(m, operator, (a, b))
+
+
+def lisp_fun_goal(m, *terms):
+    """``(lisp-fun function argument... result)`` as a goal with argument terms."""
+    if not terms:
+        return False
+    function = resolve(terms[0], m.names)
+    return lisp_fun(m, function, [argument(m, term) for term in terms[1:-1]], terms[-1] if len(terms) > 1 else None)
+
+
+def lisp_pred_goal(m, predicate, *terms):
+    """``(lisp-pred predicate argument...)`` as a goal with argument terms."""
+    return lisp_pred(m, raw(predicate, m.names), [argument(m, term) for term in terms])
+
+

@@ -1,0 +1,155 @@
+"""Defining predicates in Python.
+
+Three ways, from simple to fast. Each is a decorator with the name of the functor, ``"PACKAGE::NAME"``:
+
+* ``@test(name)``: ``f(machine, *terms)`` succeeds once if it returns something true. It may set variables with
+  ``machine.unify(a, b, ...)``.
+* ``@predicate(name)``: ``f(machine, *terms)`` is a generator; each ``yield`` is a solution, made by ``machine.unify`` just
+  before it. On backtracking what was set is unset and the generator goes on.
+* ``@step_predicate(name)``: ``f(machine, step)`` with step ``(f, continuation, *terms)`` returns the next step; see ``machine.py``.
+
+The terms are as the goal has them: use `deref` to look at one, `resolve` for plain Lisp data. A handler is called with every
+number of arguments, and a wrong one is a program-error; clauses that users add act only when it gives no solution. With
+``group`` the function stands for facts of that built-in fact group instead: other numbers of arguments just fail, and the
+clauses of users follow.
+
+Handlers written in Lisp work on binding lists: `define_handler` adapts them.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.conditions import wrong_argument_count
+from cramhy_runtime.lisp.data import Cons, list_from, one
+from cramhy_runtime.lisp.packages import sym
+
+from .database import changed, functor_entry
+from .facts import built_in_group
+from .lazy_lists import elements as lazy_elements
+from .machine import fail, retry_iterator
+from .terms import Var, UNSET, deref, import_term, raw, resolve, unify
+
+__all__ = ["define_handler", "deref", "predicate", "resolve", "step_predicate", "test"]
+
+
+def _install(name, call, group, arity):
+    functor = sym(name) if isinstance(name, str) else name
+    entry = functor_entry(functor)
+    if group is None:
+        entry.handler = call
+    else:
+        entry.native_group = sym(group)
+        built_in_group(entry.native_group, functor)
+        entry.native = {**(entry.native or {}), arity: call}
+    changed(functor)
+
+
+def _arity(function, skip=1):
+    """(least, most) number of terms that ``function`` takes after ``skip`` others; most is ``None`` for any number."""
+    code = function.__code__
+    most = code.co_argcount - skip
+    return most - len(function.__defaults__ or ()), None if code.co_flags & 0x04 else most
+
+
+def _declare(name, function, wrap, group):
+    least, most = _arity(function)
+    call = wrap(function)
+    if group is not None:
+        for arity in [None] if most is None else range(least, most + 1):
+            _install(name, call, group, arity)
+        return
+
+    def checked(m, step):
+        given = len(step) - 2
+        if given < least or (most is not None and given > most):
+            return wrong_argument_count(given)
+        return call(m, step)
+
+    _install(name, checked, None, None)
+
+
+def test(name, group=None):
+    """Decorator: a predicate with at most one solution; see the head of this module."""
+
+    def wrap(function):
+        return lambda m, step: step[1] if function(m, *step[2:]) else fail(m)
+
+    def define(function):
+        _declare(name, function, wrap, group)
+        return function
+
+    return define
+
+
+def predicate(name, group=None):
+    """Decorator: a predicate whose solutions a generator gives; see the head of this module."""
+
+    def wrap(function):
+        return lambda m, step: retry_iterator(m, step[1], iter(function(m, *step[2:])))
+
+    def define(function):
+        _declare(name, function, wrap, group)
+        return function
+
+    return define
+
+
+def step_predicate(name, group=None, arity=None):
+    """Decorator: a predicate that works on steps itself; see the head of this module."""
+
+    def define(function):
+        _install(name, function, group, arity)
+        return function
+
+    return define
+
+
+# ------------------------------------------------------------------------------------------------- handlers written in Lisp
+
+
+def define_handler(name, function):
+    """``def-prolog-handler``: ``function(bindings, *arguments)`` gets a binding list and the arguments as they are written.
+
+    It returns a list, lazy or not, of binding lists, one per solution: what they say beyond the given bindings becomes set.
+    Redefinition replaces silently. Source: prolog.md section 11.
+    """
+
+    def solutions(m, terms):
+        written = [raw(term, m.names) for term in terms]
+        given = binding_list(m)
+        for bindings in lazy_elements(one(function(given, *written))):
+            if _adopt(m, bindings, given):
+                yield
+
+    def call(m, step):
+        return retry_iterator(m, step[1], solutions(m, step[2:]))
+
+    functor_entry(name).handler = call
+    changed(name)
+    return name
+
+
+def binding_list(m):
+    """An association list of the named variables of a proof that have values."""
+    pairs = []
+    for symbol, variable in list(m.names.items()):
+        if variable.__class__ is Var and variable.ref is not UNSET:
+            pairs.append(Cons(symbol, resolve(variable, m.names)))
+    return list_from(pairs)
+
+
+def _adopt(m, bindings, given):
+    """Set the variables that a binding list says have values; entries of ``given`` at its end are known already."""
+    cell, pairs = bindings, []
+    while isinstance(cell, Cons) and cell is not given:
+        pairs.append(cell.car)
+        cell = cell.cdr
+    height = len(m.trail)
+    for pair in reversed(pairs):
+        variable = import_term(pair.car, m.names)
+        if not unify(variable, import_term(pair.cdr, m.names), m.trail):
+            while len(m.trail) > height:
+                m.trail.pop().ref = UNSET
+            return False
+    return True
+
+

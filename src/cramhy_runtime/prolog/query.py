@@ -1,0 +1,173 @@
+"""Asking: ``prolog``, and the same for Python.
+
+From Lisp: `prolog` takes a goal, returns ``nil`` or a lazy list with one binding list per solution (prolog.md section 5). From Python:
+
+* ``solve(goal)`` iterates over dicts {variable symbol: value};
+* ``first(goal, variable)`` is the value in the first solution;
+* ``ask(functor, *arguments)`` asks one predicate with Python values as arguments and `Var` objects where values
+  are wanted, without building a goal: what designators use. It iterates over the values of the variables of each solution.
+
+Everything is computed on demand; a query that is dropped costs nothing more.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.conditions import type_error
+from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
+
+from . import control
+from .database import find_predicate
+from .lazy_lists import tail
+from .machine import Machine, SOLVED
+from .patterns import ANONYMOUS, entry, var_value, variables_of
+from .terms import UNSET, Var, import_term, resolve
+
+
+_PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
+
+
+class Hook:
+    """Functions to call at an event, newest first; the work of cut's ``define-hook`` for Python callers."""
+
+    def __init__(self, name):
+        self.name, self.functions = name, []
+
+    def __call__(self, *arguments):
+        return [function(*arguments) for function in self.functions]
+
+
+on_prepare_prolog_prove = Hook("ON-PREPARE-PROLOG-PROVE")
+"""Called with (query, binds) before a proof; the first result goes to `on_finish_prolog_prove`."""
+on_finish_prolog_prove = Hook("ON-FINISH-PROLOG-PROVE")
+"""Called with (log id, whether there is a solution)."""
+
+
+class Proof(Machine):
+    """The proof of a goal that is given as Lisp data."""
+
+    __slots__ = ("variables", "binds")
+
+    def __init__(self, goal, binds=None):
+        super().__init__(_Names(binds) if binds is not None else {})
+        self.binds = binds
+        term = import_term(goal, self.names)
+        self.variables = [(symbol, variable) for symbol, variable in self.names.items()
+                          if binds is None or entry(symbol, binds) is None][::-1]
+        self.prove((_start, SOLVED, term))
+
+    def bindings(self):
+        """The binding list of the solution."""
+        result = self.binds
+        for symbol, variable in self.variables:
+            value = variable.ref
+            if value is UNSET:
+                continue
+            if value.__class__ not in _PLAIN:
+                value = resolve(variable)
+                if value is symbol:
+                    continue
+            result = Cons(Cons(symbol, value), result)
+        return result
+
+    def remaining(self):
+        """The binding lists of all solutions to come, as a Python list."""
+        found = []
+        while self.next_solution():
+            found.append(self.bindings())
+        return found
+
+
+def _start(m, step):
+    return control.solve(m, step[2], step[1], 0)
+
+
+class _Names(dict):
+    """Symbol → `Var`, where a symbol that a binding list knows comes with its value."""
+
+    def __init__(self, binds):
+        super().__init__()
+        self.binds = binds
+
+    def get(self, symbol, default=None):
+        found = dict.get(self, symbol)
+        if found is None:
+            pair = entry(symbol, self.binds)
+            if pair is not None:
+                found = self[symbol] = Var()
+                found.name = symbol
+                if pair.cdr is not symbol:
+                    found.ref = import_term(pair.cdr, self)
+        return found
+
+
+def prolog(query, binds=None):
+    """``(prolog query &optional binds)``: a lazy list of the binding lists of all solutions, or ``nil``.
+
+    The search runs up to the first solution now, and further when the list is forced. A query that is no list is a type-error.
+    """
+    if query is not None and query.__class__ is not Cons:
+        return type_error(query, "LIST")
+    hooked = on_prepare_prolog_prove.functions or on_finish_prolog_prove.functions
+    log = (on_prepare_prolog_prove(query, binds) or [None])[0] if hooked else None
+    proof = Proof(query, binds)
+
+    def rest():
+        return Cons(proof.bindings(), tail(rest, proof.remaining)) if proof.next_solution() else None
+
+    solutions = rest()
+    if hooked:
+        on_finish_prolog_prove(log, True if solutions is not None else None)
+    return solutions
+
+
+def solve(goal):
+    """Iterate over the solutions of a goal (Lisp data) as dicts of its variables that have values."""
+    proof = Proof(goal)
+    while proof.next_solution():
+        yield {symbol: resolve(variable) for symbol, variable in reversed(proof.variables) if variable.ref is not UNSET}
+
+
+def first(goal, variable, default=None):
+    """The value of ``variable`` in the first solution of ``goal``; ``default`` without a solution."""
+    proof = Proof(goal)
+    if not proof.next_solution():
+        return default
+    return resolve(proof.names.get(variable, variable))
+
+
+def holds(goal):
+    """Whether ``goal`` has a solution, as a Python bool."""
+    return Proof(goal).next_solution()
+
+
+def ask(functor, *arguments):
+    """Iterate over the solutions of ``(functor . arguments)``.
+
+    Arguments are Lisp data without variables, taken as they are, and `Var` objects: each solution is a tuple with the values
+    of these, in order.
+    """
+    m = Machine()
+    wanted = [argument for argument in arguments if argument.__class__ is Var]
+    m.prove((find_predicate(functor, len(arguments)).call, SOLVED, *arguments))
+    while m.next_solution():
+        yield tuple([resolve(variable) for variable in wanted])
+
+
+def query_var(var, function, query, *args):
+    """The value of ``var`` in the first binding list that ``function`` (normally `prolog`) returns for ``query``."""
+    solutions = getattr(function, "function", function)(query, *args)
+    return None if solutions is None else var_value(var, solutions.car)
+
+
+def filter_bindings(form, bdgs, initial_bdgs=None):
+    """The bindings of the variables of ``form`` (and of ``initial_bdgs``) in ``bdgs``, in front of ``initial_bdgs``."""
+    symbols = [symbol for symbol in variables_of(form) if symbol is not ANONYMOUS]
+    symbols += [pair.car for pair in initial_bdgs or () if pair.car not in symbols]
+    result = initial_bdgs
+    for symbol in reversed(symbols):
+        value = var_value(symbol, bdgs)
+        if value is not symbol and entry(symbol, initial_bdgs) is None:
+            result = Cons(Cons(symbol, value), result)
+    return result
+
+

@@ -1,0 +1,98 @@
+"""The conditions of roslisp, and the way it reports its own errors.
+
+Two habits of roslisp are kept because programs rely on them: most errors are logged at level ERROR on the root topic before
+they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the complaint of the master, is no subclass of
+``error``, so a handler for errors does not see it (roslisp.md 7.1 and trap 6).
+"""
+
+from __future__ import annotations
+
+from ..lisp import conditions
+from ..lisp.condition_types import Condition, Error, SimpleError, shown
+
+
+class RosRpcError(Condition):
+    """The master refused a call. ``call`` is the text of the call, ``code``, ``message`` and ``result`` its answer."""
+
+    lisp_name = "ROSLISP::ROS-RPC-ERROR"
+
+    def __init__(self, call="", uri=None, code=-1, message="", result="", **slots):
+        super().__init__(**slots)
+        self.call, self.uri, self.code, self.message, self.result = call, uri, code, message, result
+
+    def report(self):
+        from ..lisp.printer import princ_to_string
+
+        return (f"ros-rpc call ({self.call}) to {princ_to_string(self.uri)} failed with code {self.code}, "
+                f"message {self.message}, values {self.result}")
+
+
+class ServiceError(SimpleError):
+    """Signalled by a service callback to refuse a request with a text of its own."""
+
+    lisp_name = "ROSLISP::SERVICE-ERROR"
+
+
+class ServiceCallError(Error):
+    """A call of a persistent service failed; ``message`` tells why."""
+
+    lisp_name = "ROSLISP::SERVICE-CALL-ERROR"
+    initargs = {"MESSAGE": "message"}
+    message = ""
+
+    def report(self):
+        return f"service-call-error: {self.message}"
+
+
+class NoApplicableMethod(Error):
+    """A function of messages was called with something else."""
+
+    lisp_name = "SB-PCL::NO-APPLICABLE-METHOD-ERROR"
+    lead = "There is no applicable method"
+
+    def __init__(self, function="", arguments=(), **slots):
+        super().__init__(**slots)
+        self.function, self.arguments = function, arguments
+
+    def report(self):
+        given = " ".join(shown(argument) for argument in self.arguments)
+        return f"{self.lead} for the generic function\n  {self.function}\nwhen called with arguments\n  ({given})."
+
+
+class NoPrimaryMethod(NoApplicableMethod):
+    lisp_name = "SB-PCL::NO-PRIMARY-METHOD-ERROR"
+    lead = "There is no primary method"
+
+
+def no_applicable_method(name, count, *arguments):
+    """Signal that the generic function ``name`` (as printed) with ``count`` methods has none for ``arguments``."""
+    return conditions.error(NoApplicableMethod(f"#<STANDARD-GENERIC-FUNCTION {name} ({count})>", arguments))
+
+
+class MissingSlot(Error):
+    """A message was asked for a field that it does not have."""
+
+    lisp_name = "SB-PCL::MISSING-SLOT"
+
+    def __init__(self, slot="", instance=None, **slots):
+        super().__init__(**slots)
+        self.slot, self.instance = slot, instance
+
+    def report(self):
+        return (f"When attempting to read the slot's value (slot-value), the slot {self.slot} is missing from the object "
+                f"{shown(self.instance)}.")
+
+
+def ros_error(text, topic=None):
+    """Log ``text`` at level ERROR on ``topic`` (``nil``: the root), then signal it as a simple error."""
+    from . import logging
+
+    logging.log_text(logging.ERROR, topic, text)
+    return conditions.error(SimpleError("~a", text))
+
+
+def rpc_error(call, code, message, result=""):
+    """Signal the master's refusal of ``call``, with the restart ``Ignore and continue``."""
+    from . import node
+
+    return conditions.cerror("Ignore and continue", RosRpcError(call, node.master_uri(), code, message, result))

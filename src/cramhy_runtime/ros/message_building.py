@@ -1,0 +1,214 @@
+"""Making, changing and taking apart messages, as roslisp's macros do it.
+
+A *field path* is a tuple of names read inside-out: ``("X", "LINEAR")`` is the field x of the field linear. The macros of
+``roslisp.hy`` turn their unevaluated field specs into such tuples and call the functions here. Specs are applied from the
+last to the first, so of two values for one field the first one counts (roslisp.md 5.3).
+"""
+
+from __future__ import annotations
+
+from ..lisp import conditions
+from ..lisp.condition_types import SimpleError
+from ..lisp.data import Cons, Symbol, list_from, python_list
+from ..lisp.packages import sym, symbol_name, symbol_package
+from . import messages
+from .errors import MissingSlot, no_applicable_method
+from .messages import RosMessage, lisp_attribute
+
+
+def make_message(designator, specs=()):
+    """A new message (``make-message``, ``make-msg``). ``specs``: a sequence of (field path, value)."""
+    message = messages.message_class(designator)()
+    return set_fields(message, specs, fresh=True) if specs else message
+
+
+def make_request(designator, specs=()):
+    """The request of the service ``designator`` (symbol, string, or `ServiceType`) with ``specs`` as for `make_message`."""
+    return set_fields(messages.service_type(designator).request(), specs, fresh=True)
+
+
+def make_response(service, *initargs):
+    """``roslisp:make-response``: a response object of the service, from keyword objects and values."""
+    return instance(messages.service_type(service).response, initargs)
+
+
+def instance(cls, initargs):
+    """``make-instance`` of a message class: keywords only, no paths."""
+    keywords = {}
+    for index in range(0, len(initargs) - 1, 2):
+        attribute = cls.attributes.get(symbol_name(initargs[index])) if isinstance(initargs[index], Symbol) else None
+        if attribute is None:
+            return _bad_initargs(cls, initargs)
+        keywords.setdefault(attribute, initargs[index + 1])
+    if len(initargs) % 2:
+        return _bad_initargs(cls, initargs)
+    return cls(**keywords)
+
+
+def _bad_initargs(cls, initargs):
+    from ..lisp.classes import make_instance
+
+    return make_instance(cls, *initargs)  # the error is the one that every class gives
+
+
+def modify_message_copy(message, specs):
+    """A new message that differs in ``specs``; parts that are not touched are the same objects."""
+    return set_fields(message.copy(), specs)
+
+
+def set_fields(message, specs, fresh=False):
+    """Set the fields of ``message``, which belongs to the caller, and return it.
+
+    Parts on the way of a path are copied first unless this call made them; with ``fresh`` all present ones are its own.
+    """
+    own = {id(message)}
+    if fresh:
+        own.update(id(getattr(message, name)) for name in message.field_names)
+    for path, value in reversed(specs):
+        target = message
+        for depth in range(len(path) - 1, 0, -1):
+            attribute = _attribute(target, path[depth], message)
+            part = getattr(target, attribute)
+            if id(part) not in own:
+                if not isinstance(part, RosMessage):
+                    return _no_field(path[depth - 1], part)
+                part = part.copy()
+                own.add(id(part))
+                setattr(target, attribute, part)
+            target = part
+        setattr(target, _attribute(target, path[0], message), value)
+        own.discard(id(value))
+    return message
+
+
+def _attribute(target, name, whole):
+    attribute = target.attributes.get(name) if isinstance(target, RosMessage) else None
+    if attribute is None:
+        attribute = lisp_attribute(type(target), name) if isinstance(target, RosMessage) else None
+        if attribute is None:
+            return _no_field(name, target)
+    return attribute
+
+
+def _no_field(name, target):
+    from ..lisp.printer import princ_to_string
+
+    dump = princ_to_string(_as_deep_list(target))
+    return conditions.error(SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}"))
+
+
+def _as_deep_list(value):
+    if not isinstance(value, RosMessage):
+        return value
+    return Cons(value.lisp_symbol, list_from([Cons(key, _as_deep_list(part)) for key, part in zip(value.keywords, value.values())]))
+
+
+def get_field(message, path):
+    """The value at ``path`` (``with-fields``). A field that is not there is SBCL's missing-slot error."""
+    for name in reversed(path):
+        attribute = message.attributes.get(name) if isinstance(message, RosMessage) else None
+        if attribute is None:
+            message = msg_slot_value(message, name)
+        else:
+            message = getattr(message, attribute)
+    return message
+
+
+def get_fields(message, paths):
+    """The values at several paths, as a list."""
+    return [get_field(message, path) for path in paths]
+
+
+def msg_slot_value(message, slot):
+    """``roslisp:msg-slot-value``: ``slot`` is a string in any case, a keyword or a symbol."""
+    attribute = lisp_attribute(type(message), slot) if isinstance(message, RosMessage) else None
+    if attribute is not None:
+        return getattr(message, attribute)
+    if isinstance(message, RosMessage):
+        home = message.lisp_symbol.package
+        if symbol_package(message.lisp_symbol) is None:
+            home = None
+    else:
+        home = symbol_package(sym("NULL"))
+    name = symbol_name(slot) if isinstance(slot, Symbol) or slot is None else str(slot)
+    return conditions.error(MissingSlot(f"{home.name + '::' if home else ''}{name.upper()}", message))
+
+
+# ----------------------------------------------------------------------------------------------------- list form, constants
+
+
+def ros_message_to_list(message):
+    """``(TURTLESIM-MSG:POSE (:X . 0.0) …)``; parts stay objects."""
+    return Cons(message.lisp_symbol, list_from([Cons(key, value) for key, value in zip(message.keywords, message.values())]))
+
+
+def list_to_ros_message(form):
+    """The message that `ros_message_to_list` gives ``form`` for; parts may be lists themselves."""
+    if not isinstance(form, Cons):
+        return form
+    cls = messages.message_class(form.car)
+    return set_fields(cls(), [((symbol_name(entry.car),), list_to_ros_message(entry.cdr)
+                               if isinstance(entry.cdr, Cons) and messages.named(entry.cdr.car) else entry.cdr)
+                              for entry in python_list(form.cdr)])
+
+
+def read_ros_message(stream):
+    """Read one list in list form from ``stream`` and make the message."""
+    return list_to_ros_message(sym("READ").function(stream))
+
+
+def _constants_class(designator):
+    if isinstance(designator, RosMessage):
+        return type(designator)
+    return messages.message_class(designator)
+
+
+def symbol_codes(designator):
+    """The constants of a message type as an association list."""
+    cls = _constants_class(designator)
+    return list_from([Cons(sym(":" + name.upper()), value) for name, value in cls.constants.items()])
+
+
+def symbol_code(designator, key):
+    """The value of the constant ``key``."""
+    cls = _constants_class(designator)
+    for name, value in cls.constants.items():
+        if name.upper() == symbol_name(key):
+            return value
+    return conditions.error(SimpleError("~a", f"Could not get symbol code for {symbol_name(key)} for ROS message type "
+                                              f"{_shown_type(designator)}"))
+
+
+def code_symbols(designator, code):
+    """The constants with the value ``code``, as (keyword . value) pairs."""
+    return list_from([pair for pair in symbol_codes(designator) or () if pair.cdr == code])
+
+
+def code_symbol(designator, code):
+    """The first constant with the value ``code``, as a keyword."""
+    found = code_symbols(designator, code)
+    if found is not None:
+        return found.car.car
+    return conditions.error(SimpleError("~a", f"Could not get code symbol for {code} in ROS message type {_shown_type(designator)}"))
+
+
+def _shown_type(designator):
+    return symbol_name(designator) if isinstance(designator, Symbol) else _constants_class(designator).lisp_symbol.name
+
+
+def ros_datatype(designator):
+    """``"turtlesim/Pose"`` for a class symbol, instance, or service symbol."""
+    if isinstance(designator, RosMessage):
+        return designator.ros_type
+    found = messages.named(designator) if isinstance(designator, Symbol) else messages.message_class(designator)
+    if found is None:
+        return no_applicable_method("ROSLISP-MSG-PROTOCOL:ROS-DATATYPE", 2, designator)
+    return found.ros_type if isinstance(found, type) else found.name
+
+
+def message_definition(designator):
+    """The text of the definition, one line per field or constant."""
+    found = messages.named(designator) if isinstance(designator, Symbol) else designator
+    if isinstance(found, messages.ServiceType):
+        return "\n".join([*found.request.definition.lines, "---", *found.response.definition.lines]) + "\n"
+    return "\n".join(_constants_class(designator).definition.lines) + "\n"

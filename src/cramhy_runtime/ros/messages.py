@@ -1,0 +1,321 @@
+"""Messages: one Python class per ROS type, with the slots of its ``.msg`` file.
+
+``message_class("turtlesim/Pose")`` is a class with slots ``x y theta linear_velocity angular_velocity``; the Lisp class
+``turtlesim-msg:Pose`` is the same object. Nothing is checked when a message is made: like roslisp, types are looked at when
+a message crosses the graph (``wire.py``). Messages are meant to be immutable; what arrives is always a fresh object.
+Source: roslisp.md 5.
+"""
+
+from __future__ import annotations
+
+from ..lisp import conditions
+from ..lisp.condition_types import CaseFailure, SimpleError
+from ..lisp.data import LispString, Symbol, UNSUPPLIED, lisp_list
+from ..lisp.packages import Package, find_package, intern, register, string_designator, sym
+from . import definition_text
+from .definition_text import PRIMITIVES
+
+
+class RosMessage:
+    """The root of all messages (``roslisp:ros-message``). Class attributes describe the type.
+
+    ros_type: ``"turtlesim/Pose"``. fields: `Field` objects in order. constants: name → value. attributes: upper-case Lisp
+    name → Python attribute. lisp_symbol: the symbol that names the class.
+    """
+
+    __slots__ = ()
+    lisp_name = "ROSLISP-MSG-PROTOCOL::ROS-MESSAGE"
+    ros_type = ""
+    fields = ()
+    field_names = ()
+    constants: dict = {}
+    attributes: dict = {}
+    initargs: dict = {}
+    keywords = ()
+    lisp_symbol = None
+    definition = None
+
+    def __repr__(self):
+        inside = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.field_names)
+        return f"{type(self).__name__}({inside})"
+
+    def copy(self):
+        """A shallow copy: the parts are shared."""
+        return type(self)(*[getattr(self, name) for name in self.field_names])
+
+    def values(self):
+        """The values of the fields, in order."""
+        return [getattr(self, name) for name in self.field_names]
+
+
+class ServiceType:
+    """A service: its request and response classes, and the Lisp symbol that names it (``turtlesim-srv:Spawn``)."""
+
+    __slots__ = ("name", "request", "response", "lisp_symbol")
+
+    def __init__(self, name, request, response, lisp_symbol):
+        self.name, self.request, self.response, self.lisp_symbol = name, request, response, lisp_symbol
+
+    def __repr__(self):
+        return f"<service type {self.name}>"
+
+
+_messages: dict[str, type] = {}
+_services: dict[str, ServiceType] = {}
+_by_symbol: dict[object, object] = {}
+_loaded: dict[str, tuple] = {}
+_listeners = []
+
+DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
+
+
+def load_package(package):
+    """Define all messages and services of the ROS package; returns their Python classes and `ServiceType` objects, or
+    ``None`` when there is no such package."""
+    if package not in _loaded:
+        messages = definition_text.definition_files(package, "msg")
+        services = definition_text.definition_files(package, "srv")
+        if not messages and not services:
+            return None
+        classes = _loaded[package] = ([], [])
+        for name, path in messages.items():
+            definition = definition_text.parse_message(path.read_text(), package, str(path))
+            classes[0].append(_define_message(package, name, definition, "MSG", f"{package}/{name}"))
+        for name, path in services.items():
+            parts = definition_text.parse_service(path.read_text(), package, str(path))
+            request, response = (_define_message(package, f"{name}-{half}", part, "SRV", f"{package}/{name}{half.title()}")
+                                 for half, part in zip(("request", "response"), parts))
+            symbol = intern(name.upper(), lisp_package(package, "SRV"))
+            service = _services[f"{package}/{name}"] = _by_symbol[symbol] = ServiceType(f"{package}/{name}", request, response, symbol)
+            classes[1].append(service)
+        for listener in _listeners:
+            listener(package, *classes)
+    return _loaded[package]
+
+
+def on_load(listener):
+    """Call ``listener(package, message classes, services)`` for every package loaded from now on, and those before."""
+    _listeners.append(listener)
+    for package, classes in list(_loaded.items()):
+        listener(package, *classes)
+
+
+class MessagePackage(Package):
+    """The Lisp package of a ROS package's messages or services. Its definitions are read when somebody looks into it."""
+
+    def __init__(self, ros_package, kind):
+        self.ros_package = ros_package
+        super().__init__(f"{ros_package.upper()}-{kind}")
+
+    @property
+    def external(self):
+        if self.ros_package not in _loaded:
+            load_package(self.ros_package)
+        return self._external
+
+    @external.setter
+    def external(self, table):
+        self._external = table
+
+
+def lisp_package(package, kind):
+    """The Lisp package ``TURTLESIM-MSG`` or ``TURTLESIM-SRV`` of a ROS package; made when it is not there."""
+    return find_package(f"{package.upper()}-{kind}") or register(MessagePackage(package, kind))
+
+
+def _define_message(package, name, definition, kind, ros_type):
+    fields = definition.fields
+    names = tuple(field.attribute for field in fields)
+    home = lisp_package(package, kind)
+    symbol = home.intern(name.upper())
+    attributes = {field.name.upper(): field.attribute for field in fields}
+    body = {"__slots__": names, "ros_type": ros_type, "fields": tuple(fields), "field_names": names,
+            "constants": definition.constants, "attributes": attributes, "initargs": attributes, "definition": definition,
+            "keywords": tuple(sym(":" + field.name.upper()) for field in fields), "lisp_symbol": symbol,
+            "lisp_name": f"{home.name}::{name.upper()}", "__module__": __name__, "__doc__": "\n".join(definition.lines)}
+    cls = type(name.replace("-request", "Request").replace("-response", "Response"), (RosMessage,), body)
+    cls.__init__ = _deferred_initializer(cls, fields)
+    if kind == "MSG":
+        _messages[ros_type] = cls
+    _by_symbol[symbol] = cls
+    _by_symbol[home.intern(f"<{name.upper()}>")] = cls
+    return cls
+
+
+def _deferred_initializer(cls, fields):
+    # Most types of a package are never used, and writing out their initializers is most of the work of loading it.
+    def __init__(self, *arguments, **keywords):
+        cls.__init__ = _initializer(cls, fields)
+        cls.__init__(self, *arguments, **keywords)
+
+    return __init__
+
+
+def _initializer(cls, fields):
+    """An ``__init__`` with one parameter per field, in the order of the definition; parts are made when they are needed."""
+    scope = {"_unsupplied": UNSUPPLIED, "_part": _part_class}
+    parameters, body = ["self"], []
+    for field in fields:
+        default = _default(field)
+        if default is None:
+            default = DEFAULTS.get(field.base, "0")
+            parameters.append(f"{field.attribute}={default}")
+            body.append(f"    self.{field.attribute} = {field.attribute}")
+        else:
+            parameters.append(f"{field.attribute}=_unsupplied")
+            body.append(f"    self.{field.attribute} = {default} if {field.attribute} is _unsupplied else {field.attribute}")
+    source = f"def __init__({', '.join(parameters)}):\n" + ("\n".join(body) or "    pass")
+    exec(source, scope)  # written out once per type, as dataclasses do: making messages is on the path of every command
+    initializer = scope["__init__"]
+    initializer.__qualname__ = f"{cls.__name__}.__init__"
+    return initializer
+
+
+def _part_class(ros_type):
+    return message_class_exact(ros_type) or conditions.error(SimpleError(
+        "~a", f"The message type {ros_type} is not known, but it is the type of a field. Is its package on ROS_PACKAGE_PATH?"))
+
+
+def _default(field):
+    """The text of an expression for a default that must be fresh in each message; ``None`` for a constant one."""
+    if field.is_array:
+        if field.length == 0:
+            return "[]"
+        element = DEFAULTS.get(field.base, "0") if field.primitive else f"_part({field.base!r})()"
+        return f"[{element}] * {field.length}"  # message elements are one shared instance, as in roslisp
+    return None if field.primitive else f"_part({field.base!r})()"
+
+
+# ------------------------------------------------------------------------------------------------------------ finding types
+
+
+def message_class_exact(ros_type):
+    """The class of ``"package/Name"``, or ``None``. No error, no folding of case."""
+    found = _messages.get(ros_type)
+    if found is None and "/" in ros_type:
+        load_package(ros_type.partition("/")[0])
+        found = _messages.get(ros_type)
+    return found
+
+
+def service_type_exact(ros_type):
+    """The `ServiceType` ``"package/Name"``, or ``None``."""
+    found = _services.get(ros_type)
+    if found is None and "/" in ros_type:
+        load_package(ros_type.partition("/")[0])
+        found = _services.get(ros_type)
+    return found
+
+
+def _folded(table, exact, ros_type):
+    package, _, name = ros_type.lower().partition("/")
+    found = exact(f"{package}/{name}")
+    if found is None:
+        for candidate, value in table.items():
+            if candidate.lower() == ros_type.lower():
+                return value
+    return found
+
+
+def named(symbol):
+    """The message class or `ServiceType` that ``symbol`` names, or ``None``."""
+    found = _by_symbol.get(symbol)
+    if found is None and isinstance(symbol, Symbol) and symbol.package is not None:
+        package, dash, kind = symbol.package.name.rpartition("-")
+        if kind in ("MSG", "SRV"):
+            load_package(package.lower())
+            found = _by_symbol.get(symbol)
+    return found
+
+
+def message_class(designator):
+    """The class for ``make-message``: a string ``"pkg/Name"`` in any case, a symbol, or the class itself."""
+    if isinstance(designator, type):
+        return designator
+    if isinstance(designator, (str, LispString)):
+        text = str(designator)
+        found = _messages.get(text)
+        return found if found is not None else _folded_or_error(text)
+    if isinstance(designator, Symbol):
+        found = named(designator)
+        if isinstance(found, type):
+            return found
+        from ..lisp.classes import find_class_or_error
+
+        return find_class_or_error(designator)
+    return conditions.error(CaseFailure(designator, "ETYPECASE", lisp_list(sym("STRING"), sym("SYMBOL"))))
+
+
+def _folded_or_error(text):
+    package, slash, name = text.partition("/")
+    if not slash or "/" in name:
+        parts = " ".join(f'"{part.upper()}"' for part in text.split("/"))
+        given = text.count("/") + 1
+        return conditions.error(SimpleError("~a", f"Error while parsing arguments to DESTRUCTURING-BIND:\n  too {'few' if given < 2 else 'many'} elements in\n"
+                                                  f"    ({parts})\n  to satisfy lambda list\n    (PKG-NAME TYPE):\n  exactly 2 expected, but got {given}"))
+    if load_package(package.lower()) is None:
+        return conditions.error(SimpleError("~a", f"Can't find package {package.upper()}-MSG"))
+    return _folded(_messages, message_class_exact, text) or conditions.error(SimpleError("~a", f"Can't find class for {text}"))
+
+
+def topic_class(designator):
+    """The class for ``advertise`` and ``subscribe``: here the case of a string counts (roslisp.md 6.1)."""
+    if isinstance(designator, type):
+        return designator
+    if not isinstance(designator, (str, LispString)):
+        return message_class(designator)
+    text = str(designator)
+    found = _messages.get(text)
+    if found is not None:
+        return found
+    package, slash, name = text.partition("/")
+    if not slash or "/" in name:
+        return conditions.error(SimpleError("~a", f'Too few or too many slashes in "{text}"'))
+    if load_package(package) is None:
+        return conditions.package_does_not_exist(f"{package.upper()}-MSG")
+    found = message_class_exact(text)
+    if found is None:
+        other = _folded(_messages, message_class_exact, text)
+        problem = (f"Case mismatch for message type {text}, did you mean {other.ros_type}?" if other is not None
+                   else f"No datatype {text} known")
+        return conditions.error(SimpleError("~a", problem))
+    return found
+
+
+def service_type(designator):
+    """The `ServiceType` of a symbol ``turtlesim-srv:Spawn``, a string in any case, or one itself."""
+    if isinstance(designator, ServiceType):
+        return designator
+    if isinstance(designator, (str, LispString)):
+        text = str(designator)
+        found = _services.get(text)
+        if found is not None:
+            return found
+        if "/" not in text:
+            return conditions.type_error(None, "STRING")
+        if load_package(text.partition("/")[0].lower()) is None:
+            return conditions.error(SimpleError("Service-package not found. Maybe it is not loaded?"))
+        found = _folded(_services, service_type_exact, text)
+        name = text.partition("/")[2].upper()
+        designator = found or intern(name, lisp_package(text.partition("/")[0].lower(), "SRV"))
+        if found is not None:
+            return found
+    found = named(designator)
+    if not isinstance(found, ServiceType):
+        from .errors import no_applicable_method
+
+        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERVICE-RESPONSE-TYPE", len(_services), designator)
+    return found
+
+
+def lisp_attribute(cls, name):
+    """The Python attribute of ``cls`` that the Lisp field name stands for (any case, ``-val`` dropped), or ``None``."""
+    name = string_designator(name) if not isinstance(name, LispString) else str(name)
+    found = cls.attributes.get(name)
+    if found is None:
+        upper = name.upper()
+        found = cls.attributes.get(upper)
+        if found is None and upper.endswith("-VAL"):
+            found = cls.attributes.get(upper[:-4])
+    return found
+

@@ -1,0 +1,115 @@
+"""Names: what ``foo``, ``/foo`` and ``~foo`` mean to a node, and what its command line changes about that.
+
+A *global* name begins with ``/``, a *private* one with ``~`` and lies below the node's own name, every other one is relative
+to the namespace. As in roslisp nothing is validated or cleaned here; `check_graph_name` is the validation that roscpp nodes
+such as turtlesim make. Source: roslisp.md 3, wiki.ros.org/Names.
+"""
+
+from __future__ import annotations
+
+import string
+
+_LETTERS = set(string.ascii_letters)
+_NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
+
+
+class Naming:
+    """The names of one node: its namespace (with both slashes), its own global name, remappings, private parameters."""
+
+    def __init__(self, base_name, namespace="/"):
+        self.base_name = base_name.strip("/")
+        self.namespace = as_namespace(namespace)
+        self.node_name = self.namespace + self.base_name
+        self.remappings = {}
+        self.private_parameters = []
+        self.log_file = None
+
+    def resolve(self, name):
+        """The global name that ``name`` means, after remapping."""
+        full = qualify(name, self.namespace, self.node_name)
+        return self.remappings.get(full, full) if self.remappings else full
+
+    def apply_arguments(self, arguments, read_value):
+        """Process command-line arguments in order; ``read_value`` reads the text of a private parameter.
+
+        A remapping is qualified with the names known when its turn comes (roslisp.md 3.3).
+        """
+        for argument in arguments:
+            left, assignment, right = argument.partition(":=")
+            if not assignment:
+                continue
+            if left == "__ns":
+                self.namespace = as_namespace(right)
+                self.node_name = self.namespace + self.base_name
+            elif left == "__name":
+                self.node_name = self.namespace + right.strip("/")
+            elif left == "__log":
+                self.log_file = right
+            elif left.startswith("_"):
+                self.private_parameters.insert(0, ("~" + left[1:], read_value(right), right))
+            else:
+                self.remappings[self._qualify(left)] = self._qualify(right)
+
+    def _qualify(self, name):
+        return qualify(name, self.namespace, self.node_name)
+
+
+def as_namespace(text):
+    """``text`` with a slash at both ends."""
+    text = (text or "").strip("/")
+    return f"/{text}/" if text else "/"
+
+
+def qualify(name, namespace, node_name):
+    """The global form of ``name``, without remapping. The empty name is an index error, as in roslisp."""
+    if not name:
+        from ..lisp import conditions
+
+        return conditions.error("Invalid index 0 for (SIMPLE-ARRAY CHARACTER (0)): the empty string is not a name in ROS.")
+    first = name[0]
+    if first == "/":
+        return name
+    if first == "~":
+        return f"{node_name or ''}/{name[1:]}"
+    return namespace + name
+
+
+def is_base_name(name):
+    """Whether ``name`` is a letter followed by letters, digits and underscores."""
+    return bool(name) and name[0] in _LETTERS and all(character in _NAME_CHARACTERS and character != "/" for character in name)
+
+
+def check_graph_name(name):
+    """The text of roscpp's complaint about an illegal name, or ``None`` when it is legal."""
+    if not name:
+        return None
+    if name[0] not in _LETTERS and name[0] not in "/~":
+        return (f"Character [{name[0]}] is not valid as the first character in Graph Resource Name [{name}].  Valid characters "
+                "are a-z, A-Z, / and in some cases ~.")
+    for index, character in enumerate(name[1:], 1):
+        if character not in _NAME_CHARACTERS:
+            return (f"Character [{character}] at element [{index}] is not valid in Graph Resource Name [{name}].  Valid characters "
+                    "are a-z, A-Z, 0-9, / and _.")
+    return None
+
+
+def split_arguments(arguments):
+    """Command-line arguments as a list: a list of strings is taken as it is, one string is split at white space."""
+    if arguments is None:
+        return []
+    if isinstance(arguments, str):
+        return arguments.split()
+    return [str(argument) for argument in arguments]
+
+
+def read_private_value(text):
+    """The value of ``_p:=text``: a number when it reads as one, else the raw text (roslisp.md 3.3)."""
+    for kind in (int, float):
+        try:
+            value = kind(text)
+        except ValueError:
+            continue
+        return value if text.strip().lower().lstrip("+-") not in ("nan", "inf", "infinity") else text
+    if len(text) > 1 and text[0] == text[-1] == '"':
+        return text[1:-1]
+    return text

@@ -1,0 +1,153 @@
+"""The turtles' world: where they are, how they move, what happens at the walls.
+
+One tick is 16 ms, whatever the clock says: the heading turns first, then the turtle moves along the new heading (semi-implicit
+Euler), then it is held inside the walls. Positions are doubles, y counts down from the top as on the screen; what enters and
+leaves through messages is rounded to 32 bits. π is the constant of the original, 3.14159265, which decides on which side an
+angle of half a turn lands. A command counts for one second. Source: turtlesim.md 2, 4, 5, 6.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+
+from .canvas import METRE, SIZE
+
+_single = struct.Struct("<f")
+_five_singles = struct.Struct("<5f")
+_cos, _sin, _floor, _sqrt = math.cos, math.sin, math.floor, math.sqrt
+
+
+def single(value):
+    """``value`` rounded to 32 bits."""
+    try:
+        return _single.unpack(_single.pack(value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+
+
+TICK = 0.016
+COMMAND_LIFETIME = 1.0
+PI = 3.14159265
+TWO_PI = 2.0 * PI
+EXTENT = single((SIZE - 1) / METRE)
+"""Width and height of the world in metres: 11.088889122009277."""
+CENTRE = single(EXTENT / 2)
+DEFAULT_PEN = (179, 184, 255)
+
+
+class Turtle:
+    """One turtle. x, y (down) in metres, heading in radians; ``warn(text)`` is called when it hits a wall."""
+
+    __slots__ = ("name", "number", "x", "y", "heading", "forward", "sideways", "turn", "commanded", "pen_on", "pen_colour", "pen_width", "teleports",
+                 "canvas", "warn", "at_rest", "_pose", "_segment")
+
+    def __init__(self, name, number, x, y, heading, canvas, warn):
+        self.name, self.number = name, number
+        self.x, self.y, self.heading = x, EXTENT - y, heading
+        self.forward = self.sideways = self.turn = 0.0
+        self.commanded = -math.inf
+        self.pen_on, self.pen_colour, self.pen_width = True, DEFAULT_PEN, 3
+        self.teleports = []
+        self.canvas, self.warn = canvas, warn
+        self.at_rest = False
+        self._pose = None
+        self._segment = None
+
+    def command(self, forward, sideways, turn, now):
+        """A velocity command received at the time ``now``; it replaces the one before."""
+        self.forward, self.sideways, self.turn, self.commanded = forward, sideways, turn, now
+        self.at_rest = False
+
+    def teleport_absolute(self, x, y, heading):
+        """To (x, y) in world coordinates, at the next update."""
+        self.teleports.append((x, y, heading, True))
+        self.at_rest = False
+
+    def teleport_relative(self, linear, angular):
+        """Turn by ``angular``, then move by ``linear``, at the next update."""
+        self.teleports.append((linear, 0.0, angular, False))
+        self.at_rest = False
+
+    def set_pen(self, red, green, blue, width, off):
+        """With ``off`` the rest of the request does not count (turtlesim.md 7.1)."""
+        self.pen_on = not off
+        if not off:
+            self.pen_colour, self.pen_width = (red, green, blue), width or 1
+
+    def update(self, now):
+        """One tick, up to the walls; the line of this move is drawn by `draw`, after the colour was sampled."""
+        if self.at_rest:
+            return
+        if self.teleports:
+            self._teleport()
+        if now - self.commanded > COMMAND_LIFETIME:
+            self.forward = self.sideways = self.turn = 0.0
+        forward, sideways = self.forward, self.sideways
+        old_x, old_y, old_heading = self.x, self.y, self.heading
+        heading = old_heading + self.turn * TICK
+        if not -PI <= heading < PI:  # in this range the wrap of the original does nothing
+            heading = _wrap(heading)
+        if forward or sideways:
+            try:
+                cosine, sine = _cos(heading), _sin(heading)
+            except ValueError:
+                cosine = sine = math.nan
+            x = old_x + (cosine * forward - sine * sideways) * TICK
+            y = old_y - (cosine * sideways + sine * forward) * TICK
+        else:
+            x, y = old_x, old_y
+        if x < 0.0 or x > EXTENT or y < 0.0 or y > EXTENT:
+            self.warn(f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={y:f}])")
+            x, y = min(max(x, 0.0), EXTENT), min(max(y, 0.0), EXTENT)
+        self.x, self.y, self.heading = x, y, heading
+        self._pose = None
+        if x != old_x or y != old_y:
+            self._segment = (old_x, old_y)
+        elif not forward and not sideways and not self.turn and heading == old_heading:
+            self.at_rest = True
+
+    def draw(self):
+        """The line of the last update."""
+        segment = self._segment
+        if segment is not None:
+            self._segment = None
+            if self.pen_on:
+                self._line(segment[0], segment[1], self.x, self.y)
+
+    def pose(self):
+        """(x, y up, heading, speed, turn) as they are published: rounded to 32 bits. The speed is never negative."""
+        if self._pose is None:
+            speed = _sqrt(self.forward * self.forward + self.sideways * self.sideways)
+            values = (self.x, EXTENT - self.y, self.heading, speed, self.turn)
+            try:
+                self._pose = _five_singles.unpack(_five_singles.pack(*values))
+            except OverflowError:
+                self._pose = tuple(single(value) for value in values)
+        return self._pose
+
+    def colour(self):
+        """The colour of the paper under the centre of the turtle."""
+        return self.canvas.pixel(self.x * METRE, self.y * METRE)
+
+    def _teleport(self):
+        teleports, self.teleports = self.teleports, []
+        for x, y, heading, absolute in teleports:
+            old_x, old_y = self.x, self.y
+            if absolute:
+                self.x, self.y, self.heading = x, max(0.0, EXTENT - y), heading
+            else:
+                self.heading += heading
+                self.x += _cos(self.heading) * x
+                self.y -= _sin(self.heading) * x
+            if self.pen_on:
+                self._line(old_x, old_y, self.x, self.y)
+
+    def _line(self, old_x, old_y, x, y):
+        self.canvas.line(x * METRE, y * METRE, old_x * METRE, old_y * METRE, self.pen_colour, self.pen_width)
+
+
+def _wrap(heading):
+    if heading - heading != 0.0:
+        return math.nan
+    return heading - TWO_PI * _floor((heading + PI) / TWO_PI)

@@ -1,0 +1,37 @@
+"""Kernels for the tests: every test runs on both back ends, in virtual time unless it says otherwise."""
+
+import pytest
+
+from cramhy_runtime import kernel
+
+
+@pytest.fixture(params=["threads", "greenlet"])
+def backend(request):
+    if request.param == "greenlet":
+        pytest.importorskip("greenlet")
+    return request.param
+
+
+@pytest.fixture
+def start(backend):
+    """Starts a kernel on the back end of this run; it is stopped after the test."""
+
+    def start(**options):
+        return kernel.start(backend=backend, **options)
+
+    yield start
+    kernel.stop()
+
+
+@pytest.fixture
+def k(start):
+    """A kernel in virtual time."""
+    return start()
+
+
+@pytest.fixture
+def reported(monkeypatch):
+    """What the hook `unhandled` was told: pairs of the task's name and the exception."""
+    told = []
+    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: told.append((task.name, exception)))
+    return told

@@ -1,0 +1,203 @@
+"""Stopping a kernel, and starting the next: nothing is left behind."""
+
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.backends import threads
+
+
+def test_stop_cancels_the_tasks_and_lets_them_clean_up(k):
+    log = []
+
+    def body():
+        try:
+            kernel.park("for ever")
+        finally:
+            kernel.sleep(0.5)
+            log.append("cleaned up")
+
+    task = kernel.spawn(body)
+    kernel.yield_()
+    kernel.stop()
+    assert log == ["cleaned up"]
+    assert task.dead
+    assert kernel.active() is None
+
+
+def test_start_stops_the_kernel_before(start):
+    start()
+    task = kernel.spawn(kernel.park, "for ever")
+    kernel.yield_()
+    start()
+    assert task.dead
+    assert kernel.now() == 0.0
+
+
+def test_cleanup_that_never_ends_is_abandoned(k):
+    log = []
+
+    def body():
+        try:
+            kernel.park("for ever")
+        finally:
+            try:
+                kernel.park("for ever, too")
+            finally:
+                log.append("left")
+
+    task = kernel.spawn(body)
+    kernel.yield_()
+    kernel.stop()
+    assert log == ["left"]
+    assert task.dead
+
+
+def test_cleanup_that_is_busy_for_ever_is_abandoned(k):
+    def body():
+        try:
+            kernel.park("for ever")
+        finally:
+            while True:
+                kernel.checkpoint()
+
+    task = kernel.spawn(body)
+    kernel.yield_()
+    kernel.stop()
+    assert task.dead
+
+
+def test_a_task_that_swallows_everything_does_not_hold_up_the_end(k):
+    def undead():
+        while True:
+            try:
+                kernel.park("nothing")
+            except BaseException:
+                pass
+
+    kernel.spawn(undead)
+    kernel.yield_()
+    kernel.stop()
+    assert kernel.active() is None
+
+
+def test_cleanup_that_spawns_without_end_does_not_hold_up_the_end(k):
+    def hydra():
+        try:
+            kernel.park("for ever")
+        finally:
+            kernel.spawn(hydra)
+
+    kernel.spawn(hydra)
+    kernel.yield_()
+    kernel.stop()
+    assert kernel.active() is None
+
+
+def test_a_blocking_call_that_does_not_return_is_left_behind(k, monkeypatch):
+    from cramhy_runtime.kernel import endings, scheduler
+
+    monkeypatch.setattr(scheduler, "PATIENCE", 0.01)
+    assert endings.PATIENCE > 0
+    released = threading.Event()
+    kernel.spawn(kernel.run_blocking, released.wait, 10)
+    kernel.settle()
+    kernel.stop()
+    assert kernel.active() is None
+    released.set()
+
+
+def test_only_the_main_task_can_stop(k):
+    task = kernel.spawn(kernel.stop)
+    task.join()
+    assert str(task.exception) == "Only the main task can stop the kernel, or start another one in its place."
+
+
+def test_stop_twice_is_stop_once(k):
+    k.stop()
+    k.stop()
+    kernel.stop()
+
+
+def test_requests_to_the_main_task_do_not_disturb_the_end(k):
+    log = []
+
+    def body():
+        try:
+            kernel.park("for ever")
+        finally:
+            log.append("cleaned up")
+
+    kernel.spawn(body)
+    kernel.yield_()
+    kernel.current().cancel()
+    kernel.stop()
+    assert log == ["cleaned up"]
+
+
+def test_hundreds_of_kernels_leave_no_threads_behind(start):
+    def round_():
+        start()
+        tasks = [kernel.spawn(kernel.park, "for ever") for _ in range(5)]
+        kernel.settle()
+        return tasks
+
+    for _ in range(10):
+        round_()
+    idle = len(threads._idle)
+    for _ in range(200):
+        round_()
+    assert len(threads._idle) <= idle + 5
+
+
+def test_a_finished_task_is_not_kept_alive_by_the_kernel(k):
+    import gc
+    import weakref
+
+    ref = weakref.ref(kernel.spawn(lambda: None))
+    kernel.settle()
+    gc.collect()
+    assert ref() is None
+
+
+@pytest.mark.parametrize("clock", ["virtual", "wall"])
+def test_a_script_that_just_ends_runs_the_cleanup_of_its_tasks(backend, clock):
+    script = f"""
+from cramhy_runtime import kernel
+kernel.start(backend={backend!r}, clock={clock!r})
+def body():
+    try:
+        kernel.park("for ever")
+    finally:
+        print("cleaned up")
+kernel.spawn(body)
+kernel.yield_()
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.stderr, done.returncode) == ("cleaned up\n", "", 0)
+
+
+def test_loading_the_kernel_does_not_load_greenlet():
+    script = "import sys; from cramhy_runtime import kernel; kernel.start(); print('greenlet' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "False\n"
+
+
+def test_without_greenlet_the_back_end_says_what_to_install():
+    script = """
+import sys
+sys.modules["greenlet"] = None
+from cramhy_runtime import kernel
+try:
+    kernel.start(backend="greenlet")
+except ImportError as missing:
+    print(missing)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert done.stdout == (
+        'The back end "greenlet" needs the package greenlet, which is not installed. '
+        'Install it (pip install "cramhy[fast]") or use the back end "threads".\n'
+    )
