@@ -9,7 +9,7 @@ class ToyOS:
     """An operating system whose clock moves when somebody waits for it, or works."""
 
     def __init__(self):
-        self.time = 1000.0
+        self.time = 1024.0
         self.waits = []
 
     def clock(self):
@@ -17,8 +17,7 @@ class ToyOS:
 
     def wait(self, bell, seconds):
         self.waits.append(seconds)
-        if seconds > 0:
-            self.time += min(seconds, 3600.0)
+        self.time += min(max(seconds, 1e-9), 3600.0)  # a wait takes some time, however short
 
     def work(self, seconds):
         self.time += seconds

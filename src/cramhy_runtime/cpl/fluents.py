@@ -19,8 +19,9 @@ from weakref import ref
 
 from cramhy_runtime import kernel
 
-from ..lisp.conditions import error
+from ..lisp.conditions import SimpleTypeError, error
 from ..lisp.data import DoubleFloat, Symbol, truth
+from ..lisp.generic import generic
 from .hooks import on_make_fluent_hook
 
 _count = itertools.count(1)
@@ -287,13 +288,8 @@ def peek_value(fluent):
     return fluent.peek() if isinstance(fluent, Fluent) else fluent
 
 
-def set_value(new, fluent):
-    """``(setf (value fluent) new)``: returns ``new``. Only value fluents can be set."""
-    if isinstance(fluent, ValueFluent):
-        return fluent.set(new)
-    from ..lisp.generic import no_applicable_method
-
-    return no_applicable_method("(COMMON-LISP:SETF CRAM-LANGUAGE-IMPLEMENTATION:VALUE)", (new, fluent))
+set_value = generic("(setf CPL-IMPL::VALUE)", "(new-value fluent)", documentation="Assign a value fluent; returns the value.")
+set_value.method(None, ValueFluent)(lambda new, fluent: fluent.set(new))
 
 
 def pulse(fluent):
@@ -355,11 +351,5 @@ def remove_update_callback(fluent, name):
 def check_fluent(fluent):
     """Signal the type error of an operator that takes a fluent only."""
     if not isinstance(fluent, Fluent):
-        from ..lisp.condition_types import SimpleTypeError, shown
-
-        error(SimpleTypeError(f"The value of FLUENT is {shown(fluent)}, which is not of type FLUENT.",
+        error(SimpleTypeError("The value of FLUENT is ~S, which is not of type FLUENT.", fluent,
                               datum=fluent, expected_type="FLUENT"))
-
-
-__all__ = ["Fluent", "ValueFluent", "Net", "CachedNet", "PulseFluent", "ChangeFluent", "value", "peek_value", "set_value", "pulse",
-           "make_fluent", "register_update_callback", "get_update_callback", "remove_update_callback"]

@@ -73,7 +73,7 @@ def define_faces():
                          ("*TASK-TREE*", tree.current_tree)):
         if not CPL_IMPL.present(name):
             task_variables.define_task_state(CPL_IMPL, name, getter)
-    hook_functions = {hook.name: hook for hook in vars(hooks).values() if isinstance(hook, hooks.Hook)}
+    hook_functions = {hook.name.name: hook.function for hook in vars(hooks).values() if isinstance(hook, hooks.Hook)}
     constants = {"+alive+": tasks.ALIVE, "+dead+": tasks.DEAD, "+done+": tasks.DONE}
     log_lists = {"+log-all+": logging.TAGS, "+log-default+": logging.DEFAULT, "+log-verbose+": logging.VERBOSE,
                  "+log-very-verbose+": logging.VERY_VERBOSE, "+log-language+": logging.LANGUAGE}
@@ -86,7 +86,6 @@ def define_faces():
                    **{name: tasks.status_list(statuses) for name, statuses in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
         export=MACROS_AND_MARKERS + " *current-task* *current-path* *task-tree*", internal=INTERNAL)
-    sym("CPL-IMPL::VALUE").setf_function = fluents.set_value
     not_reexported = {name.upper() for name in IMPLEMENTATION_ONLY.split()}
     shared = " ".join(name for name in CPL_IMPL.external if name not in not_reexported)
     define_face(

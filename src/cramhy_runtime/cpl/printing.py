@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..lisp.data import truth
-from ..lisp.printer import define_printer, pprint_logical_block, pprint_newline, prin1_to_string, princ_to_string, print_unreadable, write
+from ..lisp.pretty import logical_block, pprint_newline
+from ..lisp.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable, write
 from .fluents import Fluent, ValueFluent
 from .symbols import sym
 from .tasks import Task, ToplevelTask
@@ -14,14 +15,14 @@ VERBOSITY = sym("CPL-IMPL::*TASK-PPRINT-VERBOSITY*")
 
 def print_fluent(fluent, stream):
     """``#<FLUENT NAME>``, with the value in brackets for value fluents; a line is broken before the bracket."""
-    with pprint_logical_block(stream, "#<", ">"):
-        stream.write("FLUENT " + princ_to_string(fluent.name))
+    with logical_block(stream, "#<", ">") as out:
+        out.write("FLUENT " + princ_to_string(fluent.name))
         if isinstance(fluent, ValueFluent):
-            stream.write(" ")
-            pprint_newline("linear", stream)
-            stream.write("[")
-            write(fluent.stored, stream, True)
-            stream.write("]")
+            out.write(" ")
+            pprint_newline("linear", out)
+            out.write("[")
+            write(fluent.stored, out, True)
+            out.write("]")
 
 
 def print_task(task, stream):
@@ -30,12 +31,12 @@ def print_task(task, stream):
     verbosity = VERBOSITY.value
     if truth(verbosity) and isinstance(verbosity, int) and verbosity > 0:
         text += " " + prin1_to_string(task.status)
-    print_unreadable(task, stream, text, True)
+    print_unreadable(task, stream, text, identity=True)
 
 
 def print_node(node, stream):
     """``#<TASK-TREE-NODE :PATH path :CHILD-COUNT n {address}>``."""
-    print_unreadable(node, stream, f"TASK-TREE-NODE :PATH {prin1_to_string(node.path)} :CHILD-COUNT {len(node.children)}", True)
+    print_unreadable(node, stream, f"TASK-TREE-NODE :PATH {prin1_to_string(node.path)} :CHILD-COUNT {len(node.children)}", identity=True)
 
 
 define_printer(Fluent, print_fluent)

@@ -150,9 +150,7 @@ class Task:
         try:
             self.change_status(RUNNING)
             if self.constraints:
-                from .waiting import wait_for
-
-                wait_for(fl_and(*self.constraints))
+                self._await_constraints()
             result = self.body()
             if self.held:
                 from .suspension import obey
@@ -169,6 +167,23 @@ class Task:
         if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
         self._die(status, result)
+
+    def _await_constraints(self):
+        from .waiting import wait_for
+
+        wait_for(fl_and(*self.constraints))
+        # If a predecessor failed, that may end the form around us before our body begins. A failure climbs one level of the
+        # tree per turn, so it gets as many turns as the tree is deep.
+        for _ in range(len(self.ancestors())):
+            kernel.yield_()
+
+    def ancestors(self):
+        """Its parent, the parent of that, and so on up to the top-level."""
+        found, task = [], self.parent
+        while task is not None:
+            found.append(task)
+            task = task.parent
+        return found
 
     def _outcome(self, exception):
         """The status and result of a task that ``exception`` ended."""

@@ -15,7 +15,7 @@ from .tasks import DEAD, DONE, FAILED, end_tasks, pause
 def watch(tasks, watcher):
     """Start ``tasks`` and call ``watcher(running, done, failed)`` after each change, until it leaves by a non-local exit."""
     me = kernel.current()
-    changed = True
+    changed = False
 
     def note(_):
         nonlocal changed

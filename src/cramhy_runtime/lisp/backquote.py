@@ -9,16 +9,17 @@ Source: ANSI 2.4.6.
 
 from __future__ import annotations
 
-from .data import Cons, lisp_list, list_from
-from .packages import Package, find_package, intern, is_symbol, register, sym, symbol_name
-from .data import Keyword
+from .data import Cons, Keyword, lisp_list, list_from
+from .packages import Package, find_package, intern, is_symbol, register, sym
 
-if find_package("SB-INT") is None:
-    register(Package("SB-INT"))
+for _name in ("SB-INT", "CRAMHY"):
+    if find_package(_name) is None:
+        register(Package(_name))
 QUASIQUOTE = intern("QUASIQUOTE", "SB-INT")
+MAKE_COMMA, MAKE_COMMAS, LIST_VECTOR = [intern(name, "CRAMHY") for name in ("MAKE-COMMA", "MAKE-COMMAS", "LIST-VECTOR")]
 
 QUOTE, LIST, LIST_STAR, APPEND, NCONC = sym("QUOTE"), sym("LIST"), sym("LIST*"), sym("APPEND"), sym("NCONC")
-COERCE, VECTOR, CONS = sym("COERCE"), sym("VECTOR"), sym("CONS")
+CONS = sym("CONS")
 
 
 class Comma:
@@ -38,6 +39,19 @@ class Comma:
         return f"{self.kind}{self.form!r}"
 
 
+def make_commas(kind, forms):
+    """One comma per form of the list ``forms``: what ``,,@forms`` builds."""
+    return list_from([Comma(kind, form) for form in forms or ()])
+
+
+def list_vector(elements):
+    """A vector of the elements of a list: what a template ``#(...)`` builds."""
+    return list(elements or ())
+
+
+MAKE_COMMA.function, MAKE_COMMAS.function, LIST_VECTOR.function = Comma, make_commas, list_vector
+
+
 def expand(template):
     """The Lisp form that builds what ``template`` describes, at run time."""
     return _expand(template)
@@ -48,16 +62,23 @@ def expander(form, environment=None):
     return expand(form.cdr.car)
 
 
+QUASIQUOTE.macro = expander
+
+
 def _expand(template):
     if isinstance(template, Comma):
         return template.form
     if isinstance(template, Cons):
-        if template.car is QUASIQUOTE:
+        if _is_nested(template):
             return _expand_nested(template)
         return _expand_list(template)
     if isinstance(template, list) and any(map(_has_comma, template)):
-        return lisp_list(COERCE, _expand_list(list_from(template)), lisp_list(QUOTE, VECTOR))
+        return lisp_list(LIST_VECTOR, _expand_list(list_from(template)))
     return _constant(template)
+
+
+def _is_nested(template):
+    return template.car is QUASIQUOTE and isinstance(template.cdr, Cons)
 
 
 def _constant(template):
@@ -76,11 +97,13 @@ def _expand_list(template):
         return lisp_list(QUOTE, template)
     items, cell = [], template
     # A dotted tail may be a template of its own: (a . ,b) ends in a comma, (a . `b) in what looks like list elements.
-    while isinstance(cell, Cons) and (cell is template or cell.car is not QUASIQUOTE):
-        items.append(cell.car)
+    while isinstance(cell, Cons) and (cell is template or not _is_nested(cell)):
+        items.append(cell)
         cell = cell.cdr
-        if isinstance(cell, Cons) and not _has_comma(cell):
-            break
+    if cell is None or not _has_comma(cell):
+        while not _has_comma(items[-1].car):  # a constant end of the list is one quoted constant
+            cell = items.pop()
+    items = [item.car for item in items]
     result = None if cell is None else _expand(cell)
     run = []
     for item in reversed(items):
@@ -129,10 +152,10 @@ def _rebuild(template, depth):
     if isinstance(template, list):
         if not _has_outer_comma(template, depth):
             return template
-        return lisp_list(COERCE, _rebuild(list_from(template), depth), lisp_list(QUOTE, VECTOR))
+        return lisp_list(LIST_VECTOR, _rebuild(list_from(template), depth))
     if not isinstance(template, Cons) or not _has_outer_comma(template, depth):
         return _constant(template)
-    if template.car is QUASIQUOTE:
+    if _is_nested(template):
         return lisp_list(LIST, lisp_list(QUOTE, QUASIQUOTE), _rebuild(template.cdr.car, depth + 1))
     if isinstance(template.car, Comma):
         splice = _splice(template.car, depth)
@@ -153,34 +176,25 @@ def _splice(comma, depth):
     return None
 
 
-def make_commas(kind, forms):
-    """One comma per form of the list ``forms``: what ``,,@forms`` builds."""
-    return list_from([Comma(kind, form) for form in forms or ()])
-
-
-if find_package("CRAMHY") is None:
-    register(Package("CRAMHY"))
-MAKE_COMMA = intern("MAKE-COMMA", "CRAMHY")
-MAKE_COMMA.function = Comma
-MAKE_COMMAS = intern("MAKE-COMMAS", "CRAMHY")
-MAKE_COMMAS.function = make_commas
-
-
 def _has_comma(template):
     """Whether anything in ``template`` belongs to the backquote around it."""
     return _has_outer_comma(template, 0)
 
 
 def _has_outer_comma(template, depth):
-    pending = [(template, depth)]
+    pending, seen = [(template, depth)], set()
     while pending:
         item, level = pending.pop()
+        if isinstance(item, (Cons, list)):
+            if id(item) in seen:  # #1=(a . #1#)
+                continue
+            seen.add(id(item))
         if isinstance(item, Comma):
             if level == 0:
                 return True
             pending.append((item.form, level - 1))
         elif isinstance(item, Cons):
-            if item.car is QUASIQUOTE and isinstance(item.cdr, Cons):
+            if _is_nested(item):
                 pending.append((item.cdr.car, level + 1))
             else:
                 pending.append((item.car, level))
@@ -188,8 +202,3 @@ def _has_outer_comma(template, depth):
         elif isinstance(item, list):
             pending.extend((element, level) for element in item)
     return False
-
-
-def template_text(symbol):
-    """``symbol`` in messages about templates."""
-    return symbol_name(symbol)

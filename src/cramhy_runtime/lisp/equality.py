@@ -56,8 +56,8 @@ def eql(x, y):
         if x == y:
             return True if x or copysign(1.0, x) == copysign(1.0, y) else None
         return True if x != x and y != y else None
-    if cls is complex:
-        return True if x == y else None
+    if isinstance(x, complex):
+        return True if x == y and getattr(x, "double", None) == getattr(y, "double", None) else None
     return None
 
 
@@ -160,8 +160,8 @@ def eql_key(x):
         return (cls, float(x)) if x else (cls, 0.0, copysign(1.0, x))
     if cls is bool:
         return (True,) if x else None
-    if cls is complex:
-        return (complex, x)
+    if isinstance(x, complex):
+        return (cls, complex(x), getattr(x, "double", None))
     return (id(x), None)
 
 

@@ -120,8 +120,8 @@ def _pair(match, alist, by_car=True):
 
 def adjoin(item, lst, *, key=None, test=None, test_not=None):
     """``adjoin``: ``lst`` with ``item`` in front, unless it is there already."""
-    keyed = item if key is None else key_of(key)(item) if key_of(key) else item
-    if _member(match_of(keyed, key, test, test_not, _BOTH), lst) is not None:
+    of = key_of(key)
+    if _member(match_of(of(item) if of else item, key, test, test_not, _BOTH), lst) is not None:
         return lst
     return Cons(item, lst)
 
@@ -143,34 +143,35 @@ def _contains(items, key, compare):
 
 
 def union(first, second, *, key=None, test=None, test_not=None):
-    """``union``: the elements of both; those of ``first`` that are not in ``second`` stand in front."""
-    items, others = _set(first), _set(second)
-    if not items:
-        return second
-    if not others:
-        return first
+    """``union``: the elements of both. Those of the longer list that are not in the shorter stand in front of the shorter."""
+    items, others = items_of(first), items_of(second)
     key, compare = key_of(key), test_of(test, test_not, _BOTH)
-    present = _contains(others, key, compare)
     result = second
+    if len(items) < len(others):
+        items, others, result = others, items, first
+        compare = compare and _swapped(compare)
+    if not others:
+        return second if result is first else first
+    present = _contains(others, key, compare)
     for item in items:
         if not present(item):
             result = Cons(item, result)
     return result
 
 
-def _set(lst):
-    return items_of(lst)
+def _swapped(compare):
+    return lambda item, other: compare(other, item)
 
 
 def intersection(first, second, *, key=None, test=None, test_not=None):
     """``intersection``: the elements of ``first`` that are in ``second``."""
-    present = _contains(_set(second), key_of(key), test_of(test, test_not, _BOTH))
-    return _reversed(item for item in _set(first) if present(item))
+    present = _contains(items_of(second), key_of(key), test_of(test, test_not, _BOTH))
+    return _reversed(item for item in items_of(first) if present(item))
 
 
 def set_difference(first, second, *, key=None, test=None, test_not=None):
     """``set-difference``: the elements of ``first`` that are not in ``second``."""
-    items, others = _set(first), _set(second)
+    items, others = items_of(first), items_of(second)
     if not others:
         return first
     present = _contains(others, key_of(key), test_of(test, test_not, _BOTH))
@@ -179,18 +180,27 @@ def set_difference(first, second, *, key=None, test=None, test_not=None):
 
 def set_exclusive_or(first, second, *, key=None, test=None, test_not=None):
     """``set-exclusive-or``: the elements that are in one of the lists only."""
-    items, others = _set(first), _set(second)
+    return _reversed(_exclusive(first, second, key, test, test_not))
+
+
+def nset_exclusive_or(first, second, *, key=None, test=None, test_not=None):
+    """``nset-exclusive-or``: as `set_exclusive_or`; SBCL keeps the order here."""
+    return list_from(_exclusive(first, second, key, test, test_not))
+
+
+def _exclusive(first, second, key, test, test_not):
+    items, others = items_of(first), items_of(second)
     key, compare = key_of(key), test_of(test, test_not, _BOTH)
     in_second = _contains(others, key, compare)
-    swapped = compare and (lambda item, other: compare(other, item))
-    in_first = _contains(items, key, swapped)
-    return _reversed([item for item in items if not in_second(item)] + [item for item in others if not in_first(item)])
+    in_first = _contains(items, key, compare and _swapped(compare))
+    return [item for item in items if not in_second(item)] + [item for item in others if not in_first(item)]
 
 
 def subsetp(first, second, *, key=None, test=None, test_not=None):
     """``subsetp``: whether every element of ``first`` is in ``second``."""
-    present = _contains(_set(second), key_of(key), test_of(test, test_not, _BOTH))
-    return True if all(present(item) for item in _set(first)) else None
+    items = items_of(first)
+    present = _contains(items_of(second), key_of(key), test_of(test, test_not, _BOTH))
+    return True if all(present(item) for item in items) else None
 
 
 def _reversed(items):
@@ -200,7 +210,7 @@ def _reversed(items):
     return head
 
 
-nunion, nintersection, nset_difference, nset_exclusive_or = union, intersection, set_difference, set_exclusive_or
+nunion, nintersection, nset_difference = union, intersection, set_difference
 
 
 # -------------------------------------------------------------------------------------------------------------------- trees
@@ -402,14 +412,13 @@ def set_get(value, symbol, indicator, default=None):
 
 
 def remprop(symbol, indicator):
-    """``remprop``: remove a property; returns the tail of the old list there, or nil."""
+    """``remprop``: remove a property; returns what the list was from there on, or nil."""
     plist = symbol_plist(symbol)
     cell = property_cell(plist, indicator)
     if cell is None:
         return None
-    removed = list_from([cell.car, cell.cdr.car])
     set_symbol_plist(without_property(plist, indicator)[0], symbol)
-    return removed
+    return cell
 
 
 SETTERS = {"GET": set_get, "SYMBOL-PLIST": set_symbol_plist}

@@ -104,19 +104,20 @@ SETTERS = {}
 """Lisp name of a place → function (new value, *arguments) that stores there and returns the new value."""
 
 
-def _define_path(name, path, context=""):
+def _define_path(name, path):
     """Define the accessor ``name`` that follows ``path`` ("a" car, "d" cdr), last letter first, and its setter."""
     steps = ["car" if letter == "a" else "cdr" for letter in reversed(path)]
     *way, last_step = steps
 
-    def follow(thing, through):
+    def follow(lst, through):
+        thing = lst
         for step in through:
             if isinstance(thing, Cons):
                 thing = getattr(thing, step)
             elif thing is None or thing is False:
                 return None
             else:
-                not_a_list(thing, context)
+                not_a_list(thing, "\nwhen binding LIST" if thing is lst else "")
         return thing
 
     def accessor(lst):
@@ -125,7 +126,7 @@ def _define_path(name, path, context=""):
     def setter(value, lst):
         pair = follow(lst, way)
         if not isinstance(pair, Cons):
-            type_error(pair, "CONS", "\nwhen binding SB-IMPL::X")
+            type_error(pair, "CONS", "" if way else "\nwhen binding SB-IMPL::X")
         setattr(pair, last_step, value)
         return value
 
@@ -148,7 +149,10 @@ first, rest = car, cdr
 def cadr(lst):
     """``cadr``: the second element."""
     if isinstance(lst, Cons):
-        return car(lst.cdr) if lst.cdr.__class__ is not Cons else lst.cdr.car
+        rest_ = lst.cdr
+        if isinstance(rest_, Cons):
+            return rest_.car
+        return None if rest_ is None or rest_ is False else not_a_list(rest_)
     return car(lst)
 
 

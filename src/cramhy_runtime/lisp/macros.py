@@ -9,13 +9,14 @@ symbols in the macro file's package. So a macro is written once and serves ``.li
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from fractions import Fraction
 
 from .conditions import CompileError, Condition, error
 from .data import Character, Cons, Symbol, list_from
-from .packages import find_package_or_error, intern, is_symbol, keyword, sym, symbol_name
+from .packages import find_package_or_error, intern, is_symbol, keyword, sym
 
-FILES = ("cl", "support", "cut", "prolog", "cpl", "desig", "cpm", "roslisp", "lisp_unit")
+FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp")
 """The modules of ``hy_src/cramhy`` that define operators, in order."""
 
 _loaded = False
@@ -42,9 +43,15 @@ def macro_function(symbol, environment=None):
 
 
 def define_operator(package, name, function):
-    """Enter a macro written in Hy: ``function`` gets the forms of the call as Python arguments, returns models or forms."""
+    """Enter a macro written in Hy: ``function`` gets the forms of the call as Python arguments, returns models or forms.
+
+    package: the Lisp package in which unqualified symbols of the expansion are read, and that of the macro unless ``name`` says
+    ``package::name``.
+    """
     home = find_package_or_error(package)
-    symbol = home.intern(name.upper())
+    owner, _, short = name.upper().rpartition("::")
+    owner = find_package_or_error(owner) if owner else home
+    symbol = owner.intern(short)
 
     def expander(form, environment):
         try:
@@ -57,8 +64,8 @@ def define_operator(package, name, function):
 
     expander.hy_function = function
     symbol.macro = expander
-    if symbol_name(symbol) not in home.external:
-        home.export(symbol)
+    if short not in owner.external:
+        owner.export(symbol)
     return symbol
 
 

@@ -6,6 +6,7 @@ Every module of this room lists its Lisp names in ``LISP_NAMES`` and its setters
 from __future__ import annotations
 
 import importlib
+import importlib.util
 
 from . import cl_names, definitions, expansion_support, places, streams
 from .faces import define_face, lispify

@@ -1,580 +1,164 @@
-"""Which function pretty-prints which object: dispatch tables, and the standard way to lay out code.
+"""Which function pretty-prints which object: the tables of ``*print-pprint-dispatch*``.
 
-With ``*print-pretty*`` on, a list is printed by the function that the table of ``*print-pprint-dispatch*`` names for it: for
-``(let ...)`` one that knows ``let``, for a list that starts with the name of a function one that lines up its arguments, and
-for all other lists `pprint_fill`. Data looks like code to it, as in SBCL, whose layouts these are (``src/code/pprint.lisp``);
-it writes them as format controls, here they are functions, because they run often.
+An entry says: objects of this type are printed by that function, with this priority. The standard entries have the lowest
+priority and are kept apart in a form that is quick to look up: a dict from operator to layout, and rules for other lists and
+for arrays. Entries that a user adds with ``set-pprint-dispatch`` are tried by type, the highest priority first.
+Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
 """
 
 from __future__ import annotations
 
-from bisect import insort
+from . import pprint_code as code
+from .data import Cons, Symbol, UNBOUND, python_list
+from .packages import sym
+from .pretty import pprint_fill
+from .print_arrays import is_printed_array, pprint_array
 
-from .data import Cons, Symbol, UNBOUND, UndefinedFunction, python_list
-from .packages import COMMON_LISP, is_symbol, sym, symbol_name
-from .pretty import BlockExit, call_logical_block, pprint_fill, pprint_linear
-from .print_controls import PRINT_PRETTY, bound
-
-DECLARATION_QUOTES = Symbol("*PPRINT-QUOTE-WITH-SYNTACTIC-SUGAR*")
-DECLARATION_QUOTES.value = True
-
-
-def is_backquoted(obj):
-    """Whether ``obj`` is a backquoted form: ``(quasiquote x)``, which prints as ```x``."""
-    return isinstance(obj, Cons) and isinstance(obj.car, Symbol) and obj.car.name == "QUASIQUOTE" and _is_pair(obj)
-
-
-def _is_pair(lst):
-    return isinstance(lst.cdr, Cons) and lst.cdr.cdr is None
-
-
-def _output(obj, stream):
-    from .printer import output_object
-
-    output_object(obj, stream)
-
-
-# ----------------------------------------------------------------------------------------------------------------- layouts
-
-
-def _newline(out, kind):
-    if PRINT_PRETTY.value is not None:
-        out.newline(kind)
-
-
-def _indent(out, amount, relative_to="block"):
-    if PRINT_PRETTY.value is not None:
-        out.indent(relative_to, amount)
+_LAYOUTS = {
+    code.pprint_lambda: "lambda",
+    code.pprint_declare: "declare declaim",
+    code.pprint_block: "block catch return-from throw eval-when multiple-value-call multiple-value-prog1 unwind-protect defconstant "
+                       "defparameter defstruct defvar multiple-value-setq prog1 pprint-logical-block print-unreadable-object unless "
+                       "when with-compilation-unit with-simple-restart with-hash-table-iterator with-package-iterator "
+                       "with-input-from-string with-output-to-string with-open-file with-open-stream",
+    code.pprint_flet: "flet labels macrolet",
+    code.pprint_quote: "function quote",
+    code.pprint_if: "if",
+    code.pprint_let: "let let* symbol-macrolet",
+    code.pprint_progn: "locally progn step time with-standard-io-syntax",
+    code.pprint_prog2: "progv multiple-value-bind prog2",
+    code.pprint_setq: "setq psetq setf psetf",
+    code.pprint_tagbody: "tagbody",
+    code.pprint_case: "case ccase ecase",
+    code.pprint_typecase: "ctypecase etypecase typecase",
+    code.pprint_defun: "define-modify-macro define-setf-expander defmacro defsetf deftype defun",
+    code.pprint_defmethod: "defmethod",
+    code.pprint_defpackage: "defpackage",
+    code.pprint_destructuring_bind: "destructuring-bind",
+    code.pprint_do: "do do*",
+    code.pprint_dolist: "do-all-symbols do-external-symbols do-symbols dolist dotimes",
+    code.pprint_loop: "loop",
+    code.pprint_prog: "prog prog*",
+}
+_STANDARD = {sym(name.upper()): layout for layout, names in _LAYOUTS.items() for name in names.split()}
+LOWEST = -3.4028235e38
 
 
-def _each(out, block, kind):
-    """The rest of the block: a newline of ``kind`` and a space before each element."""
-    while not block.exhausted:
-        out.write(" ")
-        _newline(out, kind)
-        _output(block.pop(), out)
+class Entry:
+    """One line of a table. ``priority`` is a real."""
+
+    __slots__ = ("type", "priority", "function")
+
+    def __init__(self, type_, priority, function):
+        self.type, self.priority, self.function = type_, priority, function
 
 
-def _first(out, block):
-    """The head of a form. Leaves the block when nothing follows it."""
-    block.exit_if_exhausted()
-    _output(block.pop(), out)
-    block.exit_if_exhausted()
+class DispatchTable:
+    """A pprint dispatch table: ``operators`` by the head of a list, ``entries`` by type, the most important first."""
+
+    lisp_name = "SB-PRETTY::PPRINT-DISPATCH-TABLE"
+
+    def __init__(self, operators=None, entries=()):
+        self.operators = dict(operators or {})
+        self.entries = list(entries)
+
+    def copy(self):
+        return DispatchTable(self.operators, self.entries)
+
+    def find(self, obj):
+        """The function ``(stream, object)`` that prints ``obj`` prettily; ``None`` when nothing is said about it."""
+        chosen = None
+        if obj.__class__ is Cons:
+            head = obj.car
+            if isinstance(head, Symbol):
+                chosen = self.operators.get(head)
+        if self.entries:
+            for entry in self.entries:
+                if chosen is not None and entry.priority < chosen.priority:
+                    break
+                if _is_of_type(obj, entry.type):
+                    return entry.function
+        return chosen.function if chosen is not None else standard(obj)
 
 
-def _block(stream, lst, body):
-    call_logical_block(stream, lst, body, "(", ")")
+def standard(obj):
+    """The layout of an object that no table mentions."""
+    if obj.__class__ is Cons:
+        head = obj.car
+        if isinstance(head, Symbol):
+            if head.name == "QUASIQUOTE":
+                return code.pprint_quote
+            if code.is_operator(head):
+                return code.pprint_call_form
+        return pprint_fill
+    return pprint_array if is_printed_array(obj) else None
 
 
-def pprint_call(stream, form, *_):
-    """A function call: the arguments below each other, right of the name."""
-    _block(stream, form, _call)
+def _is_of_type(obj, specifier):
+    from .types import typep
+
+    return typep(obj, specifier) is not None
 
 
-def _call(out, block):
-    _first(out, block)
-    out.write(" ")
-    _newline(out, "fill")
-    _indent(out, 0, "current")
-    _output(block.pop(), out)
-    _each(out, block, "fill")
+INITIAL = DispatchTable({head: Entry(None, LOWEST, layout) for head, layout in _STANDARD.items()})
+PRINT_PPRINT_DISPATCH = sym("*PRINT-PPRINT-DISPATCH*")
+PRINT_PPRINT_DISPATCH.special = True
+if PRINT_PPRINT_DISPATCH.value is UNBOUND:
+    PRINT_PPRINT_DISPATCH.value = INITIAL.copy()
 
 
-def _spread_call(out, block):
-    _first(out, block)
-    out.write(" ")
-    _newline(out, "fill")
-    _indent(out, 0, "current")
-    _output(block.pop(), out)
-    _each(out, block, "mandatory")
+def _table(designator):
+    return INITIAL if designator is None else designator
 
 
-def pprint_call_form(stream, form, *_):
-    """A call of a function, or of a macro with a body, whose body is indented by two."""
-    position = _body_position(form.car)
-    if position is None:
-        pprint_call(stream, form)
-        return
-
-    def macro_call(out, block):
-        _first(out, block)
-        out.write(" ")
-        for index in range(position):
-            if index:
-                _indent(out, 3)
-                _newline(out, "mandatory")
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-        _indent(out, 1)
-        _newline(out, "mandatory")
-        while True:
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            _newline(out, "mandatory")
-
-    _block(stream, form, macro_call)
+def copy_pprint_dispatch(table=PRINT_PPRINT_DISPATCH):
+    """``copy-pprint-dispatch``: a copy of ``table``; of the initial one for nil."""
+    return _table(table.value if table is PRINT_PPRINT_DISPATCH else table).copy()
 
 
-_BODIES = {"DEFGENERIC": 2, "DEFINE-COMPILER-MACRO": 2, "DEFINE-CONDITION": 3, "DEFINE-METHOD-COMBINATION": 1, "HANDLER-BIND": 1,
-           "RESTART-BIND": 1, "RESTART-CASE": 1, "WITH-ACCESSORS": 2, "WITH-CONDITION-RESTARTS": 2, "WITH-SLOTS": 2}
-_OPERATORS = frozenset(
-    "AND ASSERT CALL-METHOD CHECK-TYPE COND DECF DEFCLASS DEFINE-SYMBOL-MACRO FORMATTER GO HANDLER-CASE IGNORE-ERRORS IN-PACKAGE "
-    "INCF LOAD-TIME-VALUE LOOP-FINISH MULTIPLE-VALUE-LIST NTH-VALUE OR POP PPRINT-EXIT-IF-LIST-EXHAUSTED PPRINT-POP PUSH PUSHNEW "
-    "REMF RETURN ROTATEF SHIFTF THE TRACE UNTRACE".split()) | frozenset(_BODIES)
+def pprint_dispatch(obj, table=PRINT_PPRINT_DISPATCH):
+    """``pprint-dispatch``: the function for ``obj``, and whether the table has one."""
+    from .data import MultipleValues
+    from .printer import output_ugly
+
+    found = _table(table.value if table is PRINT_PPRINT_DISPATCH else table).find(obj)
+    if found is None:
+        return MultipleValues((lambda stream, thing, *_: output_ugly(thing, stream), None))
+    return MultipleValues((found, True))
 
 
-def _body_position(symbol):
-    """How many arguments come before the &body of the macro ``symbol``; ``None`` when it is no such macro."""
-    if symbol.package is COMMON_LISP:
-        return _BODIES.get(symbol.name)
-    names = getattr(symbol.macro, "lambda_list", None)
-    if names is None:
+def set_pprint_dispatch(type_, function, priority=0, table=None):
+    """``set-pprint-dispatch``: print objects of ``type_`` with ``function`` (of stream and object); nil removes the entry."""
+    table = table or PRINT_PPRINT_DISPATCH.value
+    if isinstance(function, Symbol):
+        symbol = function
+
+        def function(stream, obj):  # looked up at each call, so a redefinition counts
+            return symbol.function(stream, obj)
+
+    heads = _heads(type_)
+    if heads is not None:
+        for head in heads:
+            if function is None:
+                table.operators.pop(head, None)
+            else:
+                table.operators[head] = Entry(type_, priority, function)
         return None
-    count = 0
-    for name in python_list(names):
-        spelled = symbol_name(name) if is_symbol(name) else ""
-        if spelled == "&BODY":
-            return count
-        count += spelled != "&OPTIONAL"
+    from .equality import equal
+
+    table.entries = [entry for entry in table.entries if not equal(entry.type, type_)]
+    if function is not None:
+        table.entries.append(Entry(type_, priority, function))
+        table.entries.sort(key=lambda entry: -entry.priority)
     return None
 
 
-def is_operator(symbol):
-    """Whether ``symbol`` names a function, macro or special operator, so that a list that starts with it looks like a call."""
-    if not isinstance(symbol.function, UndefinedFunction) or symbol.macro is not None:
-        return True
-    return symbol.package is COMMON_LISP and symbol.name in _OPERATORS
-
-
-def pprint_block(stream, form, *_):
-    """``(block name forms)``: one distinguished argument, then forms indented by two."""
-
-    def body(out, block):
-        _first(out, block)
-        _indent(out, 3)
-        out.write(" ")
-        _newline(out, "fill")
-        _output(block.pop(), out)
-        _indent(out, 1)
-        _each(out, block, "linear")
-
-    _block(stream, form, body)
-
-
-def pprint_lambda_list(stream, lambda_list, *_):
-    def body(out, block):
-        state, first = "required", True
-        while True:
-            block.exit_if_exhausted()
-            if not first:
-                out.write(" ")
-            argument = block.pop()
-            keyword = symbol_name(argument) if is_symbol(argument) else ""
-            if keyword in ("&OPTIONAL", "&AUX", "&REST", "&BODY", "&KEY"):
-                state = {"&KEY": "key", "&REST": "required", "&BODY": "required"}.get(keyword, "optional")
-                _newline(out, "linear")
-            else:
-                _newline(out, "fill")
-            _block(out, argument, _required_argument if state == "required" else _optional_argument(state == "key"))
-            first = False
-
-    _block(stream, lambda_list, body)
-
-
-def _required_argument(out, block):
-    block.exit_if_exhausted()
-    _output(block.pop(), out)
-    _each(out, block, "linear")
-
-
-def _optional_argument(key):
-    def body(out, block):
-        block.exit_if_exhausted()
-        if key:
-            _block(out, block.pop(), lambda inner, names: (names.exit_if_exhausted(), _output(names.pop(), inner),
-                                                           _each(inner, names, "fill")))
-        else:
-            _output(block.pop(), out)
-        _each(out, block, "linear")
-
-    return body
-
-
-def pprint_lambda(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        _indent(out, 3)
-        out.write(" ")
-        _newline(out, "fill")
-        pprint_lambda_list(out, block.pop())
-        _indent(out, 1)
-        _each(out, block, "linear")
-
-    _block(stream, form, body)
-
-
-def _local_function(out, block):
-    _first(out, block)
-    _indent(out, 3)
-    out.write(" ")
-    _newline(out, "fill")
-    pprint_lambda_list(out, block.pop())
-    _indent(out, 1)
-    _newline(out, "mandatory")
-    _rest_linear(out, block)
-
-
-def _rest_linear(out, block):
-    while not block.exhausted:
-        _output(block.pop(), out)
-        block.exit_if_exhausted()
-        out.write(" ")
-        _newline(out, "linear")
-
-
-def _bindings(element):
-    def body(out, block):
-        while not block.exhausted:
-            _block(out, block.pop(), element)
-            block.exit_if_exhausted()
-            out.write(" ")
-            _newline(out, "linear")
-
-    return body
-
-
-def _let_like(element):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _newline(out, "miser")
-        _block(out, block.pop(), _bindings(element))
-        _indent(out, 1)
-        block.exit_if_exhausted()
-        out.write(" ")
-        _newline(out, "mandatory")
-        _rest_linear(out, block)
-
-    return body
-
-
-def pprint_let(stream, form, *_):
-    _block(stream, form, _let_like(_one_binding))
-
-
-def _one_binding(out, block):
-    block.exit_if_exhausted()
-    _output(block.pop(), out)
-    _each(out, block, "linear")
-
-
-def pprint_flet(stream, form, *_):
-    rest = form.cdr
-    if isinstance(rest, Cons) and isinstance(rest.cdr, Cons) and rest.cdr.car is not sym(":IN"):
-        _block(stream, form, _let_like(_local_function))
-        return
-
-    def name(out, block):  # (flet foo :in bar), the name of a function
-        block.exit_if_exhausted()
-        while True:
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            out.write(" ")
-
-    _block(stream, form, name)
-
-
-def pprint_progn(stream, form, *_):
-    pprint_linear(stream, form)
-
-
-def pprint_prog2(stream, form, *_):
-    """``progv``, ``multiple-value-bind``, ``prog2``: two distinguished arguments, then forms."""
-
-    def body(kind):
-        def print_it(out, block):
-            _first(out, block)
-            _indent(out, 3)
-            out.write(" ")
-            _newline(out, kind)
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            out.write(" ")
-            _newline(out, "linear")
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            _indent(out, 1)
-            _each(out, block, "linear")
-
-        return print_it
-
-    _block(stream, form, body("linear" if form.car is sym("PROGV") else "fill"))
-
-
-def pprint_quote(stream, form, *_):
-    if _is_pair(form):
-        name = symbol_name(form.car)
-        if name == "QUASIQUOTE" or DECLARATION_QUOTES.value:
-            stream.write({"FUNCTION": "#'", "QUASIQUOTE": "`"}.get(name, "'"))
-            _output(form.cdr.car, stream)
-            return
-    pprint_fill(stream, form)
-
-
-def pprint_declare(stream, form, *_):
-    with bound(DECLARATION_QUOTES, None):
-        _block(stream, form, _spread_call)
-
-
-def pprint_setq(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        if not isinstance(form.cdr, Cons):
-            out.write(". ")
-        _newline(out, "miser")
-        call_logical_block(out, form.cdr, pairs)
-
-    def pairs(out, block):
-        while True:
-            _indent(out, 2)
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            out.write(" ")
-            _newline(out, "fill")
-            _indent(out, 0)
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            out.write(" ")
-            _newline(out, "mandatory")
-
-    _block(stream, form, body)
-
-
-def _tagbody_rest(out, block):
-    while True:
-        block.exit_if_exhausted()
-        out.write(" ")
-        form = block.pop()
-        _indent(out, 1 if isinstance(form, Cons) else 0)
-        _newline(out, "linear")
-        _output(form, out)
-
-
-def pprint_tagbody(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        _tagbody_rest(out, block)
-
-    _block(stream, form, body)
-
-
-def _clauses(print_clause):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _indent(out, 3)
-        _newline(out, "fill")
-        _output(block.pop(), out)
-        _indent(out, 1)
-        while not block.exhausted:
-            out.write(" ")
-            _newline(out, "linear")
-            _block(out, block.pop(), print_clause)
-
-    return body
-
-
-def _case_clause(out, block):
-    block.exit_if_exhausted()
-    pprint_fill(out, block.pop())
-    _each(out, block, "linear")
-
-
-def pprint_case(stream, form, *_):
-    _block(stream, form, _clauses(_case_clause))
-
-
-def pprint_typecase(stream, form, *_):
-    _block(stream, form, _clauses(_one_binding))
-
-
-def _definition(methods):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _newline(out, "miser")
-        _indent(out, 0, "current")
-        _output(block.pop(), out)
-        block.exit_if_exhausted()
-        out.write(" ")
-        if methods:
-            _output(block.pop(), out)
-            block.exit_if_exhausted()
-            out.write(" ")
-        _newline(out, "fill")
-        pprint_lambda_list(out, block.pop())
-        _indent(out, 1)
-        _each(out, block, "linear")
-
-    return body
-
-
-def pprint_defun(stream, form, *_):
-    _block(stream, form, _definition(False))
-
-
-def pprint_defmethod(stream, form, *_):
-    rest = form.cdr
-    plain = isinstance(rest, Cons) and isinstance(rest.cdr, Cons) and isinstance(rest.cdr.car, Cons)
-    _block(stream, form, _definition(not plain))
-
-
-def pprint_defpackage(stream, form, *_):
-    def option(out, block):
-        _first(out, block)
-        out.write(" ")
-        _indent(out, 0, "current")
-        _newline(out, "miser")
-        _rest_linear(out, block)
-
-    def body(out, block):
-        _output(block.pop(), out)
-        block.exit_if_exhausted()
-        out.write(" ")
-        _indent(out, 3)
-        _newline(out, "fill")
-        _output(block.pop(), out)
-        block.exit_if_exhausted()
-        _indent(out, 1)
-        while not block.exhausted:
-            _newline(out, "mandatory")
-            _block(out, block.pop(), option)
-
-    _block(stream, form, body)
-
-
-def pprint_destructuring_bind(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        _indent(out, 3)
-        out.write(" ")
-        _newline(out, "linear")
-        pprint_lambda_list(out, block.pop())
-        block.exit_if_exhausted()
-        out.write(" ")
-        _newline(out, "linear")
-        _output(block.pop(), out)
-        block.exit_if_exhausted()
-        _indent(out, 1)
-        _each(out, block, "linear")
-
-    _block(stream, form, body)
-
-
-def _stepped_binding(kind):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _newline(out, kind)
-        _indent(out, 0, "current")
-        _output(block.pop(), out)
-        _each(out, block, "linear")
-
-    return body
-
-
-def pprint_do(stream, form, *_):
-    def bindings(out, block):
-        while not block.exhausted:
-            _block(out, block.pop(), _stepped_binding("miser"))
-            block.exit_if_exhausted()
-            _newline(out, "mandatory")
-
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _indent(out, 0, "current")
-        _block(out, block.pop(), bindings)
-        block.exit_if_exhausted()
-        out.write(" ")
-        _newline(out, "linear")
-        pprint_linear(out, block.pop())
-        _tagbody_rest(out, block)
-
-    _block(stream, form, body)
-
-
-def pprint_dolist(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        _indent(out, 3)
-        out.write(" ")
-        _newline(out, "fill")
-        _block(out, block.pop(), _stepped_binding("fill"))
-        _tagbody_rest(out, block)
-
-    _block(stream, form, body)
-
-
-def pprint_prog(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _newline(out, "miser")
-        pprint_fill(out, block.pop())
-        _tagbody_rest(out, block)
-
-    _block(stream, form, body)
-
-
-_LOOP_WORDS = frozenset(
-    "AND WITH FOR INITIALLY FINALLY DO DOING COLLECT COLLECTING APPEND APPENDING NCONC NCONCING COUNT COUNTING SUM SUMMING "
-    "MAXIMIZE MAXIMIZING MINIMIZE MINIMIZING IF WHEN UNLESS END WHILE UNTIL REPEAT ALWAYS NEVER THEREIS".split())
-
-
-def pprint_loop(stream, form, *_):
-    if not isinstance(form.cdr, Cons) or isinstance(form.cdr.car, Cons):
-        _block(stream, form, _spread_call)
-        return
-
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _indent(out, 0, "current")
-        _output(block.pop(), out)
-        block.exit_if_exhausted()
-        out.write(" ")
-        while True:
-            item = block.pop()
-            if is_symbol(item) and symbol_name(item) in _LOOP_WORDS:
-                _newline(out, "mandatory")
-            _output(item, out)
-            block.exit_if_exhausted()
-            out.write(" ")
-
-    _block(stream, form, body)
-
-
-def pprint_if(stream, form, *_):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _indent(out, 0, "current")
-        _output(block.pop(), out)
-        _each(out, block, "mandatory")
-
-    _block(stream, form, body)
-
-
-def pprint_array(stream, array, *_):
-    from .printer import output_ugly
-    from .print_arrays import print_pretty_array
-
-    (output_ugly if _prints_tersely() else print_pretty_array)(array, stream)
-
-
-def _prints_tersely():
-    from .print_controls import PRINT_ARRAY, PRINT_READABLY
-
-    return PRINT_ARRAY.value is None and PRINT_READABLY.value is None
+def _heads(type_):
+    """The symbols for a type ``(cons (member ...))`` or ``(cons (eql x))``; ``None`` for other types."""
+    parts = python_list(type_) if isinstance(type_, Cons) else []
+    if len(parts) == 2 and parts[0] is sym("CONS") and isinstance(parts[1], Cons) and parts[1].car in (sym("MEMBER"), sym("EQL")):
+        return [head for head in parts[1].cdr if isinstance(head, Symbol)]
+    return None
+
+
+LISP_NAMES = "copy-pprint-dispatch pprint-dispatch set-pprint-dispatch"

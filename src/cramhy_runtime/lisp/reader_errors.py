@@ -94,7 +94,7 @@ def fail(reader, offset, text, *arguments, hint=None, kind=SimpleReaderError):
     """Signal a reader error at ``offset``."""
     if reader.quiet:
         raise QuietFailure(text)
-    return conditions.error(place(kind(text, *arguments, stream=reader), reader, offset, hint))
+    return conditions.error(place(kind(text, *arguments, stream=reader.stream), reader, offset, hint))
 
 
 def end_of_file(reader, opened, context=None):
@@ -123,9 +123,9 @@ def end_of_file(reader, opened, context=None):
         elif opener == "#|":
             hint = f"The comment #| at line {line}, column {column} has no |#."
     if context is None:
-        condition = EndOfFile(stream=reader)
+        condition = EndOfFile(stream=reader.stream)
     else:
-        condition = ReaderEndOfFile(stream=reader)
+        condition = ReaderEndOfFile(stream=reader.stream)
         condition.context = context
     return conditions.error(place(condition, reader, min(offset, len(reader.text)), hint))
 

@@ -217,5 +217,4 @@ def set_syntax_from_char(to_character, from_character, to_readtable=True, from_r
 
 LISP_NAMES = ("copy-readtable readtablep readtable-case set-macro-character get-macro-character make-dispatch-macro-character "
               "set-dispatch-macro-character get-dispatch-macro-character set-syntax-from-char")
-LISP_VARIABLES = "*readtable*"
-SETF_FUNCTIONS = {"readtable-case": set_readtable_case}
+SETTERS = {"READTABLE-CASE": set_readtable_case}

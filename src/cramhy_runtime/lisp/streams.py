@@ -456,7 +456,7 @@ def warning_line(condition):
     from .format import format_
 
     badness = "STYLE-WARNING" if isinstance(condition, StyleWarning) else "WARNING"
-    format_(ERROR_OUTPUT.value, "~&~@<~S: ~3i~:_~A~:>~%", sym(badness), condition)
+    format_(ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
     output_stream(ERROR_OUTPUT.value).flush()
 
 

@@ -18,7 +18,7 @@ from .packages import sym
 
 _DECIMAL = re.compile(r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
                       r"|([+-]?(?:[0-9]*\.[0-9]+|[0-9]+(?:\.[0-9]*)?(?=[a-zA-Z])))(?:([esfdlESFDL])([+-]?[0-9]+))?")
-_DIGITS = string.digits + string.ascii_lowercase
+DIGITS = string.digits + string.ascii_lowercase
 _rationals: dict = {}
 SINGLE_LIMIT = 3.4028235677973366e38
 """The smallest magnitude that rounds to no single-float."""
@@ -85,13 +85,21 @@ def rational(token, base):
     """The integer or ratio that ``token`` is in ``base``, or ``None``."""
     pattern = _rationals.get(base)
     if pattern is None:
-        digits = _DIGITS[:base] + _DIGITS[10:base].upper()
+        digits = DIGITS[:base] + DIGITS[10:base].upper()
         pattern = _rationals[base] = re.compile(f"([+-]?[{digits}]+)(?:/([{digits}]+))?")
     match = pattern.fullmatch(token)
     if match is None:
         return None
     whole = integer(match[1], base)
     return whole if match[2] is None else ratio(whole, integer(match[2], base))
+
+
+def looks_numeric(token):
+    """Whether ``token`` has the syntax of a number."""
+    try:
+        return number(token) is not None
+    except NumberError:
+        return True
 
 
 def _float(token, mantissa, marker, exponent):
@@ -186,7 +194,7 @@ WHITESPACE = " \t\n\r\f\v"
 
 
 def _digit(character, radix):
-    weight = unicodedata.digit(character, None) if not character.isascii() else _DIGITS.find(character.lower())
+    weight = unicodedata.digit(character, None) if not character.isascii() else DIGITS.find(character.lower())
     return weight is not None and 0 <= weight < radix
 
 

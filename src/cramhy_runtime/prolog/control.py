@@ -295,7 +295,7 @@ def _same(a, b):
     return same
 
 
-@_control("CRAM-PROLOG::EVERY", 2, 2)
+@_control("EVERY", 2, 2)
 def _every(m, k, b, generator, pattern):
     """Prove ``pattern`` for all solutions of ``generator`` together: its other variables have one value throughout."""
     goals = Instances(pattern, generator).remaining()

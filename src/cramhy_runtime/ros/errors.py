@@ -9,6 +9,10 @@ from __future__ import annotations
 
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, Error, SimpleError, shown
+from ..lisp.faces import define_face
+
+for _package in ("ROSLISP", "ROSLISP-UTILITIES"):
+    define_face(_package)  # their tables are in package.py; modules that only need some symbol find the packages here
 
 
 class RosRpcError(Condition):
@@ -83,12 +87,13 @@ class MissingSlot(Error):
                 f"{shown(self.instance)}.")
 
 
-def ros_error(text, topic=None):
-    """Log ``text`` at level ERROR on ``topic`` (``nil``: the root), then signal it as a simple error."""
+def ros_error(control, *arguments, topic=None):
+    """Log the format control at level ERROR on ``topic`` (``nil``: the root), then signal it as a simple error."""
     from . import logging
+    from ..lisp.format import format_to_string
 
-    logging.log_text(logging.ERROR, topic, text)
-    return conditions.error(SimpleError("~a", text))
+    logging.log_text(logging.ERROR, topic, format_to_string(control, *arguments))
+    return conditions.error(SimpleError(control, *arguments))
 
 
 def rpc_error(call, code, message, result=""):

@@ -32,7 +32,6 @@ class RosMessage:
     attributes: dict = {}
     initargs: dict = {}
     keywords = ()
-    lisp_symbol = None
     definition = None
 
     def __repr__(self):

@@ -247,7 +247,7 @@ def _open_log_file(naming):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         _log_file = open(path, "a", encoding="utf-8")
     except OSError as problem:
-        ros_error(f"Could not open the log file {path}: {problem.strerror}. Choose another one with __log:=FILE.")
+        ros_error("Could not open the log file ~a: ~a. Choose another one with __log:=FILE.", str(path), problem.strerror)
 
 
 def write_log_file(line):

@@ -136,7 +136,7 @@ def get_param(key, default=UNSUPPLIED):
             return default
     from .errors import ros_error
 
-    return ros_error(f"Param {name} does not exist, and no default supplied")
+    return ros_error("Param ~a does not exist, and no default supplied", name)
 
 
 def set_param(key, val):

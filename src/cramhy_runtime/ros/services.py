@@ -154,14 +154,14 @@ def shown(obj):
 def call(service, request):
     """Send ``request`` to the `Service` and wait; the response, or the client's error."""
     if request.ros_type != service.type.request.ros_type:
-        return ros_error(f"service-call to {service.node.address} with request {shown(request)} failed.")
+        return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
     answer = Call(service, wire.transmit(request), kernel.current())
     service.submit(answer)
     answer.wait()
     if answer.lost:
-        return ros_error(f"service-call to {service.node.address} with request {shown(request)} failed.")
+        return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
     if answer.failure is not None:
-        return ros_error(f"service-call to {service.node.address} with request {shown(request)} failed with message: {answer.failure}")
+        return ros_error("service-call to ~a with request ~a failed with message: ~a", service.node.address, request, answer.failure)
     return answer.response
 
 
@@ -252,7 +252,7 @@ def register_service_fn(service_name, function, service_type):
     name = here.resolve(str(service_name))
     existing = here.services.get(name)
     if existing is not None:
-        return ros_error(f"Cannot create service {name} as it already exists with info {shown(existing)}")
+        return ros_error("Cannot create service ~a as it already exists with info ~a", name, existing)
     if isinstance(function, Symbol):
         function = function.function
     service = LispService(here, name, kind, function)

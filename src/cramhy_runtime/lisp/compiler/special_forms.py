@@ -242,7 +242,7 @@ def _block(analyzer, form, env):
         analyzer.fail("A block must be named by a symbol, not ~S.", name)
     inner = env.child()
     block = Block(name, env.scope)
-    block.variable = Variable(name if isinstance(name, Symbol) else sym("BLOCK"), env.scope, env.scope.unique("Lblock"))
+    block.variable = Variable(name if isinstance(name, Symbol) else sym("BLOCK"), env.scope, env.scope.unique("Lb"))
     inner.blocks[name] = block
     body = analyzer.body(forms, inner)
     if not block.used:
@@ -265,7 +265,7 @@ def _return_from(analyzer, form, env):
 def _tagbody(analyzer, form, env):
     parts = _parts(analyzer, form, 0)
     tagbody = Tagbody(env.scope)
-    tagbody.variable = Variable(sym("TAGBODY"), env.scope, env.scope.unique("Ltagbody"))
+    tagbody.variable = Variable(sym("TAGBODY"), env.scope, env.scope.unique("Lb"))
     inner = env.child()
     segments, index = [[]], 0
     for item in parts:

@@ -1,0 +1,69 @@
+"The macros of CRAM-UTILITIES: lazy lists and pattern variables (cpl.md 13)."
+
+(require cramhy.operators [defoperator])
+(import cramhy.operators *)
+
+(setv package "CRAM-UTILITIES")
+
+(defn parameter-parts [parameters]
+  "(names, initial forms) of bindings as in `let`."
+  #((lfor parameter (elements parameters) (if (listp parameter) parameter.car parameter))
+    (lfor parameter (elements parameters) (if (and (listp parameter) (listp parameter.cdr)) parameter.cdr.car None))))
+
+(defoperator lazy-list [parameters #* body]
+  (setv #(names initial) (parameter-parts parameters))
+  (setv give (gensym "CONT") again (gensym "NEXT") end (gensym "FINISH") rest (gensym "ARGUMENTS"))
+  `(%lazy-list-of (list ~@initial)
+     (lambda [~give ~again ~end ~@names]
+       (flet [[cont [&rest ~rest] (apply ~give ~rest)]
+              [next [&rest ~rest] (apply ~again ~rest)]
+              [finish [&rest ~rest] (apply ~end ~rest)]]
+         ~@body))))
+
+(defoperator with-lazy-list-dynamic-environment [definitions #* body]
+  `(%lazy-environment (quote ~(list-from (lfor definition (elements definitions) definition.car)))
+                      (list ~@(lfor definition (elements definitions) `(lambda [] ~definition.cdr.car)))
+                      (lambda [] ~@body)))
+
+(defoperator lazy-dolist [spec #* body]
+  (setv #(variable items #* result) spec)
+  `(block nil (%lazy-dolist ~items (lambda [~variable] ~@body)) ~(if result (get result 0) None)))
+
+(defoperator delay [#* body]
+  `(%delay-thunk (lambda [] ~@body)))
+
+(defn binding-form [variables values body]
+  "Bind `variables` to the elements of the list that the form `values` gives."
+  (setv rest (gensym "VALUES"))
+  `(let* [[~rest ~values]
+          ~@(sum (lfor variable (elements variables) [[variable `(car ~rest)] [rest `(cdr ~rest)]]) [])]
+     ~@body))
+
+(defoperator with-vars-bound [variables bindings #* body]
+  (binding-form variables `(%values-of-variables (quote ~variables) ~bindings) body))
+
+(defoperator with-vars-strictly-bound [variables bindings #* body]
+  (binding-form variables `(%strict-values-of-variables (quote ~variables) ~bindings) body))
+
+(defn pattern-variables [pattern found]
+  (cond
+    (listp pattern) (do (pattern-variables pattern.car found) (pattern-variables pattern.cdr found))
+    (and (isinstance pattern LispSymbol) (.startswith pattern.name "?") (!= pattern.name "?_") (not-in pattern found))
+    (.append found pattern))
+  found)
+
+(defoperator with-pat-vars-bound [pattern sequence #* body]
+  (setv variables (list-from (pattern-variables pattern [])))
+  (binding-form variables `(%values-of-pattern (quote ~pattern) ~sequence (quote ~variables)) body))
+
+(defoperator assert-no-returning [#* forms]
+  `(%assert-no-returning (quote ~forms) (lambda [] ~@forms)))
+
+(defoperator assert-no-nlx [#* forms]
+  `(%assert-no-nlx (quote ~forms) (lambda [] ~@forms)))
+
+(defoperator "flet*" [functions #* body]
+  (setv form `(progn ~@body))
+  (for [function (reversed (elements functions))]
+    (setv form `(flet [~function] ~form)))
+  form)

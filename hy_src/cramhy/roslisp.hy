@@ -1,0 +1,151 @@
+"The macros of ROSLISP and ROSLISP-UTILITIES (roslisp.md).
+
+Topics of log lines and field paths are not evaluated, so they become constants here; what they mean stands in
+`cramhy_runtime.ros`."
+
+(require cramhy.operators [defoperator])
+(import cramhy.operators *)
+
+(setv package "ROSLISP")
+
+;; ------------------------------------------------------------------------------------------------------- 5: messages
+
+(defn fields-and-values [arguments]
+  "(list of the field specs, list of the value forms); a last spec without a value gets nil."
+  (setv arguments (if (% (len arguments) 2) [#* arguments None] (list arguments)))
+  #((list-from (cut arguments 0 None 2)) (cut arguments 1 None 2)))
+
+(defn build [function head arguments]
+  (setv #(paths values) (fields-and-values arguments))
+  `(~function ~head (quote ~paths) ~@values))
+
+(defoperator make-message [type #* arguments]
+  (build '%build-message type arguments))
+
+(defoperator make-msg [type #* arguments]
+  (build '%build-message type arguments))
+
+(defoperator make-request [type #* arguments]
+  (setv designator (if (and (isinstance type LispSymbol)) `(quote ~type) type))
+  (build '%build-request designator arguments))
+
+(defoperator make-publisher-msg [publication #* arguments]
+  (build '%build-publisher-message publication arguments))
+
+(defoperator publish-msg [publication #* arguments]
+  (setv variable (gensym "PUBLICATION"))
+  `(let [[~variable ~publication]]
+     (publish ~variable ~(build '%build-publisher-message variable arguments))))
+
+(defoperator modify-message-copy [message #* arguments]
+  (build '%changed-message message arguments))
+
+(defoperator setf-msg [place #* arguments]
+  `(setf ~place ~(build '%changed-message place arguments)))
+
+(defn field-binding [binding message]
+  (setv #(variable path) (if (listp binding) binding [binding binding]))
+  [variable `(%message-field ~message (quote ~path))])
+
+(defoperator with-fields [bindings message #* body]
+  (setv variable (gensym "MESSAGE"))
+  `(let* [[~variable ~message] ~@(lfor binding (elements bindings) (field-binding binding variable))]
+     ~@body))
+
+(defoperator store-message-in [place]
+  (setv message (gensym "MESSAGE"))
+  `(lambda [~message] (setf ~place ~message)))
+
+;; -------------------------------------------------------------------------------------------------------- 4: logging
+
+(defn log-form [level arguments]
+  "A log line: topic, perhaps a condition, format control, arguments. Arguments are evaluated only if it is printed."
+  (setv #(topic first #* rest) arguments)
+  (setv condition (if (isinstance first str) True first))
+  (setv #(control #* values) (if (isinstance first str) [first #* rest] rest))
+  (setv path (if (or (listp topic) (is topic None)) topic (lisp-list topic)))
+  `(if (and (%log-enabled ~level (quote ~path)) ~condition)
+       (%ros-log-line ~level (quote ~path) ~control ~@values)
+       nil))
+
+(defoperator ros-debug [#* arguments] (log-form 1 arguments))
+(defoperator ros-info [#* arguments] (log-form 2 arguments))
+(defoperator ros-warn [#* arguments] (log-form 4 arguments))
+(defoperator ros-error [#* arguments] (log-form 8 arguments))
+(defoperator ros-fatal [#* arguments] (log-form 16 arguments))
+
+(defoperator set-debug-levels [#* arguments]
+  (setv #(names levels) (fields-and-values arguments))
+  `(%set-debug-levels (quote ~names) ~@levels))
+
+;; ----------------------------------------------------------------------------------------------------------- 2: nodes
+
+(defoperator with-ros-node [options #* body]
+  (setv #(name #* keywords) options spin None rest [])
+  (for [#(key value) (zip (cut keywords 0 None 2) (cut keywords 1 None 2))]
+    (if (is key (sym ":SPIN")) (setv spin value) (.extend rest [key value])))
+  `(%with-ros-node (list ~name ~@rest) ~spin (lambda [] ~@body)))
+
+(defoperator def-ros-node [name parameters options #* body]
+  `(defun ~name []
+     (with-ros-node [~(.lower (symbol-name name)) ~@(elements options)]
+       (let [~@(lfor parameter (elements parameters) [parameter `(get-param ~(+ "~" (.lower (symbol-name parameter))))])]
+         ~@body))))
+
+;; -------------------------------------------------------------------------------------------------------- 7: services
+
+(defn name-and-service [designator]
+  (if (listp designator) (list designator) [designator designator]))
+
+(defoperator def-service-callback [service bindings #* body]
+  (setv #(name symbol) (name-and-service service) request (gensym "REQUEST") initargs (gensym "INITARGS"))
+  `(defun ~name [~request]
+     (flet [[make-response [&rest ~initargs] (apply (function %make-service-response) (quote ~symbol) ~initargs)]]
+       (with-fields ~bindings ~request ~@body))))
+
+(defoperator register-service [name type]
+  (setv symbol (if (and (listp type) (is type.car (sym "QUOTE"))) type.cdr.car type))
+  `(%register-service-of ~name (quote ~symbol)))
+
+(defoperator def-service-call [designator ros-name #* options]
+  (setv #(name symbol) (name-and-service designator) request (gensym "REQUEST"))
+  (setv field (if options (get options 1) None))
+  `(defun ~name [&rest ~request]
+     (%call-named-service ~ros-name (quote ~symbol) ~(if field `(quote ~field) None) ~request)))
+
+;; ------------------------------------------------------------------------------------------------------------ 9: time
+
+(defoperator "roslisp-utils::loop-at-most-every" [duration #* body]
+  `(block nil (%loop-at-most-every ~duration (lambda [] ~@body))))
+
+(defoperator "roslisp-utils::spin-until" [test increment #* body]
+  (setv #(step timeout) (if (listp increment) increment [increment None]))
+  `(block nil (%ros-spin-until (lambda [] ~test) ~step ~timeout (lambda [] ~@body))))
+
+(defoperator with-parallel-thread [spec #* body]
+  (setv #(function #* name) (if (listp spec) spec [spec]))
+  (setv symbol (if (isinstance function LispSymbol) `(quote ~function) function))
+  `(%with-parallel-thread ~symbol ~(if name (get name 0) None) (lambda [] ~@body)))
+
+;; ------------------------------------------------------------------------------------- 10: loading message packages
+
+(defn load-system-form [name suffix]
+  (setv system (+ (.lower (if (isinstance name str) name (symbol-name name))) suffix))
+  `(asdf::load-system ~system))
+
+(defoperator load-message-types [#* names]
+  `(progn ~@(lfor name names (load-system-form name "-msg"))))
+
+(defoperator load-service-types [#* names]
+  `(progn ~@(lfor name names (load-system-form name "-srv"))))
+
+(defoperator load-if-necessary [#* arguments]
+  `(error "load-if-necessary deprecated!"))
+
+;; --------------------------------------------------------------------------------------------- 11: roslisp-utilities
+
+(defoperator "roslisp-utilities::register-ros-init-function" [name [rank 0]]
+  `(%register-init-function (quote ~name) (quote ~rank)))
+
+(defoperator "roslisp-utilities::register-ros-cleanup-function" [name]
+  `(%register-cleanup-function (quote ~name)))

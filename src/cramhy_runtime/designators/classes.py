@@ -1,0 +1,256 @@
+"""Designators: descriptions of things that a plan talks about before it knows which thing it will be.
+
+A designator is a list of ``(key value)`` pairs, ``(a motion (type driving) (speed 5))``, that is *resolved* when its meaning is needed:
+a location to a pose, a motion to a command for a process module, an object to what perception saw. The list is kept as it was
+given: ordered, with repeated keys, neither copied nor checked. Source: designators.md sections 2, 3 and 5.
+
+Designators are equal by identity; that two describe the same thing is said by equating them, see ``equating.py``.
+"""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+
+from ..lisp.conditions import error, warn
+from ..lisp.condition_types import SimpleError, SimpleWarning
+from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
+from ..lisp.packages import keyword
+from .symbols import DESIG_PROPS
+
+A, ALL = keyword("A"), keyword("ALL")
+_object_ids = itertools.count(1)
+_live = weakref.WeakSet()
+_classes = {}  # type keyword -> class
+
+
+class DesignatorError(SimpleError):
+    """Something about a designator is wrong, mostly that it cannot be resolved.
+
+    ``hint`` is text for a student, why it could not be: ``None`` when there is nothing to say.
+    """
+
+    lisp_name = "CRAM-DESIGNATORS::DESIGNATOR-ERROR"
+    initargs = {**SimpleError.initargs, "DESIGNATOR": "designator"}
+    designator = None
+
+    def report(self):
+        return "DESIGNATOR-ERROR" if self.format_control is UNBOUND else super().report()
+
+    @property
+    def hint(self):
+        from .hints import hint
+
+        return hint(self.about) if self.about is not None else None
+
+    about = None  # the designator that could not be resolved; the slot DESIGNATOR stays as the original leaves it
+
+
+class Designator:
+    """The root of all designators; see the table of slots in designators.md 2."""
+
+    __slots__ = ("description", "parent", "successor", "effective", "timestamp", "data", "quantifier", "solutions",
+                 "current_solution", "_object_id", "callbacks", "resolver", "__weakref__", "__dict__")
+    lisp_name = "CRAM-DESIGNATORS::DESIGNATOR"
+    initargs = {"DESCRIPTION": "description", "PARENT": "parent"}
+
+    def __init__(self, description=None, parent=None):
+        self.description = description
+        self.parent = parent
+        self.successor = None
+        self.effective = None
+        self.timestamp = None
+        self.data = None
+        self.quantifier = A
+        self.solutions = UNBOUND
+        self.current_solution = None
+        self._object_id = None
+        self.callbacks = None
+        self.resolver = None  # the kernel task that resolves it now
+        _live.add(self)
+
+    @property
+    def object_id(self):
+        if self._object_id is None:
+            self._object_id = Symbol(f"OBJ-ID-{next(_object_ids)}")
+        return self._object_id
+
+    @object_id.setter
+    def object_id(self, new):
+        self._object_id = new
+
+    def __repr__(self):
+        return f"<{type(self).__name__} {self.description!r}>"
+
+
+class ObjectDesignator(Designator):
+    """An object in the world; perception sets its ``data``."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::OBJECT-DESIGNATOR"
+
+
+class ActionDesignator(Designator):
+    """Something to be done; resolved by Prolog to a plan function and its arguments."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::ACTION-DESIGNATOR"
+
+
+class MotionDesignator(Designator):
+    """A movement; resolved by Prolog to a command for a process module."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::MOTION-DESIGNATOR"
+
+
+class LocationDesignator(Designator):
+    """A place; resolved by generators and validators."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::LOCATION-DESIGNATOR"
+
+
+class HumanDesignator(Designator):
+    """A human; perception sets its ``data``."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::HUMAN-DESIGNATOR"
+
+
+class ObjectDesignatorData:
+    """What perception knows of an object: meant for the ``data`` of an object designator. Unset slots are unbound."""
+
+    lisp_name = "CRAM-DESIGNATORS::OBJECT-DESIGNATOR-DATA"
+    initargs = {"POSE": "pose", "COLOR": "color", "OBJECT-IDENTIFIER": "object_identifier"}
+
+    def __init__(self, pose=UNBOUND, color=UNBOUND, object_identifier=None):
+        self.pose, self.color = pose, color
+        self.object_identifier = object_identifier or Symbol(f"OBJECT-{next(_object_ids)}")
+
+
+def register_designator_class(type_, cls):
+    """Make `make_designator` accept the keyword ``type_``; a later registration replaces an earlier one."""
+    _classes[type_] = cls
+    return type_
+
+
+for _name, _class in (("OBJECT", ObjectDesignator), ("ACTION", ActionDesignator), ("MOTION", MotionDesignator),
+                      ("LOCATION", LocationDesignator), ("HUMAN", HumanDesignator)):
+    register_designator_class(keyword(_name), _class)
+
+
+def type_keyword(designator):
+    """The keyword of its exact class, or ``None`` if that is not registered."""
+    cls = designator.__class__
+    for type_, registered in _classes.items():
+        if registered is cls:
+            return type_
+    return None
+
+
+def make_designator(class_, description=None, parent=None):
+    """A new designator of the class that the keyword ``class_`` stands for; equated to ``parent`` if there is one."""
+    cls = _classes.get(class_)
+    if cls is None:
+        if isinstance(class_, type):
+            cls = class_
+        else:
+            return error("Designator type `~a' undefined", class_)
+    designator = cls(description)
+    if parent is not None:
+        from .equating import equate
+
+        equate(parent, designator)
+    return designator
+
+
+def make_all_designator(class_, description=None):
+    """What the macro ``all`` makes: a designator with the quantifier ``:all``."""
+    designator = make_designator(class_, description)
+    designator.quantifier = ALL
+    return designator
+
+
+def get_all_designators():
+    """All living designators, in no useful order."""
+    return list_from(list(_live))
+
+
+def living():
+    return list(_live)
+
+
+# ------------------------------------------------------------------------------------------------------- derived designators
+
+
+def merge_desig_descriptions(designator, new_description):
+    """``new_description`` with the old pairs whose keys it lacks in front, reversed, one per key (designators.md 3.3)."""
+    merged = new_description
+    for pair in designator.description or ():
+        if not any(other.car is pair.car for other in merged or ()):
+            merged = Cons(pair, merged)
+    return merged
+
+
+def copy_designator(old, *, new_description=None):
+    """A new, unequated designator of the same type with the merged description."""
+    return make_designator(type_keyword(old), merge_desig_descriptions(old, new_description))
+
+
+def extend_designator_properties(designator, extension):
+    """A new, unequated designator of the same class, ``extension`` appended to the description."""
+    return designator.__class__(list_from(list(designator.description or ()), extension))
+
+
+def update_designator_properties(new_properties, old_properties):
+    """``old_properties`` with each new one in front, in place of all of its key."""
+    result = list(old_properties or ())
+    for pair in new_properties or ():
+        result = [pair, *(old for old in result if old.car is not pair.car)]
+    return list_from(result)
+
+
+def make_effective_designator(parent, *, new_properties=None, data_object=None, timestamp=None):
+    """A new, unequated designator of the class of ``parent`` that is effective and stands for ``data_object``."""
+    from ..prolog.utilities import current_timestamp
+
+    designator = parent.__class__(new_properties if new_properties is not None else parent.description)
+    designator.data = data_object
+    designator.effective = True
+    designator.timestamp = current_timestamp() if timestamp is None else timestamp
+    return designator
+
+
+# ---------------------------------------------------------------------------------------------------------------- properties
+
+
+def check_key(key):
+    """Warn of a property name that is an ordinary symbol: keys are keywords."""
+    if isinstance(key, Keyword) or not isinstance(key, Symbol) or key.package is None or key.package is DESIG_PROPS:
+        return
+    warn(SimpleWarning("Designator property ~s has not been declared properly. This may cause problems. To fix it, use the macro "
+                       "DEF-DESIG-PACKAGE and declare the symbol as a designator property.", key))
+
+
+def desig_prop_value(designator, key):
+    """The value of the first pair with ``key``; nil if there is none, or no designator."""
+    check_key(key)
+    if designator is not None:
+        for pair in designator.description or ():
+            if pair.car is key:
+                return pair.cdr.car if pair.cdr is not None else None
+    return None
+
+
+def desig_prop_values(designator, key):
+    """The values of all pairs with ``key``, in order."""
+    check_key(key)
+    return list_from([pair.cdr.car if pair.cdr is not None else None for pair in designator.description or () if pair.car is key])
+
+
+def with_desig_props_value(designator, name):
+    """The value that ``with-desig-props`` binds the symbol ``name`` to."""
+    return desig_prop_value(designator, keyword(name.name))
+
+

@@ -1,0 +1,10 @@
+"""The Lisp packages of this room, made before anything interns a symbol in them; their contents are in ``package.py``."""
+
+from ..cpl.symbols import ensure_package
+from ..lisp.packages import sym
+
+DESIG = ensure_package("CRAM-DESIGNATORS", "DESIG")
+DESIG_PROPS = ensure_package("CRAM-DESIGNATOR-PROPERTIES", "DESIG-PROPS")
+SUPPORT = ensure_package("CRAM-LANGUAGE-DESIGNATOR-SUPPORT", "CPL-DESIG-SUPP")
+
+__all__ = ["DESIG", "DESIG_PROPS", "SUPPORT", "sym"]

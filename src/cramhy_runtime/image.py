@@ -1,0 +1,41 @@
+"""The image: all rooms together, as a Lisp image has all packages loaded.
+
+`boot` makes the packages of every room and lets Python import Lisp systems. What wants Lisp calls it first: the command line,
+the pytest plugin, and the Hy module ``cramhy``.
+"""
+
+from __future__ import annotations
+
+import importlib
+
+ROOMS = ("transforms", "prolog", "cpl", "ros", "designators", "process_modules")
+"""The rooms with a ``package.py``, in the order of their floors."""
+
+SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
+cram-executive cl-transforms roslisp roslisp-utilities std_msgs-msg std_srvs-srv geometry_msgs-msg rosgraph_msgs-msg turtlesim-msg
+turtlesim-srv cram-math alexandria lisp-unit actionlib_msgs-msg sensor_msgs-msg"""
+"""The systems of CRAM and ROS that need no loading, because they are here."""
+
+_booted = False
+
+
+def boot():
+    """Make the packages; with no kernel active, start one in virtual time. Calling it again does nothing."""
+    global _booted
+    if _booted:
+        return
+    _booted = True
+    from cramhy_runtime import kernel
+    from cramhy_runtime.lisp import evaluator, importer, package, places_in_source, ros_load, systems
+    from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+
+    if kernel.active() is None:
+        kernel.start()
+    package.fill()
+    for room in ROOMS:
+        importlib.import_module(f"cramhy_runtime.{room}.package")
+    systems.provide_system(SYSTEMS)
+    ros_load.define_faces()
+    importer.install()
+    kernel.describe_frame = places_in_source.describe_frame
+    evaluator.PACKAGE.value = COMMON_LISP_USER

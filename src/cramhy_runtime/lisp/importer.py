@@ -1,0 +1,94 @@
+"""Lisp packages as Python modules.
+
+``import cram_my_beginner_tutorial`` loads the system of that name (underscores for dashes) and gives its Lisp package as a
+module: ``cram_my_beginner_tutorial.drive`` is ``tut::drive``. A name that is a function gives the function, a special variable
+its current value. The definitions live in the symbols, so a redefinition at the REPL is seen by Python at once.
+"""
+
+from __future__ import annotations
+
+import importlib.abc
+import importlib.machinery
+import sys
+import types
+
+from . import systems
+from .data import Symbol, UNBOUND, UndefinedFunction
+from .faces import attribute_symbol, python_name
+from .packages import Package, all_packages, find_package
+
+
+class PackageModule(types.ModuleType):
+    """The Python face of a Lisp package."""
+
+    def __getattr__(self, name):
+        package = self.__dict__.get("lisp_package")
+        if package is None or name.startswith("__"):
+            raise AttributeError(name)
+        for symbol in attribute_symbol(package, name) or ():
+            if isinstance(symbol, Symbol):
+                if not isinstance(symbol.function, UndefinedFunction):
+                    return symbol.function
+                if symbol.value is not UNBOUND:
+                    return symbol.value
+        raise AttributeError(f"the Lisp package {package.name} defines no function or variable for the Python name {name!r}")
+
+    def __setattr__(self, name, value):
+        package = self.__dict__.get("lisp_package")
+        for symbol in (attribute_symbol(package, name) if package is not None else None) or ():
+            if isinstance(symbol, Symbol) and symbol.special:
+                symbol.value = value
+                return
+        super().__setattr__(name, value)
+
+    def __dir__(self):
+        package = self.lisp_package
+        return sorted({python_name(name) for table in (package.internal, package.external) for name in table})
+
+
+def package_for(name):
+    """The Lisp package whose Python name is ``name``, or ``None``."""
+    direct = find_package(name.replace("_", "-").upper())
+    if direct is not None:
+        return direct
+    for package in all_packages():
+        if any(python_name(each) == name for each in package.names):
+            return package
+    return None
+
+
+class PackageLoader(importlib.abc.Loader):
+    def __init__(self, system):
+        self.system = system
+
+    def create_module(self, spec):
+        return PackageModule(spec.name)
+
+    def exec_module(self, module):
+        systems.load_system(self.system)
+        package = package_for(module.__name__)
+        if package is None:
+            raise ImportError(f"the system {self.system} defines no Lisp package called {module.__name__}", name=module.__name__)
+        module.__dict__["lisp_package"] = package
+        module.__doc__ = package.documentation
+
+
+class SystemFinder(importlib.abc.MetaPathFinder):
+    """Finds a system for a Python module name that nothing else provides: it stands last in ``sys.meta_path``."""
+
+    def find_spec(self, name, path=None, target=None):
+        if path is not None or "." in name or name.startswith("_"):
+            return None
+        system = name.replace("_", "-")
+        if systems.find_asd(system) is None:
+            return None
+        return importlib.machinery.ModuleSpec(name, PackageLoader(system), origin=f"the system {system}")
+
+
+def install():
+    """Let Python import Lisp systems from now on."""
+    if not any(isinstance(finder, SystemFinder) for finder in sys.meta_path):
+        sys.meta_path.append(SystemFinder())
+
+
+__all__ = ["Package", "PackageModule", "install"]

@@ -1,0 +1,64 @@
+"""What the macros of ``hy_src/cramhy/prolog.hy`` and ``cut.hy`` expand into."""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.data import list_from, python_list
+from cramhy_runtime.lisp.faces import define_face
+
+from . import facts, lazy_lists, patterns
+
+
+class FactCollector:
+    """The facts of a group while its definition is evaluated: ``<-`` forms may stand in loops and macros."""
+
+    def __init__(self):
+        self.facts = []
+
+
+def fact_collector():
+    return FactCollector()
+
+
+def collect_fact(collector, fact):
+    """``(<- head goal...)`` inside a fact group: ``fact`` is (head goal...)."""
+    collector.facts.append(fact)
+    return fact
+
+
+def finish_fact_group(name, extendable, collector):
+    return facts.define_fact_group(name, extendable, collector.facts)
+
+
+def fact_outside_group(fact):
+    return facts.fact_outside_group(*python_list(fact))
+
+
+def lazy_list_of(initial, body):
+    """``initial``: list of the parameters' first values. ``body(cont, next, finish, parameter...)``."""
+    return lazy_lists.lazy_list(python_list(initial), body)
+
+
+def lazy_environment(symbols, thunks, body):
+    return lazy_lists.with_lazy_list_dynamic_environment(list(zip(python_list(symbols), python_list(thunks))), body)
+
+
+def values_of_variables(variables, bindings):
+    """The values of pattern variables; an unbound one stands for itself."""
+    return list_from([patterns.var_value(variable, bindings) for variable in python_list(variables)])
+
+
+def strict_values_of_variables(variables, bindings):
+    return patterns.with_vars_strictly_bound(python_list(variables), bindings, lambda *found: list_from(found))
+
+
+def values_of_pattern(pattern, sequence, variables):
+    """The values of ``variables`` when ``pattern`` is matched against ``sequence``; errors as with-pat-vars-bound's."""
+    return patterns.with_pat_vars_bound(pattern, sequence, lambda value: list_from([value(each) for each in python_list(variables)]))
+
+
+define_face("CRAMHY", functions={
+    "fact-collector": fact_collector, "collect-fact": collect_fact, "finish-fact-group": finish_fact_group,
+    "fact-outside-group": fact_outside_group, "lazy-list-of": lazy_list_of, "lazy-environment": lazy_environment,
+    "delay-thunk": lazy_lists.delay, "lazy-dolist": lazy_lists.lazy_dolist, "values-of-variables": values_of_variables,
+    "strict-values-of-variables": strict_values_of_variables, "values-of-pattern": values_of_pattern,
+})

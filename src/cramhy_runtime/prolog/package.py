@@ -1,0 +1,66 @@
+"""The Lisp packages of this room: CRAM-UTILITIES (nickname CUT) and CRAM-PROLOG (nickname PROLOG).
+
+Source: prolog.md sections 1, 13 and 14. The macros (``def-fact-group``, ``lazy-list``, ...) are in ``hy_src``; here their names
+are exported.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.faces import define_face
+
+from . import builtins, compiler, lazy_lists, patterns, query, rete, utilities
+from .lisp_calls import BREAK_ON_LISP_ERRORS
+
+CUT = define_face(
+    "CRAM-UTILITIES", nicknames=("CUT",), use=("COMMON-LISP",),
+    functions={
+        lazy_lists: """lazy-car lazy-cdr lazy-elt force-ll lazy-list-p lazy-mapcar lazy-mapcan lazy-filter lazy-fold lazy-append
+            lazy-take lazy-skip lazy-flatten lazy-rests copy-lazy-list delay-p force""",
+        patterns: """is-var is-unnamed-var is-segvar is-segform var-name gen-var is-genvar add-bdg var-value substitute-vars
+            match-segvar pat-match pat-match-p vars-in is-bound is-ground rename-vars patterns-eq bindings-equal map-tree""",
+        utilities: """deprecate style-warn copy-object current-timestamp set-timestamp-function set-default-timestamp-function
+            microsecond-timestamp-function current-string-timestamp flip compare minimum maximum ensure-unused-string
+            sanitize-filename equalize-two-list-lengths equalize-lists-of-lists-lengths make-data-pool new-pool-value pool-value
+            delete-pool-value make-queue enqueue dequeue list-queue-contents queue-count queue-empty-p queue-name queuep""",
+    },
+    export="""?_ !?_ lazy-list cont finish next with-lazy-list-dynamic-environment lazy-dolist delay with-vars-bound
+        with-vars-strictly-bound with-pat-vars-bound define-hook hooks pop-if! assert-no-returning assert-no-nlx string-case
+        destructure-case flet* timestamp deprecation-warning pool-value-unbound queue
+        execute-string choose function-bound-feature with-file-cache cached-file-value quad-tree quad-tree-insert
+        quad-tree-closest-point-in-range make-quad-tree-point quad-tree-point-x quad-tree-point-y quad-tree-poins-in-range
+        current-thread all-threads thread-name spawn-thread spawn-threads run-in-thread kill-thread thread-alive-p join-thread
+        make-lock make-recursive-lock with-lock-held make-condition-variable condition-variable-wait
+        condition-variable-wait-with-timeout condition-variable-signal condition-variable-broadcast
+        make-synchronized-hash-table with-hash-table-locked thread-local-binding-p
+        semaphore make-semaphore wait-on-semaphore try-semaphore signal-semaphore semaphore-count semaphore-name
+        mailbox make-mailbox send-message receive-message receive-message-no-hang receive-pending-messages
+        list-mailbox-messages mailbox-count mailbox-empty-p mailbox-name mailboxp""",
+    internal="lazy-cons-elem on-prepare-prolog-prove on-finish-prolog-prove",
+)
+CUT.intern("POOL-VALUE").setf_function = utilities.set_pool_value
+
+PROLOG = define_face(
+    "CRAM-PROLOG", nicknames=("PROLOG",), use=("COMMON-LISP", "CRAM-UTILITIES"),
+    functions={
+        query: "prolog query-var filter-bindings",
+        patterns: "unify unify-p",
+        rete: """rete-assert rete-retract rete-holds rete-prove clear-alpha-network alpha-network-size object-id
+            register-production clear-productions remove-production register-production-handler remove-production-handler""",
+    },
+    variables={BREAK_ON_LISP_ERRORS.name: None},
+    export="""?_ and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof every
+        forall member take generate-values == equal length append sort reduce max string-concat format warn error
+        slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=
+        def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers""",
+)
+
+INSTALLED = (builtins, compiler)
+
+
+def install_printers():
+    """Tell the printer about the objects of this room."""
+    lazy_lists.install_printer()
+    rete.install_printer()
+
+
+install_printers()

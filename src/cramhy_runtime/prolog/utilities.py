@@ -1,0 +1,233 @@
+"""The small functions of ``cram-utilities``: time stamps, comparing, names, data pools, queues, copies.
+
+Source: prolog.md 13.2, cpl.md 13.3.
+"""
+
+from __future__ import annotations
+
+import datetime
+import re
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, warn
+from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, Symbol, list_from, one, python_list, truth
+
+from .patterns import eql
+
+
+def _callable(designator, default=None):
+    if designator is None:
+        return default
+    return designator.function if isinstance(designator, Symbol) else designator
+
+
+class DeprecationWarning_(SimpleStyleWarning):
+    """What `deprecate` signals."""
+
+    lisp_name = "CRAM-UTILITIES::DEPRECATION-WARNING"
+
+
+def deprecate(message):
+    """Warn that something is deprecated."""
+    warn(DeprecationWarning_("~a", message))
+
+
+style_warn = conditions.style_warn
+
+
+def copy_object(obj):
+    """A deep copy of an instance, slot by slot; lists, numbers and other objects are returned as they are."""
+    if not hasattr(obj, "__dict__") or isinstance(obj, (type, BaseException)) or callable(obj):
+        return obj
+    copy = obj.__class__.__new__(obj.__class__)
+    copy.__dict__.update({name: copy_object(value) for name, value in obj.__dict__.items()})
+    return copy
+
+
+# --------------------------------------------------------------------------------------------------------------------- time
+
+_timestamp_function = [None]
+
+
+def current_timestamp(what_time=None):
+    """Seconds as a double, from the function set by `set_timestamp_function`; with an argument always the clock of the kernel."""
+    function = None if what_time is not None else _timestamp_function[0]
+    return DoubleFloat(kernel.now()) if function is None else one(_callable(function)())
+
+
+def set_timestamp_function(fn):
+    _timestamp_function[0] = fn
+    return fn
+
+
+def set_default_timestamp_function():
+    _timestamp_function[0] = None
+
+
+def microsecond_timestamp_function(*, relative=None):
+    """A function that gives seconds; ``relative``: since now."""
+    start = kernel.now() if truth(relative) else 0.0
+    return lambda: DoubleFloat(kernel.now() - start)
+
+
+def current_string_timestamp():
+    """The date and time of day as 14 digits."""
+    return datetime.datetime.now().strftime("%Y%m%d%H%M%S")
+
+
+# ---------------------------------------------------------------------------------------------------------------- functions
+
+
+def flip(fun):
+    """``fun`` with its first two arguments exchanged."""
+    function = _callable(fun)
+    return lambda a, b, *rest: function(b, a, *rest)
+
+
+def compare(x, y, *, test=None, key=None):
+    """``test`` of the ``key`` of both."""
+    key_of, same = _callable(key, lambda item: item), _callable(test, lambda a, b: True if eql(a, b) else None)
+    return same(one(key_of(x)), one(key_of(y)))
+
+
+def _extremum(seq, test, key):
+    key_of, best, best_key, started = _callable(key, lambda item: item), None, None, False
+    for item in seq or ():
+        value = one(key_of(item))
+        if not started or truth(one(test(value, best_key))):
+            best, best_key, started = item, value, True
+    return best
+
+
+def minimum(seq, *, test=None, key=None):
+    """The least element; ``nil`` for an empty sequence."""
+    return _extremum(seq, _callable(test, lambda a, b: a < b), key)
+
+
+def maximum(seq, *, test=None, key=None):
+    """The greatest element; ``nil`` for an empty sequence."""
+    return _extremum(seq, _callable(test, lambda a, b: a > b), key)
+
+
+def ensure_unused_string(base_string, used_p):
+    """``base_string``, or with -1, -2, ... behind it, until ``used_p`` is false of it."""
+    used, candidate, number = _callable(used_p), base_string, 0
+    while truth(one(used(candidate))):
+        number += 1
+        candidate = f"{base_string}-{number}"
+    return candidate
+
+
+def sanitize_filename(filename):
+    """Every character but letters, digits, ``-`` and ``_`` becomes ``_``."""
+    return re.sub(r"[^a-zA-Z0-9_-]", "_", str(filename))
+
+
+def equalize_two_list_lengths(a, b):
+    """Both lists, padded with ``nil`` to the same length."""
+    left, right = python_list(a), python_list(b)
+    size = max(len(left), len(right))
+    return MultipleValues((list_from(left + [None] * (size - len(left))), list_from(right + [None] * (size - len(right)))))
+
+
+def equalize_lists_of_lists_lengths(a, b):
+    """Pads the lists in both lists pair by pair, and appends them: two flat lists of the same length."""
+    left, right = python_list(a), python_list(b)
+    size, first, second = max(len(left), len(right)), [], []
+    for i in range(size):
+        x, y = equalize_two_list_lengths(left[i] if i < len(left) else None, right[i] if i < len(right) else None)
+        first += python_list(x)
+        second += python_list(y)
+    return MultipleValues((list_from(first), list_from(second)))
+
+
+# ---------------------------------------------------------------------------------------------------------------- data pools
+
+
+class PoolValueUnbound(Error):
+    """A data pool has nothing under an id."""
+
+    lisp_name = "CRAM-UTILITIES::POOL-VALUE-UNBOUND"
+    initargs = {"ID": "id"}
+    id = None
+
+    def report(self):
+        return f"Data pool does not contain a value for id {self.id}"
+
+
+class DataPool:
+    """A table from ids 0, 1, ... to objects."""
+
+    def __init__(self):
+        self.table, self.next_id = {}, 0
+
+
+def make_data_pool():
+    return DataPool()
+
+
+def new_pool_value(pool, value=None):
+    """Store ``value`` under a new id, which is returned."""
+    number, pool.next_id = pool.next_id, pool.next_id + 1
+    pool.table[number] = value
+    return number
+
+
+def pool_value(pool, number):
+    return pool.table[number] if number in pool.table else error(PoolValueUnbound(id=number))
+
+
+def set_pool_value(value, pool, number):
+    pool.table[number] = value
+    return value
+
+
+def delete_pool_value(pool, number):
+    pool.table.pop(number, None)
+
+
+# -------------------------------------------------------------------------------------------------------------------- queues
+
+
+class Queue:
+    """First in, first out."""
+
+    def __init__(self, name, items):
+        self.name, self.items = name, items
+
+
+def make_queue(*, name=None, initial_contents=None):
+    return Queue(name, python_list(initial_contents))
+
+
+def enqueue(value, queue):
+    queue.items.append(value)
+    return value
+
+
+def dequeue(queue):
+    """Values: the oldest value and true, or ``nil`` and ``nil``."""
+    return MultipleValues((queue.items.pop(0), True)) if queue.items else MultipleValues((None, None))
+
+
+def list_queue_contents(queue):
+    return list_from(queue.items)
+
+
+def queue_count(queue):
+    return len(queue.items)
+
+
+def queue_empty_p(queue):
+    return None if queue.items else True
+
+
+def queue_name(queue):
+    return queue.name
+
+
+def queuep(obj):
+    return True if isinstance(obj, Queue) else None
+
+

@@ -1,0 +1,219 @@
+"""``roslisp_repl``: the prompt and the debugger.
+
+The prompt shows the package, values come one a line, ``; No value`` where there are none. An error opens the debugger *before*
+anything unwinds: it shows what happened, where, what to try, and the restarts by number; forms can be evaluated there. Ctrl-C
+ends the running form through its cleanup and returns to the prompt. On a terminal, prompt_toolkit edits the line if it is
+installed; from a pipe, lines are read and nothing is echoed but prompts and answers.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp import conditions, streams
+from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
+from cramhy_runtime.lisp.places_in_source import describe, excerpt
+
+from .session import Interruption, condition_of, handle_interrupts, signalled_here
+
+
+def condition_type(condition):
+    """The name of the class of ``condition`` as the debugger shows it."""
+    from cramhy_runtime.lisp.classes import class_name
+
+    name = class_name(type(condition))
+    return symbol_name(name) if symbol_package(name) in (COMMON_LISP, None) else printed(name)
+
+
+def explanation(condition):
+    """What, where, why and what to try: the lines that describe ``condition``."""
+    from .advice import hint_for
+
+    lines = [f"  {line}" for line in str(condition).splitlines() or [""]]
+    position = getattr(condition, "position", None)
+    if position:
+        lines.append(f"  at {describe(position)}")
+    shown = getattr(condition, "excerpt", None) or excerpt(position)
+    if shown:
+        lines += [f"  {line}" for line in shown.splitlines()]
+    hint = hint_for(condition)
+    if hint:
+        lines.append(f"  {hint}")
+    return "\n".join(lines)
+
+
+def report(condition, file=None):
+    """Print an error that ends a program."""
+    print(f"cramhy: {condition_type(condition)}\n{explanation(condition)}", file=file or sys.stderr)
+
+
+class Input:
+    """Where lines come from: a terminal, with editing if possible, or a pipe."""
+
+    def __init__(self):
+        self.interactive = sys.stdin.isatty()
+        self.editor = None
+        if self.interactive:
+            try:
+                from prompt_toolkit import PromptSession
+                from prompt_toolkit.history import InMemoryHistory
+
+                self.editor = PromptSession(history=InMemoryHistory())
+            except ImportError:
+                try:
+                    import readline  # noqa: F401  line editing for input()
+                except ImportError:
+                    pass
+
+    def line(self, prompt):
+        """The next line without its end; ``None`` at the end of input."""
+        streams.CONSOLE_OUTPUT.fresh_line()
+        sys.stdout.flush()
+        if self.editor is not None:
+            try:
+                return self.editor.prompt(prompt)
+            except EOFError:
+                return None
+        sys.stdout.write(prompt)
+        sys.stdout.flush()
+        streams.CONSOLE_OUTPUT.column = 0
+        line = sys.stdin.readline()
+        return line.rstrip("\n") if line else None
+
+
+class Console:
+    """The read-eval-print loop. ``make_session`` is called once the prompt is needed."""
+
+    def __init__(self, make_session, lines=None):
+        self.make_session = make_session
+        self.input = lines or Input()
+        self.session = None
+        self.level = 0
+
+    def run(self):
+        """Until the end of input or ``(quit)``. Returns the exit status."""
+        try:
+            self.session = self.make_session()
+        except (Exception, Condition) as problem:
+            report(condition_of(problem))
+            return 1
+        handle_interrupts()
+        conditions.install_debugger(self.debug)
+        try:
+            while True:
+                text = self.read_text(self.session.prompt())
+                if text is None:
+                    if self.input.interactive:
+                        print()
+                    return 0
+                self.session.with_abort(lambda text=text: self.evaluate(text))
+        except SystemExit as leaving:
+            return leaving.code or 0
+        finally:
+            conditions.install_debugger(None)
+            kernel.stop()
+
+    # ------------------------------------------------------------------------------------------------------------- reading
+
+    def read_text(self, prompt):
+        """Lines until they make whole forms; ``None`` at the end of input. Ctrl-C forgets a form that is being typed."""
+        from cramhy_runtime.lisp.reader import incomplete
+
+        lines = []
+        while True:
+            try:
+                line = self.wait_for_line(prompt if not lines else "")
+            except (KeyboardInterrupt, kernel.Interrupted):
+                kernel.interrupt_over()
+                lines = []
+                print()
+                continue
+            if line is None:
+                return "\n".join(lines) if lines else None
+            lines.append(line)
+            text = "\n".join(lines)
+            if not text.strip():
+                lines = []
+            elif not incomplete(text):
+                return text
+
+    def wait_for_line(self, prompt):
+        # In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait.
+        if self.session.virtual:
+            return self.input.line(prompt)
+        return kernel.run_blocking(self.input.line, prompt)
+
+    # ---------------------------------------------------------------------------------------------------------- evaluating
+
+    def evaluate(self, text):
+        """Evaluate and print every form of ``text``."""
+        try:
+            for form, reader in self.session.forms(text):
+                self.show(self.session.evaluate(form, reader))
+        except Interruption:
+            streams.CONSOLE_OUTPUT.fresh_line()
+            print("; Interrupted.")
+        except Condition as condition:
+            # a failure that left the form without a debugger, such as one of another task
+            streams.CONSOLE_OUTPUT.fresh_line()
+            print(f"{condition_type(condition)}\n{explanation(condition)}")
+        except Exception as exception:
+            self.debug(condition_of(exception))
+
+    def show(self, values):
+        """Print values, each on a line of its own."""
+        from cramhy_runtime.lisp.printer import prin1_to_string
+
+        output = streams.CONSOLE_OUTPUT
+        output.fresh_line()
+        if not values:
+            output.write("; No value\n")
+        for value in values:
+            output.write(prin1_to_string(value) + "\n")
+        output.flush()
+
+    # ------------------------------------------------------------------------------------------------------------ debugger
+
+    def debug(self, condition):
+        """The debugger: on top of the stack that signalled ``condition``. It is left by a restart."""
+        if kernel.current() is not kernel.active().main:
+            return  # a task of a plan: the failure goes up to its parent, and from top-level to here
+        signalled_here(condition)
+        restarts = conditions.compute_restarts(condition)
+        if not restarts:
+            return
+        self.announce(condition, restarts)
+        self.level += 1
+        try:
+            while True:
+                text = self.read_text(f"{self.level - 1}] ")
+                if text is None:
+                    return conditions.invoke_restart(sym("ABORT"))
+                self.answer(text.strip(), restarts)
+        finally:
+            self.level -= 1
+
+    def announce(self, condition, restarts):
+        output = streams.CONSOLE_OUTPUT
+        output.fresh_line()
+        width = max(len(symbol_name(restart.name)) for restart in restarts)
+        lines = ["", f"debugger invoked on a {condition_type(condition)}:", explanation(condition), "",
+                 "restarts (type a number to choose one, or a form to evaluate):"]
+        lines += [f"  {index}: [{symbol_name(restart.name):{width}}] {restart.report()}" for index, restart in enumerate(restarts)]
+        output.write("\n".join(lines) + "\n")
+        output.flush()
+
+    def answer(self, text, restarts):
+        """What the user typed in the debugger: the number or the name of a restart, or a form."""
+        name = text.lstrip(":").upper()
+        if text.isdigit():
+            if int(text) < len(restarts):
+                return conditions.invoke_restart_interactively(restarts[int(text)])
+            return print(f"There is no choice {text}; they go from 0 to {len(restarts) - 1}.")
+        chosen = "ABORT" if name in ("Q", "QUIT", "ABORT") else name
+        for restart in restarts:
+            if symbol_name(restart.name) == chosen and "(" not in text and (text.startswith(":") or chosen == "ABORT"):
+                return conditions.invoke_restart_interactively(restart)
+        return self.session.with_abort(lambda: self.evaluate(text), f"Return to debugger level {self.level - 1}.")

@@ -1,0 +1,87 @@
+"""``cramhy eval``: forms and answers as JSON, one object a line.
+
+In: ``{"form": "..."}``. Out: ``{"output": printed text, "values": [printed values], "error": null}``, or for a form that fails
+``"error": {"type", "message", "restarts"}`` with ``"where"`` and ``"hint"`` when they are known. A line that is no such object
+gets an error answer, and the next line is read.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from cramhy_runtime.lisp import conditions, streams
+from cramhy_runtime.lisp.classes import class_name
+from cramhy_runtime.lisp.packages import COMMON_LISP, symbol_name, symbol_package
+from cramhy_runtime.lisp.places_in_source import describe
+
+from .advice import hint_for
+from .session import Interruption, condition_of, signalled_here
+
+
+def serve(session, lines=None, out=None):
+    """Answer every line of ``lines`` (default: standard input) on ``out``."""
+    out = out or sys.stdout
+    conditions.install_debugger(_note_restarts)
+    for line in sys.stdin if lines is None else lines:
+        if not line.strip():
+            continue
+        out.write(json.dumps(answer(session, line)) + "\n")
+        out.flush()
+
+
+def _note_restarts(condition):
+    signalled_here(condition)
+
+
+def answer(session, line):
+    """The answer to one line, a dict."""
+    try:
+        request = json.loads(line)
+        text = request["form"]
+        if not isinstance(text, str):
+            raise TypeError
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return _failure("", "CRAMHY::BAD-REQUEST", 'Not understood: a line must be a JSON object {"form": "..."}.')
+    return evaluate(session, text)
+
+
+def evaluate(session, text):
+    """Evaluate the forms of ``text``; output of all tasks is collected."""
+    output = streams.StringOutputStream()
+    saved = streams.STANDARD_OUTPUT.value, streams.ERROR_OUTPUT.value, streams.TRACE_OUTPUT.value
+    streams.STANDARD_OUTPUT.value = streams.ERROR_OUTPUT.value = streams.TRACE_OUTPUT.value = output
+    try:
+        completed, values = session.with_abort(lambda: session.evaluate_text(text))
+        if not completed:
+            return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
+        from cramhy_runtime.lisp.printer import prin1_to_string
+
+        printed = [prin1_to_string(value) for value in values]
+    except Interruption:
+        return _failure(output.take(), "CRAMHY::INTERRUPTED", "The form was interrupted.")
+    except Exception as exception:
+        return _condition(output.take(), condition_of(exception))
+    except conditions.Condition as condition:
+        return _condition(output.take(), condition)
+    finally:
+        streams.STANDARD_OUTPUT.value, streams.ERROR_OUTPUT.value, streams.TRACE_OUTPUT.value = saved
+    return {"output": output.take(), "values": printed, "error": None}
+
+
+def _condition(output, condition):
+    name = class_name(type(condition))
+    package = symbol_package(name)
+    prefix = "" if package is COMMON_LISP or package is None else f"{package.name}::"
+    restarts = [symbol_name(restart.name) for restart in condition.restarts or ()]
+    return _failure(output, prefix + symbol_name(name), str(condition), restarts or ["ABORT"], describe(condition.position)
+                    if getattr(condition, "position", None) else None, hint_for(condition))
+
+
+def _failure(output, kind, message, restarts=("ABORT",), where=None, hint=None):
+    error = {"type": kind, "message": message, "restarts": list(restarts)}
+    if where:
+        error["where"] = where
+    if hint:
+        error["hint"] = hint
+    return {"output": output, "values": [], "error": error}

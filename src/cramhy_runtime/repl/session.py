@@ -1,0 +1,150 @@
+"""A session: one kernel, one image, forms evaluated one after the other.
+
+All surfaces share it: the console, ``cramhy run``, ``cramhy eval``, and the tests. In virtual time the clock moves only while
+a form is evaluated; after each form the other tasks run until nothing is left to do at that instant (`kernel.settle`), so a
+callback whose message has arrived has run before the next prompt.
+"""
+
+from __future__ import annotations
+
+import linecache
+import signal
+
+from cramhy_runtime import image, kernel
+from cramhy_runtime.lisp import conditions, evaluator, random_state, systems
+from cramhy_runtime.lisp.conditions import Condition, from_python
+from cramhy_runtime.lisp.data import all_values
+from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
+from cramhy_runtime.lisp.places_in_source import exception_position, user_position
+
+HISTORY = [sym(name) for name in ("*", "**", "***")]
+LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
+LAST_FORMS = [sym(name) for name in ("+", "++", "+++")]
+
+
+class Interruption(Exception):
+    """A form was ended by Ctrl-C; the plan below it has been cleaned up."""
+
+
+class Session:
+    """Evaluates forms in an image. The calling thread becomes the kernel's main task.
+
+    time: "virtual" or "wall". seed: of the scheduler's order, ``None`` for first come, first served. backend: "threads" or
+    "greenlet". time_limit: seconds of plan time after which a form is ended. turtlesim: whether the simulator starts with the
+    first node.
+    """
+
+    def __init__(self, time="wall", seed=None, backend="threads", time_limit=None, turtlesim=True):
+        kernel.start(clock=time, backend=backend, seed=seed, time_limit=time_limit)
+        image.boot()
+        random_state.seed_random(0 if seed is None else seed)
+        evaluator.PACKAGE.value = COMMON_LISP_USER
+        for variables in (HISTORY, LAST_VALUES, LAST_FORMS):
+            for variable in variables:
+                variable.value = None
+        self.virtual = time == "virtual"
+        self.texts = 0
+        if turtlesim:
+            from cramhy_runtime.ros import graph
+            from cramhy_runtime.turtlesim.node import start_turtlesim
+
+            graph.active().before_first_node.append(start_turtlesim)
+
+    @property
+    def package(self):
+        return evaluator.PACKAGE.value
+
+    @package.setter
+    def package(self, designator):
+        evaluator.PACKAGE.value = find_package_or_error(designator)
+
+    def prompt(self):
+        """``TUT> ``: the shortest name of the current package."""
+        return f"{min(self.package.names, key=len)}> "
+
+    def load(self, system):
+        """Load a system by name, or a file by its path."""
+        from cramhy_runtime.lisp import loader
+
+        if system.endswith((".lisp", ".hy")):
+            loader.load_file(system)
+        elif system.endswith(".asd"):
+            systems.load_asd(system)
+            from pathlib import Path
+
+            systems.load_system(Path(system).stem)
+        else:
+            systems.load_system(system)
+
+    def forms(self, text, name=None):
+        """The forms of a text typed at the prompt, each with the reader that knows its places."""
+        from cramhy_runtime.lisp.reader import Reader
+
+        self.texts += 1
+        name = name or f"<repl {self.texts}>"
+        linecache.cache[name] = (len(text), None, text.splitlines(True), name)
+        reader = Reader(text, filename=name)
+        end = object()
+        while (form := reader.read(eof_error=False, eof_value=end)) is not end:
+            yield form, reader
+
+    def evaluate(self, form, reader=None):
+        """The values of ``form`` as a list. Conditions that nobody handles are raised, with their place if it is known."""
+        LAST_FORMS[0].value, LAST_FORMS[1].value, LAST_FORMS[2].value = form, LAST_FORMS[0].value, LAST_FORMS[1].value
+        try:
+            if reader is None:
+                values = all_values(evaluator.evaluate(form))
+            else:
+                values = all_values(evaluator.evaluate(form, reader.filename, reader.positions))
+            kernel.settle()
+        except kernel.Interrupted:
+            raise Interruption from None
+        except Condition as condition:
+            locate(condition, exception_position(condition))
+            raise
+        finally:
+            kernel.interrupt_over()
+        if values:
+            HISTORY[0].value, HISTORY[1].value, HISTORY[2].value = values[0], HISTORY[0].value, HISTORY[1].value
+        from cramhy_runtime.lisp.data import list_from
+
+        LAST_VALUES[0].value, LAST_VALUES[1].value, LAST_VALUES[2].value = list_from(values), LAST_VALUES[0].value, LAST_VALUES[1].value
+        return list(values)
+
+    def evaluate_text(self, text, name=None):
+        """The values of the last form of ``text``."""
+        values = []
+        for form, reader in self.forms(text, name):
+            values = self.evaluate(form, reader)
+        return values
+
+    def with_abort(self, thunk, report="Exit debugger, returning to top level."):
+        """Call ``thunk`` with a restart ABORT; (True, its result), or (False, None) when it was aborted."""
+        return conditions.restart_case([(sym("ABORT"), lambda: (False, None), report)], lambda: (True, thunk()))
+
+
+def locate(condition, position):
+    """Note where ``condition`` arose, if that is not known better."""
+    if getattr(condition, "position", None) is None and position is not None:
+        condition.position = position
+
+
+def signalled_here(condition):
+    """Note the place of a condition while its stack is still there; for debuggers."""
+    locate(condition, user_position())
+
+
+def condition_of(exception):
+    """The condition for any exception that left a form."""
+    condition = from_python(exception)
+    locate(condition, exception_position(exception))
+    return condition
+
+
+def handle_interrupts():
+    """Make Ctrl-C end the running form, through its cleanup, instead of raising KeyboardInterrupt anywhere."""
+    signal.signal(signal.SIGINT, lambda number, frame: kernel.interrupt())
+
+
+__all__ = ["Interruption", "Session", "binding", "condition_of", "handle_interrupts", "signalled_here"]

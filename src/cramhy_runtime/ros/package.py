@@ -1,0 +1,112 @@
+"""The Lisp packages of this room: ROSLISP, its helpers, and one package per ROS package of messages or services.
+
+Macros (``make-message``, ``with-fields``, ``ros-info`` …) are in ``hy_src/cramhy/roslisp.hy``; their names are exported here.
+"""
+
+from __future__ import annotations
+
+from operator import attrgetter
+
+from ..lisp import conditions
+from ..lisp.classes import register_class
+from ..lisp.faces import define_face
+from ..lisp.printer import define_printer
+from . import (definition_text, graph, logging, message_building, message_printing, messages, node, parameters, services, time, topics, utilities)
+from .errors import NoApplicableMethod
+from .messages import RosMessage
+
+
+class FieldReader:
+    """The reader of one field for all messages of a package: ``turtlesim-msg:x``. A generic function for all that users see."""
+
+    __slots__ = ("symbol", "getters", "warning")
+
+    def __init__(self, symbol, warning=None):
+        self.symbol, self.getters, self.warning = symbol, {}, warning
+
+    def __call__(self, *arguments):
+        getter = self.getters.get(arguments[0].__class__) if len(arguments) == 1 else None
+        if getter is None:
+            if len(arguments) != 1:
+                return conditions.program_error("invalid number of arguments: ~S", len(arguments))
+            return conditions.error(NoApplicableMethod(repr(self), arguments))
+        if self.warning:
+            warning, self.warning = self.warning, None
+            conditions.warn("~a", warning)
+        return getter(arguments[0])
+
+    def __repr__(self):
+        return f"#<STANDARD-GENERIC-FUNCTION {self.symbol.package.name}:{self.symbol.name} ({len(self.getters)})>"
+
+
+define_printer(FieldReader, lambda reader, stream: stream.write(repr(reader)))
+
+
+def define_message_symbols(package, classes, service_types):
+    """Export the class names and field readers of a ROS package from its Lisp packages."""
+    kinds = [("MSG", cls) for cls in classes] + [("SRV", part) for service in service_types for part in (service.request, service.response)]
+    for kind, cls in kinds:
+        home = messages.lisp_package(package, kind)
+        home.export(cls.lisp_symbol)
+        old_name = home.intern(f"<{cls.lisp_symbol.name}>")
+        home.export(old_name)
+        register_class(cls.lisp_symbol, cls)
+        register_class(old_name, cls)
+        for field in cls.fields:
+            name = field.name.upper()
+            old = f"{package}-{kind.lower()}:{field.name}-val"
+            for reader_name, warning in ((name, None), (name + "-VAL", f"Using old-style slot reader {old} is deprecated.  Use "
+                                                        f"{package}-{kind.lower()}:{field.name} instead.")):
+                symbol = home.intern(reader_name)
+                home.export(symbol)
+                if not isinstance(symbol.function, FieldReader):
+                    symbol.function = FieldReader(symbol, warning)
+                symbol.function.getters[cls] = attrgetter(field.attribute)
+    for service in service_types:
+        messages.lisp_package(package, "SRV").export(service.lisp_symbol)
+
+
+messages.on_load(define_message_symbols)
+for _package in definition_text.known_packages():
+    for _kind in ("msg", "srv"):
+        if definition_text.definition_files(_package, _kind):
+            messages.lisp_package(_package, _kind.upper())
+
+MSG_PROTOCOL = define_face(
+    "ROSLISP-MSG-PROTOCOL",
+    functions={message_building: "ros-message-to-list list-to-ros-message symbol-codes symbol-code code-symbols code-symbol ros-datatype "
+                                 "message-definition"},
+    export="ros-message serialize deserialize md5sum serialization-length service-request-type service-response-type")
+
+ROSLISP_UTILS = define_face("ROSLISP-UTILS", export="spin-until loop-at-most-every tokens until-timeout")
+EXTENDED_REALS = define_face("ROSLISP-EXTENDED-REALS", export="infty -infty")
+EXTENDED_REALS.intern("INFTY").value = EXTENDED_REALS.intern("INFTY")
+define_face("ROSLISP-QUEUE", export="queue")
+
+ROSLISP = define_face(
+    "ROSLISP",
+    imports={"ROSLISP-MSG-PROTOCOL": "ros-message symbol-codes symbol-code code-symbols code-symbol",
+             "ROSLISP-UTILS": "loop-at-most-every spin-until"},
+    functions={
+        node: "start-ros-node shutdown-ros-node node-status make-uri fully-qualified-name print-status standalone-exec-debug-hook",
+        topics: "advertise unadvertise publish subscribe unsubscribe num-subscribers",
+        services: "call-service wait-for-service make-service-client register-service-fn call-persistent-service close-persistent-service "
+                  "persistent-service-ok",
+        parameters: "get-param set-param has-param delete-param list-params",
+        logging: "set-debug-level debug-level print-debug-levels",
+        time: "ros-time spin-until-ros-time-valid wait-duration",
+        message_building: "make-response msg-slot-value read-ros-message",
+        message_printing: "pprint-ros-message",
+    },
+    variables={"*ros-node-name*": None, "*master-uri*": None, "*default-master-uri*": None, "*running-from-command-line*": None},
+    export="def-ros-node def-service-call def-service-callback defservice load-if-necessary load-message-types load-msg load-service-types load-srv "
+           "make-message make-msg make-publisher-msg make-request modify-message-copy persistent-service publish-msg reconnect "
+           "register-service ros-debug ros-error ros-fatal ros-info ros-warn roslisp ros-time-not-yet-received service-call-error service-error "
+           "set-debug-levels setf-msg store-message-in tcp top with-fields with-parallel-thread with-ros-node *current-ros-package*")
+
+ROSLISP_UTILITIES = define_face(
+    "ROSLISP-UTILITIES",
+    functions={utilities: "startup-ros shutdown-ros lispify-ros-name rosify-lisp-name lispify-ros-underscore-name rosify-underscores-lisp-name"},
+    export="register-ros-init-function register-ros-cleanup-function")
+
+__all__ = ["ROSLISP", "ROSLISP_UTILITIES", "FieldReader", "RosMessage", "graph"]

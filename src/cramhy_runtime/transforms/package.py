@@ -1,0 +1,100 @@
+"""The Lisp package CL-TRANSFORMS, and how its objects print. Source: cl-transforms.md sections 1.4 and 9."""
+
+from __future__ import annotations
+
+from cramhy_runtime.lisp.data import Symbol, truth
+from cramhy_runtime.lisp.faces import define_face
+from cramhy_runtime.lisp.packages import sym
+
+from . import matrices, poses, quaternions, vectors
+
+CL_TRANSFORMS = define_face(
+    "CL-TRANSFORMS", use=("COMMON-LISP",),
+    functions={
+        vectors: "make-3d-vector make-identity-vector copy-3d-vector x y z v-inv dot-product cross-product v-norm v-dist "
+                 "normalize-vector interpolate-vector",
+        "v+": vectors.v_plus, "v-": vectors.v_minus, "v*": vectors.v_star, "v*-pairwise": vectors.v_star_pairwise,
+        "v/-pairwise": vectors.v_slash_pairwise,
+        quaternions: "make-quaternion make-identity-rotation copy-quaternion w q-inv q-dot q-scale squared-norm q-norm normalize "
+                     "is-normalized axis-angle->quaternion quaternion->axis-angle euler->quaternion quaternion->euler get-yaw yaw "
+                     "rotate angle-between-quaternions normalize-angle slerp",
+        "q=": quaternions.q_eq, "q*": quaternions.q_star, "q+": quaternions.q_plus, "q-": quaternions.q_minus,
+        poses: "make-transform make-identity-transform copy-transform transform-inv transform-diff transform-point transform "
+               "make-pose make-identity-pose make-2d-pose copy-pose reference-transform pose->transform transform->pose "
+               "transform-pose translation rotation origin orientation make-twist make-identity-twist copy-twist make-wrench "
+               "make-identity-wrench copy-wrench",
+        "transform*": poses.transform_star,
+        matrices: "quaternion->matrix matrix->quaternion transform->matrix pose->matrix matrix->transform invert-rot-matrix "
+                  "transpose-rot-matrix transpose-2d-matrix column-vectors->quaternion",
+    },
+    export="3d-vector quaternion pose twist wrench point gen-quaternion quaternion-coefficient",
+)
+for _name in ("TRANSLATION", "ROTATION", "ORIGIN", "ORIENTATION"):
+    CL_TRANSFORMS.intern(_name).setf_function = getattr(poses, f"set_{_name.lower()}")
+
+_ESCAPE = sym("*PRINT-ESCAPE*")
+
+
+def head(name, stream):
+    """Write ``#<`` and the class name, with its package where the current one does not see it."""
+    from cramhy_runtime.lisp.printer import write
+
+    stream.write("#<")
+    if truth(_ESCAPE.value) if not isinstance(_ESCAPE.value, Symbol) else True:
+        write(sym(name), stream, escape=True)
+    else:
+        stream.write(name.rpartition("::")[2])
+
+
+def numbers(components, kind, stream):
+    """Write components in parentheses."""
+    from cramhy_runtime.lisp.printer import prin1_to_string
+
+    stream.write("(" + " ".join(prin1_to_string(kind(component)) for component in components) + ")")
+
+
+def _print_vector(obj, stream):
+    from cramhy_runtime.lisp.data import DoubleFloat
+
+    head(obj.lisp_name, stream)
+    stream.write(" ")
+    numbers(obj.components, DoubleFloat, stream)
+    stream.write(">")
+
+
+def _print_quaternion(obj, stream):
+    head(obj.lisp_name, stream)
+    stream.write(" ")
+    numbers(obj.components, obj.kind, stream)
+    stream.write(">")
+
+
+def parts_printer(*parts):
+    """A printer for an object with parts: each on a line of its own, three spaces from the margin wherever the object stands."""
+
+    def print_parts(obj, stream):
+        from cramhy_runtime.lisp.printer import write
+
+        head(obj.lisp_name, stream)
+        stream.write(" ")
+        for attribute, label in parts:
+            stream.write("\n   " + label)
+            write(getattr(obj, attribute), stream)
+        stream.write(">")
+
+    return print_parts
+
+
+def install_printers():
+    """Tell the printer how the objects of this room look."""
+    from cramhy_runtime.lisp.printer import define_printer
+
+    define_printer(vectors.Vector3, _print_vector)
+    define_printer(quaternions.Quaternion, _print_quaternion)
+    define_printer(poses.Transform, parts_printer(("translation", ""), ("rotation", "")))
+    define_printer(poses.Pose, parts_printer(("origin", ""), ("orientation", "")))
+    for cls in (poses.Twist, poses.Wrench):
+        define_printer(cls, parts_printer(("translation", "TRANSLATION "), ("rotation", "ROTATION ")))
+
+
+install_printers()

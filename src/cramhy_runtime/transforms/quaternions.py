@@ -1,0 +1,317 @@
+"""Quaternions and rotations. Components stand in the order x y z w; w is the scalar part.
+
+q and -q are the same rotation and different objects. Source: cl-transforms.md section 3.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cramhy_runtime.lisp.arithmetic import single
+from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, error, type_error
+from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from
+from cramhy_runtime.lisp.packages import keyword
+
+from .coercion import check_type, elements, float_argument, instance, is_real, no_method, real
+from .vectors import Vector3, point
+
+TOLERANCE = 1e-6
+"""How far the squared norm of a unit quaternion may be from 1."""
+
+
+def _component(index):
+    def get(self):
+        return self.component(index)
+
+    def set_(self, value):
+        components = list(self.components)
+        components[index] = real(value)
+        self.components = tuple(components)
+
+    return property(get, set_, doc="A component, as the float that Lisp sees.")
+
+
+class Quaternion:
+    """A quaternion. ``components`` are plain Python floats; ``kind`` is the float type that Lisp sees (double-float, as a rule)."""
+
+    lisp_name = "CL-TRANSFORMS::QUATERNION"
+    initargs = {"X": "x", "Y": "y", "Z": "z", "W": "w"}
+    quaternion = True
+    kind = DoubleFloat
+    x, y, z, w = _component(0), _component(1), _component(2), _component(3)
+
+    def __init__(self, x=0.0, y=0.0, z=0.0, w=1.0):
+        self.components = (float(x), float(y), float(z), float(w))
+
+    def component(self, index):
+        return self.kind(self.components[index])
+
+    def __iter__(self):
+        return iter(self.components)
+
+    def __repr__(self):
+        return "#<QUATERNION ({}d0 {}d0 {}d0 {}d0)>".format(*self.components)
+
+
+def general(q):
+    """The four components of a quaternion, an array of four numbers, or a real r that stands for (0 0 0 r)."""
+    if isinstance(q, Quaternion):
+        return q.components
+    if is_real(q):
+        return (0.0, 0.0, 0.0, real(q))
+    items = elements(q, 4)
+    if items is None:
+        return type_error(q, "CL-TRANSFORMS:GEN-QUATERNION")
+    return tuple([real(item) for item in items])
+
+
+def _made(components, *sources):
+    """A quaternion of ``components``: of singles if no source has a double, as the original's arithmetic gives."""
+    result = Quaternion(*components)
+    if not any(_has_double(source) for source in sources):
+        result.kind = float
+    return result
+
+
+def _has_double(source):
+    if isinstance(source, Quaternion):
+        return source.kind is DoubleFloat
+    return any(isinstance(item, DoubleFloat) for item in elements(source, 4) or [source])
+
+
+def make_quaternion(x, y, z, w):
+    """A quaternion with components coerced to doubles; it is not normalised."""
+    return Quaternion(real(x), real(y), real(z), real(w))
+
+
+def make_identity_rotation(type_template=None):
+    return Quaternion()
+
+
+def copy_quaternion(q, *, x=None, y=None, z=None, w=None):
+    old = instance(q, Quaternion, "Q").components
+    return Quaternion(*(before if new is None else real(new) for before, new in zip(old, (x, y, z, w))))
+
+
+def w(obj):
+    """The w of a quaternion or array; a number is its own."""
+    if isinstance(obj, Quaternion):
+        return obj.component(3)
+    items = elements(obj, 4)
+    if items is not None:
+        return items[3]
+    return obj if is_real(obj) else no_method("w", obj)
+
+
+# ------------------------------------------------------------------------------------------------------------------ algebra
+
+
+def multiply(a, b):
+    """The Hamilton product of two component tuples."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (aw * bx + ax * bw + ay * bz - az * by, aw * by + ay * bw + az * bx - ax * bz,
+            aw * bz + az * bw + ax * by - ay * bx, aw * bw - ax * bx - ay * by - az * bz)
+
+
+def q_eq(q1, q2):
+    """``q=``: whether all components are the same numbers."""
+    return True if general(q1) == general(q2) else None
+
+
+def q_star(*args):
+    """``q*``: the product; without arguments the number 1.0."""
+    if not args:
+        return 1.0
+    product = general(args[-1])
+    for q in reversed(args[:-1]):
+        product = multiply(general(q), product)
+    return _made(product, *args)
+
+
+def inverse(components):
+    """The inverse of a component tuple."""
+    square = sum(component * component for component in components)
+    if square == 0.0:
+        return error(FloatingPointInvalidOperation())
+    qx, qy, qz, qw = components
+    return (-qx / square, -qy / square, -qz / square, qw / square)
+
+
+def q_inv(q):
+    """The conjugate divided by the squared norm."""
+    return _made(inverse(general(q)), q)
+
+
+def q_plus(*args):
+    """``q+``: the sum; without arguments the number 0.0."""
+    if not args:
+        return 0.0
+    return _made([sum(parts) for parts in zip(*(general(q) for q in args))], *args)
+
+
+def q_minus(q1, *args):
+    """``q-``: the difference; one argument is negated."""
+    first = general(q1)
+    if not args:
+        return _made([-component for component in first], q1)
+    for q in args:
+        first = [a - b for a, b in zip(first, general(q))]
+    return _made(first, q1, *args)
+
+
+def q_dot(q1, q2):
+    """The sum of the four products."""
+    return DoubleFloat(sum(a * b for a, b in zip(general(q1), general(q2))))
+
+
+def q_scale(q, scalar):
+    factor = real(scalar)
+    return Quaternion(*(component * factor for component in general(q)))
+
+
+def squared_norm(q):
+    return DoubleFloat(sum(component * component for component in general(q)))
+
+
+def q_norm(q):
+    return DoubleFloat(math.sqrt(squared_norm(q)))
+
+
+def normalized(q):
+    """Whether the norm of ``q`` is 1, nearly."""
+    return abs(sum(component * component for component in general(q)) - 1) < TOLERANCE
+
+
+def is_normalized(q):
+    return True if normalized(q) else None
+
+
+def normalize(q):
+    """The unit quaternion for the same rotation; one without length is an error."""
+    norm = math.sqrt(sum(component * component for component in general(q)))
+    if norm < TOLERANCE:
+        return error("Attempted to normalize quaternion ~a with norm ~a", q, DoubleFloat(norm))
+    return _made([component / norm for component in general(q)], q)
+
+
+# ---------------------------------------------------------------------------------------------------------------- rotations
+
+
+def axis_angle_to_quaternion(axis, angle):
+    """The rotation by ``angle`` (a float, radians) about ``axis``, which is normalised first."""
+    float_argument(angle, "ANGLE")
+    components = point(axis, "AXIS")
+    square = sum(component * component for component in components)
+    if abs(square - 1) >= TOLERANCE:
+        if square == 0.0:
+            return error("Can't normalize ~a", axis)
+        factor = 1 / math.sqrt(square)
+        components = tuple(component * factor for component in components)
+    half = float(angle) / 2
+    sine, cosine = math.sin(half), math.cos(half)
+    if not isinstance(angle, DoubleFloat):  # a single gives the sine of a single
+        sine, cosine = single(sine), single(cosine)
+    return Quaternion(*(component * sine for component in components), cosine)
+
+
+def quaternion_to_axis_angle(q):
+    """Values: the vector part, which is not of unit length, and the angle in [0, 2 pi]."""
+    qx, qy, qz, qw = general(q)
+    return MultipleValues((Vector3(qx, qy, qz), DoubleFloat(2 * math.acos(max(-1.0, min(1.0, qw))))))
+
+
+def euler_to_quaternion(*, ax=0.0, ay=0.0, az=0.0):
+    """The rotation by roll ``ax``, then pitch ``ay``, then yaw ``az`` about the fixed axes, in radians."""
+
+    def halves(angle):
+        half = real(angle) / 2
+        if isinstance(angle, DoubleFloat):
+            return math.sin(half), math.cos(half)
+        return single(math.sin(half)), single(math.cos(half))
+
+    (sx, cx), (sy, cy), (sz, cz) = halves(ax), halves(ay), halves(az)
+    return Quaternion(sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz, cx * cy * sz - sx * sy * cz,
+                      cx * cy * cz + sx * sy * sz)
+
+
+def quaternion_to_euler(q, *, just_values=None):
+    """``(:ax roll :ay pitch :az yaw)``, or the three numbers only. At the poles roll is the integer 0."""
+    qx, qy, qz, qw = general(q)
+    sine = qw * qy - qz * qx
+    if abs(sine - 0.5) < 1e-5:
+        angles = (0, DoubleFloat(math.pi / 2), DoubleFloat(-2 * math.atan2(qx, qw)))
+    elif abs(sine + 0.5) < 1e-5:
+        angles = (0, DoubleFloat(-math.pi / 2), DoubleFloat(2 * math.atan2(qx, qw)))
+    else:
+        angles = (DoubleFloat(math.atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy))),
+                  DoubleFloat(math.asin(max(-1.0, min(1.0, 2 * sine)))),
+                  DoubleFloat(math.atan2(2 * (qx * qy + qw * qz), 1 - 2 * (qy * qy + qz * qz))))
+    if just_values is not None:
+        return list_from(angles)
+    return list_from([item for name, angle in zip(("AX", "AY", "AZ"), angles) for item in (keyword(name), angle)])
+
+
+def get_yaw(q):
+    """The heading of a rotation, in radians."""
+    qx, qy, qz, qw = general(q)
+    return DoubleFloat(math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz))
+
+
+def yaw(angle):
+    """The rotation by ``angle`` (a float, radians) about z. `get_yaw` is the way back."""
+    return axis_angle_to_quaternion(Vector3(0.0, 0.0, 1.0), angle)
+
+
+def rotated(components, v):
+    """The components of the vector ``v`` (a tuple) turned by a unit quaternion (a tuple)."""
+    qx, qy, qz, qw = components
+    vx, vy, vz = v
+    return (vx * (1 - 2 * (qy * qy + qz * qz)) + 2 * vy * (qx * qy - qw * qz) + 2 * vz * (qw * qy + qx * qz),
+            vy * (1 - 2 * (qx * qx + qz * qz)) + 2 * vx * (qx * qy + qw * qz) + 2 * vz * (qy * qz - qw * qx),
+            vz * (1 - 2 * (qx * qx + qy * qy)) + 2 * vx * (qx * qz - qw * qy) + 2 * vy * (qw * qx + qy * qz))
+
+
+def rotate(q, v, *, normalize=keyword("CHECK")):
+    """``v`` turned by ``q``. ``normalize``: ``:check`` demands a unit quaternion, ``t`` makes it one, anything else takes it as it is."""
+    if normalize is keyword("CHECK"):
+        if not normalized(q):
+            return error("The assertion (CL-TRANSFORMS:IS-NORMALIZED CL-TRANSFORMS::Q) failed with CL-TRANSFORMS::Q = ~S.", q)
+    elif normalize is True:
+        q = globals()["normalize"](q)
+    return Vector3(*rotated(general(q), point(v)))
+
+
+def angle_between_quaternions(q1, q2):
+    """Values: angle and axis (not of unit length) of the rotation from ``q1`` to ``q2``."""
+    axis, angle = quaternion_to_axis_angle(q_star(q_inv(q1), q2))
+    return MultipleValues((angle, axis))
+
+
+def normalize_angle(angle):
+    """The same angle in [-pi, pi]; one that is there already is returned untouched."""
+    value = float(angle)
+    if -math.pi <= value < math.pi:
+        return angle
+    while value < math.pi:
+        value += 2 * math.pi
+    while value > math.pi:
+        value -= 2 * math.pi
+    return DoubleFloat(value)
+
+
+def slerp(q1, q2, ratio):
+    """Spherical interpolation from ``q1`` (ratio 0) to ``q2`` (ratio 1), the shorter way.
+
+    The original takes the inverse of ``q2`` where it should take -``q2``; here the result is always a rotation.
+    """
+    a = check_type(q1, Quaternion, "Q1").components
+    b = check_type(q2, Quaternion, "Q2").components
+    share, product = real(ratio), sum(p * q for p, q in zip(a, b))
+    if product < 0:
+        b, product = tuple(-component for component in b), -product
+    if product < 1 - TOLERANCE:
+        angle = math.atan2(math.sqrt(1 - product * product), product)
+        first, second = (math.sin((1 - share) * angle) / math.sin(angle), math.sin(share * angle) / math.sin(angle))
+        return Quaternion(*(first * p + second * q for p, q in zip(a, b)))
+    return normalize(Quaternion(*((1 - share) * p + share * q for p, q in zip(a, b))))

@@ -1,0 +1,10 @@
+import pytest
+
+from cramhy_runtime import kernel
+
+
+@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+def fresh_kernel(request):
+    """Each test has its own virtual time, on both back ends."""
+    yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
+    kernel.stop()

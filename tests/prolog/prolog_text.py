@@ -1,0 +1,87 @@
+"""Prolog as text: reading goals, proving them, and showing the answers the way Lisp prints them."""
+
+from cramhy_runtime.lisp import cl_names, conditions
+from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.packages import COMMON_LISP, find_package, make_package, sym
+
+for name in cl_names.NAMES.split():
+    if name not in ("nil", "t"):
+        COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
+
+import cramhy_runtime.prolog.package  # noqa: E402  after the names of Common Lisp are there
+from cramhy_runtime.lisp.printer import prin1_to_string  # noqa: E402
+from cramhy_runtime.lisp.reader import read_from_string  # noqa: E402
+from cramhy_runtime.prolog import facts, query  # noqa: E402
+from cramhy_runtime.prolog.lazy_lists import force_ll  # noqa: E402
+
+HERE = find_package("PROLOG-TESTS-HERE") or make_package("PROLOG-TESTS-HERE", use=["COMMON-LISP", "CRAM-PROLOG"])
+_PACKAGE = sym("*PACKAGE*")
+_PRETTY = sym("*PRINT-PRETTY*")
+
+
+def read(text):
+    """The Lisp data that ``text`` is."""
+    outer, _PACKAGE.value = _PACKAGE.value, HERE  # no `binding`: tests read before there is a kernel
+    try:
+        form = read_from_string(text)
+    finally:
+        _PACKAGE.value = outer
+    return form[0] if isinstance(form, tuple) else form
+
+
+def show(data):
+    """``data`` as Lisp prints it."""
+    with binding(_PACKAGE, HERE, _PRETTY, None):
+        return prin1_to_string(data)
+
+
+def ask(text, binds="nil"):
+    """All answers to the goal ``text``, printed."""
+    return show(force_ll(query.prolog(read(text), read(binds))))
+
+
+def first(text):
+    """The result of asking for one answer only."""
+    return query.prolog(read(text))
+
+
+def group(name, *clauses, extendable="()"):
+    """Define a fact group; each clause is the text of (head goal...). Returns what def-fact-group returns, printed."""
+    return show(facts.define_fact_group(read(name), read(extendable), [read(clause) for clause in clauses]))
+
+
+def function(name):
+    """Decorator: define a Lisp function in the test package."""
+
+    def define(code):
+        read(name).function = code
+        return code
+
+    return define
+
+
+class RegisteredWarnings:
+    """``with RegisteredWarnings() as given:`` collects the texts of warnings and muffles them."""
+
+    def __enter__(self):
+        from cramhy_runtime.lisp.conditions import Warning_, _handlers, muffle_warning
+
+        texts = []
+
+        def note(condition):
+            texts.append(condition.report())
+            muffle_warning(condition)
+
+        self.binding = binding(_handlers, ([(Warning_, note)], _handlers.value))
+        self.binding.__enter__()
+        return texts
+
+    def __exit__(self, *exc):
+        self.binding.__exit__(*exc)
+
+
+def error_text(thunk, kind=conditions.Error):
+    """The report of the error that ``thunk`` signals."""
+    return conditions.handler_case([(kind, lambda condition: condition.report())], thunk)
+
+

@@ -1,0 +1,68 @@
+(require cramhy *)
+(in-package :tut)
+
+(def-process-module turtlesim-navigation (motion-designator)
+  (roslisp:ros-info (turtle-process-modules)
+    "TurtleSim navigation invoked with motion designator `~a'."
+    motion-designator)
+  (destructuring-bind (command motion) (reference motion-designator)
+    (ecase command
+      (drive
+        (send-vel-cmd
+          (turtle-motion-speed motion)
+          (turtle-motion-angle motion)))
+      (move
+        (move-to motion)))))
+
+(def-process-module turtlesim-pen-control (motion-designator)
+  (roslisp:ros-info (turtle-process-modules)
+    "TurtleSim pen control invoked with motion designator `~a'."
+    motion-designator)
+  (destructuring-bind (command motion) (reference motion-designator)
+    (ecase command
+      (set-pen
+        (call-set-pen
+          (pen-motion-r motion)
+          (pen-motion-g motion)
+          (pen-motion-b motion)
+          (pen-motion-width motion)
+          (pen-motion-off motion))))))
+
+(defun drive (?speed ?angle)
+  (top-level
+    (with-process-modules-running (turtlesim-navigation)
+      (let ((trajectory (desig:a motion (type driving) (speed ?speed) (angle ?angle))))
+        (pm-execute 'turtlesim-navigation trajectory)))))
+
+(defun move-simple (?x ?y)
+  "One motion: to the point (?x ?y)."
+  (top-level
+    (with-process-modules-running (turtlesim-navigation)
+      (let ((goal (desig:a motion (type moving) (goal (?x ?y 0)))))
+        (pm-execute 'turtlesim-navigation goal)))))
+
+(defun move-parallel (&optional (?x 9) (?y 1))
+  "Two motions for one module at once: the second waits until the first is done."
+  (top-level
+    (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)
+      (let ((goal (desig:a motion (type moving) (goal (?x ?y 0))))
+            (trajectory (desig:a motion (type driving) (speed 3) (angle 8))))
+        (cpl:par
+          (pm-execute 'turtlesim-navigation goal)
+          (pm-execute 'turtlesim-navigation trajectory))))))
+
+(defun drive-n-draw (&optional (?x 9) (?y 9))
+  "Two modules at once: the turtle moves while its pen changes twice a second."
+  (top-level
+    (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)
+      (let ((goal (desig:a motion (type moving) (goal (?x ?y 0)))))
+        (cpl:par
+          (pm-execute 'turtlesim-navigation goal)
+          (dotimes (i 10)
+            (pm-execute 'turtlesim-pen-control
+              (let ((?r (random 255))
+                    (?g (random 255))
+                    (?b (random 255))
+                    (?width (+ 3 (random 5))))
+                (desig:a motion (type setting-pen) (r ?r) (g ?g) (b ?b) (width ?width))))
+            (sleep 0.5)))))))
