@@ -348,12 +348,6 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator with-condition-restarts [condition restarts #* body]
   `(progn ~condition ~restarts ~@body))
 
-(defoperator define-condition [name parents slots #* options]
-  (import cramhy.clos [slot-specification class-options])
-  `(%define-condition (quote ~name) (quote ~parents)
-                      (list ~@(lfor slot (elements slots) (slot-specification slot)))
-                      (list ~@(class-options options))))
-
 ;; -------------------------------------------------------------------------------------------------------------- streams
 
 (defoperator with-output-to-string [spec #* body]

@@ -7,6 +7,7 @@ the pytest plugin, and the Hy module ``cramhy``.
 from __future__ import annotations
 
 import importlib
+import importlib.util
 
 ROOMS = ("transforms", "prolog", "cpl", "ros", "designators", "process_modules")
 """The rooms with a ``package.py``, in the order of their floors."""
@@ -34,6 +35,8 @@ def boot():
     package.fill()
     for room in ROOMS:
         importlib.import_module(f"cramhy_runtime.{room}.package")
+        if importlib.util.find_spec(f"cramhy_runtime.{room}.expansions"):
+            importlib.import_module(f"cramhy_runtime.{room}.expansions")
     systems.provide_system(SYSTEMS)
     ros_load.define_faces()
     importer.install()

@@ -8,7 +8,11 @@ from cramhy_runtime.ros.definition_text import DefinitionError, parse_message, p
 
 def test_fields_constants_and_comments():
     definition = parse_message("# a comment\nint32 X=3 # three\nstring S=a # b\nfloat64[36] c\nHeader header\nPoint[] ps\n", "my_msgs")
-    assert [repr(field) for field in definition.fields] == ["float64[36] c", "std_msgs/Header header", "my_msgs/Point[] ps"]
+    assert [repr(field) for field in definition.fields] == [
+        "float64[36] c",
+        "std_msgs/Header header",
+        "my_msgs/Point[] ps",
+    ]
     assert definition.constants == {"X": 3, "S": "a # b"}
 
 
@@ -17,11 +21,14 @@ def test_a_service_has_two_halves():
     assert [len(request.fields), len(response.fields)] == [1, 1]
 
 
-@pytest.mark.parametrize("text, problem", [
-    ("int32", 'here, line 1: "int32" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).'),
-    ("int32[x] a", 'here, line 1: "int32[x]" is not a type. Arrays are written T[] or T[3].'),
-    ("int32 A=x", "here, line 1: x is not a int32."),
-])
+@pytest.mark.parametrize(
+    "text, problem",
+    [
+        ("int32", 'here, line 1: "int32" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).'),
+        ("int32[x] a", 'here, line 1: "int32[x]" is not a type. Arrays are written T[] or T[3].'),
+        ("int32 A=x", "here, line 1: x is not a int32."),
+    ],
+)
 def test_errors_name_file_and_line(text, problem):
     with pytest.raises(DefinitionError) as error:
         parse_message(text, "p", "here")

@@ -7,8 +7,21 @@ from cramhy_runtime.lisp.data import DoubleFloat, python_list
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.ros import messages, wire
-from cramhy_runtime.ros.message_building import (code_symbol, code_symbols, get_field, list_to_ros_message, make_message, make_request, make_response,
-                                                 modify_message_copy, msg_slot_value, ros_datatype, ros_message_to_list, symbol_code, symbol_codes)
+from cramhy_runtime.ros.message_building import (
+    code_symbol,
+    code_symbols,
+    get_field,
+    list_to_ros_message,
+    make_message,
+    make_request,
+    make_response,
+    modify_message_copy,
+    msg_slot_value,
+    ros_datatype,
+    ros_message_to_list,
+    symbol_code,
+    symbol_codes,
+)
 
 POSE = """[TURTLESIM-MSG:POSE
    X:
@@ -99,10 +112,13 @@ class TestMaking:
     def test_nothing_is_checked_when_a_message_is_made(self):
         assert make_message("turtlesim/Pose", [(("X",), "abc")]).x == "abc"
 
-    @pytest.mark.parametrize("type_name, text", [
-        ("nope/Nope", "Can't find package NOPE-MSG"),
-        ("turtlesim/Nope", "Can't find class for turtlesim/Nope"),
-    ])
+    @pytest.mark.parametrize(
+        "type_name, text",
+        [
+            ("nope/Nope", "Can't find package NOPE-MSG"),
+            ("turtlesim/Nope", "Can't find class for turtlesim/Nope"),
+        ],
+    )
     def test_unknown_types(self, fails, type_name, text):
         assert fails(make_message, type_name).report() == text
 
@@ -111,8 +127,9 @@ class TestMaking:
 
     def test_an_unknown_field_names_the_fields_there_are(self, fails):
         text = fails(make_message, "turtlesim/Pose", [(("FOO",), 1)]).report()
-        assert " ".join(text.split()) == ("Could not find field FOO in (POSE (X . 0.0) (Y . 0.0) (THETA . 0.0) (LINEAR_VELOCITY . 0.0) "
-                                          "(ANGULAR_VELOCITY . 0.0))")
+        assert " ".join(text.split()) == (
+            "Could not find field FOO in (POSE (X . 0.0) (Y . 0.0) (THETA . 0.0) (LINEAR_VELOCITY . 0.0) (ANGULAR_VELOCITY . 0.0))"
+        )
 
     def test_fields_keep_their_underscores(self, fails):
         fails(make_message, "std_msgs/Header", [(("FRAME-ID",), "map")])
@@ -138,7 +155,9 @@ class TestReading:
     def test_a_field_that_is_not_there(self, fails):
         vector = make_message("geometry_msgs/Vector3")
         text = fails(get_field, vector, ("ZZ",)).report()
-        assert text.startswith("When attempting to read the slot's value (slot-value), the slot GEOMETRY_MSGS-MSG::ZZ is missing from the object")
+        assert text.startswith(
+            "When attempting to read the slot's value (slot-value), the slot GEOMETRY_MSGS-MSG::ZZ is missing from the object"
+        )
 
     def test_msg_slot_value_takes_strings_keywords_and_symbols(self):
         pose = make_message("turtlesim/Pose", [(("X",), 4)])
@@ -149,8 +168,10 @@ class TestReading:
         assert reader(make_message("turtlesim/Pose", [(("X",), 2)])) == 2
         condition = fails(reader, 3)
         assert isinstance(condition, Error)
-        assert condition.report().startswith("There is no applicable method for the generic function\n  #<STANDARD-GENERIC-FUNCTION TURTLESIM-MSG:X (1)>"
-                                             "\nwhen called with arguments\n  (3).")
+        assert condition.report().startswith(
+            "There is no applicable method for the generic function\n  #<STANDARD-GENERIC-FUNCTION TURTLESIM-MSG:X (1)>"
+            "\nwhen called with arguments\n  (3)."
+        )
 
 
 class TestPrinting:
@@ -176,7 +197,10 @@ class TestPrinting:
         numbers = [DoubleFloat(1.123456789012345), DoubleFloat(-1.123456789012345), 0.0]
         vector = messages.message_class("geometry_msgs/Vector3")(*numbers)
         text = prin1(make_message("geometry_msgs/Twist", [(("LINEAR",), vector)])).splitlines()
-        assert text[2:4] == ["     (GEOMETRY_MSGS-MSG:VECTOR3 (:X . 1.123456789012345d0)", "      (:Y . -1.123456789012345d0) (:Z . 0.0))"]
+        assert text[2:4] == [
+            "     (GEOMETRY_MSGS-MSG:VECTOR3 (:X . 1.123456789012345d0)",
+            "      (:Y . -1.123456789012345d0) (:Z . 0.0))",
+        ]
 
 
 class TestListForm:
@@ -187,7 +211,13 @@ class TestListForm:
 
     def test_constants(self, fails):
         log = sym("ROSGRAPH_MSGS-MSG::LOG")
-        assert [(pair.car.name, pair.cdr) for pair in python_list(symbol_codes(log))] == [("DEBUG", 1), ("INFO", 2), ("WARN", 4), ("ERROR", 8), ("FATAL", 16)]
+        assert [(pair.car.name, pair.cdr) for pair in python_list(symbol_codes(log))] == [
+            ("DEBUG", 1),
+            ("INFO", 2),
+            ("WARN", 4),
+            ("ERROR", 8),
+            ("FATAL", 16),
+        ]
         assert symbol_code(log, sym(":WARN")) == 4
         assert code_symbol(log, 8) is sym(":ERROR")
         assert code_symbols(log, 5) is None
@@ -225,7 +255,10 @@ class TestTheWire:
 
     @pytest.mark.parametrize("value, shown", [(None, "NIL"), ("a", '"a"')])
     def test_what_is_no_real_is_a_type_error(self, fails, value, shown):
-        assert fails(self.sent, "turtlesim/Pose", x=value).report() == f"The value\n  {shown}\nis not of type\n  REAL\nwhen binding SB-KERNEL::X"
+        assert (
+            fails(self.sent, "turtlesim/Pose", x=value).report()
+            == f"The value\n  {shown}\nis not of type\n  REAL\nwhen binding SB-KERNEL::X"
+        )
 
     @pytest.mark.parametrize("value, received", [(None, None), (False, None), (0, True), ("", True), (True, True)])
     def test_every_value_but_nil_is_true(self, value, received):

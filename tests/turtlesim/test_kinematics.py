@@ -50,16 +50,19 @@ def test_the_other_recorded_runs_step_alike(turtle, facts, name, command):
         assert ours == pytest.approx(theirs, abs=1e-6)
 
 
-@pytest.mark.parametrize("command, final", [
-    ((2, 0, 0), (7.560444355, 5.544444561, 0)),
-    ((1, 0, 0), (6.552444458, 5.544444561, 0)),
-    ((-2, 0, 0), (3.528444529, 5.544444561, 0)),
-    ((0, 1, 0), (5.544444561, 6.552444458, 0)),
-    ((0, 0, 2), (5.544444561, 5.544444561, 2.016)),
-    ((0, 0, -2), (5.544444561, 5.544444561, -2.016)),
-    ((0, 0, 3.5), (5.544444561, 5.544444561, -2.755185)),
-    ((2, 0, 1.8), (6.602816582, 6.938989639, 1.8144)),
-])
+@pytest.mark.parametrize(
+    "command, final",
+    [
+        ((2, 0, 0), (7.560444355, 5.544444561, 0)),
+        ((1, 0, 0), (6.552444458, 5.544444561, 0)),
+        ((-2, 0, 0), (3.528444529, 5.544444561, 0)),
+        ((0, 1, 0), (5.544444561, 6.552444458, 0)),
+        ((0, 0, 2), (5.544444561, 5.544444561, 2.016)),
+        ((0, 0, -2), (5.544444561, 5.544444561, -2.016)),
+        ((0, 0, 3.5), (5.544444561, 5.544444561, -2.755185)),
+        ((2, 0, 1.8), (6.602816582, 6.938989639, 1.8144)),
+    ],
+)
 def test_reference_numbers(turtle, command, final):
     forward, sideways, turn = command
     assert run(turtle, forward, turn, sideways)[-1][:3] == pytest.approx(final, abs=1e-6)
@@ -182,20 +185,25 @@ class TestTeleports:
         assert turtle.pose[:2] == (1.0, 1.0)
         assert turtle.pose[3:] == (0.0, 1.0)
 
-    @pytest.mark.parametrize("request_, result, warning", [
-        ((20, 5, 0), (11.088889122009277, 5.0), "[x=20.000000, y=6.088889]"),
-        ((5, 20, 0), (5.0, 11.088889122009277), None),
-        ((-3, 5, 0), (0.0, 5.0), "[x=-3.000000, y=6.088889]"),
-        ((5, -3, 0), (5.0, 0.0), "[x=5.000000, y=14.088889]"),
-    ])
+    @pytest.mark.parametrize(
+        "request_, result, warning",
+        [
+            ((20, 5, 0), (11.088889122009277, 5.0), "[x=20.000000, y=6.088889]"),
+            ((5, 20, 0), (5.0, 11.088889122009277), None),
+            ((-3, 5, 0), (0.0, 5.0), "[x=-3.000000, y=6.088889]"),
+            ((5, -3, 0), (5.0, 0.0), "[x=5.000000, y=14.088889]"),
+        ],
+    )
     def test_beyond_the_walls(self, turtle, request_, result, warning):
         turtle.teleport(*request_)
         assert turtle.pose[:2] == result
         warnings = [text for text in turtle.log() if "wall" in text]
         assert [warning in text for text in warnings] == ([True] if warning else [])
 
-    @pytest.mark.parametrize("theta, published", [(math.pi, -3.1415925), (-math.pi, 3.1415925), (4, -2.2831852), (7, 0.7168147),
-                                                  (10.0, -2.5663704872131348)])
+    @pytest.mark.parametrize(
+        "theta, published",
+        [(math.pi, -3.1415925), (-math.pi, 3.1415925), (4, -2.2831852), (7, 0.7168147), (10.0, -2.5663704872131348)],
+    )
     def test_angles_are_wrapped_at_the_truncated_pi(self, turtle, theta, published):
         turtle.teleport(5, 5, theta)
         assert turtle.pose[2] == pytest.approx(published, abs=1e-6)

@@ -12,8 +12,10 @@ PEN, GROUND = (179, 184, 255), (69, 86, 255)
 
 
 def test_it_says_two_things_at_the_start(turtle):
-    assert turtle.log() == ["Starting turtlesim with node name /turtlesim",
-                            "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]"]
+    assert turtle.log() == [
+        "Starting turtlesim with node name /turtlesim",
+        "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]",
+    ]
     assert turtle.simulator.lines[0].startswith("[ INFO] [1292688669.")
 
 
@@ -27,9 +29,24 @@ def test_the_first_tick_publishes_nothing(simulator, watch):
 
 def test_topics_and_services_are_those_of_the_original(simulator):
     here = graph.active()
-    assert sorted(here.topics) == ["/rosout", "/rosout_agg", "/turtle1/cmd_vel", "/turtle1/color_sensor", "/turtle1/pose"]
-    assert sorted(here.services) == ["/clear", "/kill", "/reset", "/spawn", "/turtle1/set_pen", "/turtle1/teleport_absolute",
-                                     "/turtle1/teleport_relative", "/turtlesim/get_loggers", "/turtlesim/set_logger_level"]
+    assert sorted(here.topics) == [
+        "/rosout",
+        "/rosout_agg",
+        "/turtle1/cmd_vel",
+        "/turtle1/color_sensor",
+        "/turtle1/pose",
+    ]
+    assert sorted(here.services) == [
+        "/clear",
+        "/kill",
+        "/reset",
+        "/spawn",
+        "/turtle1/set_pen",
+        "/turtle1/teleport_absolute",
+        "/turtle1/teleport_relative",
+        "/turtlesim/get_loggers",
+        "/turtlesim/set_logger_level",
+    ]
 
 
 def test_a_background_that_was_set_before_is_kept(watch):
@@ -47,7 +64,10 @@ class TestPen:
         kernel.sleep(1.5)
         assert turtle.colour == PEN
 
-    @pytest.mark.parametrize("speed, recorded", [(0.2, 61 / 61), (0.5, 61 / 62), (1.0, 49 / 62), (1.5, 27 / 62), (2.0, 4 / 62), (2.5, 0), (5.0, 0)])
+    @pytest.mark.parametrize(
+        "speed, recorded",
+        [(0.2, 61 / 61), (0.5, 61 / 62), (1.0, 49 / 62), (1.5, 27 / 62), (2.0, 4 / 62), (2.5, 0), (5.0, 0)],
+    )
     def test_while_driving_it_reads_the_pen_as_often_as_recorded(self, turtle, speed, recorded):
         turtle.teleport(1, 5.544445)
         turtle.call("/clear", "std_srvs/Empty")
@@ -113,11 +133,21 @@ class TestGlobalServices:
         kernel.sleep(0.05)
         assert turtle.pose == before
 
-    @pytest.mark.parametrize("name, complaint", [
-        ("bad name!", "Character [ ] at element [3] is not valid in Graph Resource Name [bad name!].  Valid characters are a-z, A-Z, 0-9, / and _."),
-        ("1abc", "Character [1] is not valid as the first character in Graph Resource Name [1abc].  Valid characters are a-z, A-Z, / and in "
-                 "some cases ~."),
-    ])
+    @pytest.mark.parametrize(
+        "name, complaint",
+        [
+            (
+                "bad name!",
+                "Character [ ] at element [3] is not valid in Graph Resource Name [bad name!].  "
+                "Valid characters are a-z, A-Z, 0-9, / and _.",
+            ),
+            (
+                "1abc",
+                "Character [1] is not valid as the first character in Graph Resource Name [1abc].  Valid characters are a-z, A-Z, / and in "
+                "some cases ~.",
+            ),
+        ],
+    )
     def test_an_illegal_name_is_refused_with_roscpps_text(self, turtle, name, complaint):
         with pytest.raises(Refusal) as refusal:
             turtle.call("/spawn", "turtlesim/Spawn", x=3, y=3, name=name)
@@ -159,7 +189,10 @@ class TestGlobalServices:
         turtle.drive(1)
         kernel.sleep(1.2)
         assert turtle.colour == PEN
-        assert turtle.log()[2:4] == ["Resetting turtlesim.", "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]"]
+        assert turtle.log()[2:4] == [
+            "Resetting turtlesim.",
+            "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]",
+        ]
 
     def test_the_background_changes_with_clear_and_not_before(self, turtle):
         graph.active().parameters.set("/turtlesim/background_r", 150)
@@ -216,7 +249,12 @@ class TestTeleop:
         turtle.node.subscribe("/turtle1/cmd_vel", turtle.twist, received.append)
         teleop = Teleop()
         teleop.type("\x1b[A\x1b[B\x1b[C\x1b[D x")
-        assert [(message.linear.x, message.angular.z) for message in received] == [(2.0, 0.0), (-2.0, 0.0), (0.0, -2.0), (0.0, 2.0)]
+        assert [(message.linear.x, message.angular.z) for message in received] == [
+            (2.0, 0.0),
+            (-2.0, 0.0),
+            (0.0, -2.0),
+            (0.0, 2.0),
+        ]
 
     def test_the_scale_is_a_parameter_of_the_namespace(self, turtle):
         graph.active().parameters.set("/scale_linear", 1.0)

@@ -7,6 +7,7 @@ section 11). Nothing is called, and nothing is paid for, when nobody has added a
 
 from __future__ import annotations
 
+from ..lisp import classes as _classes  # noqa: F401  before `generic`, which it imports
 from ..lisp.data import Symbol, one
 from ..lisp.generic import add_method, generic, remove_method
 from . import symbols  # noqa: F401  the packages must exist

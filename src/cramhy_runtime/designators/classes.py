@@ -15,6 +15,7 @@ import weakref
 from ..lisp.conditions import error, warn
 from ..lisp.condition_types import SimpleError, SimpleWarning
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
+from ..lisp.generic import generic
 from ..lisp.packages import keyword
 from .symbols import DESIG_PROPS
 
@@ -52,7 +53,9 @@ class Designator:
     __slots__ = ("description", "parent", "successor", "effective", "timestamp", "data", "quantifier", "solutions",
                  "current_solution", "_object_id", "callbacks", "resolver", "__weakref__", "__dict__")
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR"
-    initargs = {"DESCRIPTION": "description", "PARENT": "parent"}
+    initargs = {"DESCRIPTION": "description", "PARENT": "parent", "SUCCESSOR": "successor", "EFFECTIVE": "effective",
+                "TIMESTAMP": "timestamp", "DATA": "data", "QUANTIFIER": "quantifier", "OBJECT-ID": "object_id",
+                "SOLUTIONS": "solutions", "CURRENT-SOLUTION": "current_solution"}
 
     def __init__(self, description=None, parent=None):
         self.description = description
@@ -149,8 +152,12 @@ def type_keyword(designator):
     return None
 
 
-def make_designator(class_, description=None, parent=None):
-    """A new designator of the class that the keyword ``class_`` stands for; equated to ``parent`` if there is one."""
+make_designator = generic("DESIG::MAKE-DESIGNATOR", "(class description &optional parent)", documentation="""
+A new designator of the class that the keyword ``class`` stands for; equated to ``parent`` if there is one.""")
+
+
+@make_designator.method(None, None)
+def _make_designator(class_, description, parent=None):
     cls = _classes.get(class_)
     if cls is None:
         if isinstance(class_, type):
@@ -195,7 +202,7 @@ def merge_desig_descriptions(designator, new_description):
 
 def copy_designator(old, *, new_description=None):
     """A new, unequated designator of the same type with the merged description."""
-    return make_designator(type_keyword(old), merge_desig_descriptions(old, new_description))
+    return _make_designator(type_keyword(old), merge_desig_descriptions(old, new_description))
 
 
 def extend_designator_properties(designator, extension):

@@ -10,24 +10,30 @@ from __future__ import annotations
 from ..cpl.hooks import Hook
 from ..lisp.conditions import error, type_error
 from ..lisp.data import list_from
+from ..lisp.generic import generic
 from .classes import Designator, DesignatorError
 
-on_equate_designators = Hook("on-equate-designators")
+on_equate_designators = Hook("CUT::ON-EQUATE-DESIGNATORS", "(successor parent)")
+equate = generic("DESIG::EQUATE", "(parent successor)", documentation="""
+Join the chains of the two and return the successor; an error if they are one already.""")
+desig_equal = generic("DESIG::DESIG-EQUAL", "(desig-1 desig-2)", documentation="Whether both are designators of one chain.")
+first_desig = generic("DESIG::FIRST-DESIG", "(desig)", documentation="The oldest of its chain.")
+current_desig = generic("DESIG::CURRENT-DESIG", "(desig)", documentation="The youngest of its chain; nil for nil.")
 
 
-def equate(parent, successor):
-    """Join the chains of the two and return ``successor``; an error if they are one already."""
+@equate.method(Designator, Designator)
+def _equate(parent, successor):
     if desig_equal(parent, successor):
         return error("Cannot equate designators that are already equal.")
     if on_equate_designators:
         on_equate_designators(successor, parent)
-    oldest, youngest = first_desig(parent), current_desig(parent)
+    first, last = oldest(parent), youngest(parent)
     ancestor = successor.parent
     if ancestor is not None:
-        ancestor.successor = oldest
-        oldest.parent = ancestor
-    successor.parent = youngest
-    youngest.successor = successor
+        ancestor.successor = first
+        first.parent = ancestor
+    successor.parent = last
+    last.successor = successor
     members = chain(parent)
     identity = members[0].object_id
     for member in members:
@@ -40,38 +46,42 @@ def equate(parent, successor):
 
 def chain(designator):
     """The members of its chain, oldest first, as a Python list."""
-    members, member = [], first_desig(designator)
+    members, member = [], oldest(designator)
     while member is not None:
         members.append(member)
         member = member.successor
     return members
 
 
-def desig_equal(first, second):
-    """Whether both are designators of one chain."""
-    if not isinstance(first, Designator) or not isinstance(second, Designator):
-        return None
-    return True if first_desig(first) is first_desig(second) else None
+@desig_equal.method(None, None)
+def _never_equal(first, second):
+    return None
 
 
-def first_desig(designator):
+@desig_equal.method(Designator, Designator)
+def _same_chain(first, second):
+    return True if oldest(first) is oldest(second) else None
+
+
+@first_desig.method(Designator)
+def oldest(designator):
     """The oldest of its chain."""
     while designator.parent is not None:
         designator = designator.parent
     return designator
 
 
-def current_desig(designator):
-    """The youngest of its chain; nil for nil."""
-    if designator is None:
-        return None
-    if not isinstance(designator, Designator):
-        from ..lisp.generic import no_applicable_method
-
-        return no_applicable_method("CRAM-DESIGNATORS:CURRENT-DESIG", (designator,))
+@current_desig.method(Designator)
+def youngest(designator):
+    """The youngest of its chain."""
     while designator.successor is not None:
         designator = designator.successor
     return designator
+
+
+@current_desig.method(type(None))
+def _no_designator(designator):
+    return None
 
 
 def newest_effective_designator(designator):
@@ -96,7 +106,7 @@ def designator_solutions(designator, from_root=None):
     from .resolution import next_solution, reference
 
     def solutions():
-        member = first_desig(designator) if from_root is not None else designator
+        member = oldest(designator) if from_root is not None else designator
         while member is not None:
             value = handler_case([(DesignatorError, lambda problem: _END)], lambda: reference(member))
             if value is _END or value is None:

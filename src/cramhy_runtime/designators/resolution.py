@@ -11,17 +11,18 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from ..cpl.fluents import function_of
-from ..lisp.conditions import error, make_condition
-from ..lisp.data import UNBOUND, UNSUPPLIED, Symbol
+from ..lisp import equality
+from ..lisp.conditions import error
+from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol
+from ..lisp.generic import generic
 from ..prolog.lazy_lists import from_iterator, lazy_car, lazy_cdr
 from ..prolog.patterns import is_var
 from ..prolog.query import ask
 from ..prolog.terms import Var
 from ..prolog.utilities import current_timestamp
-from .classes import (ActionDesignator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator,
+from .classes import (ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator,
                       ObjectDesignator)
-from .equating import equate
+from .equating import equate, youngest
 from .locations import location_solutions
 from .symbols import sym
 
@@ -32,23 +33,30 @@ if DEFAULT_ROLE.value is UNBOUND:
 
 ACTION_GROUNDING = sym("DESIG::ACTION-GROUNDING")
 MOTION_GROUNDING = sym("DESIG::MOTION-GROUNDING")
-_resolvers = {}  # role -> [(class, function)], the newest first
 
-
-def define_resolver(cls, role, function):
-    """Resolve designators of ``cls`` by ``function(designator, role)`` when the role is ``role``: a method on ``(eql role)``."""
-    _resolvers.setdefault(role, []).insert(0, (cls, function_of(function)))
+reference = generic("DESIG::REFERENCE", "(desig &optional role)", documentation="""
+What the designator stands for, always the same object; a designator-error if that cannot be found.""")
+resolve_designator = generic("DESIG::RESOLVE-DESIGNATOR", "(desig role)", documentation="""
+Find what the designator stands for; called by reference. Methods on ``(eql role)`` resolve in their own way.""")
+next_solution = generic("DESIG::NEXT-SOLUTION", "(desig)", documentation="""
+A designator for the next possibility, equated to this one, or nil. For locations always the same object.""")
+designator_solutions_equal = generic("DESIG::DESIGNATOR-SOLUTIONS-EQUAL", "(solution-1 solution-2)", documentation="""
+Whether two solutions are the same: strings without case, lists by equal, arrays by equalp, else eql.""")
+designator_pose = generic("DESIG::DESIGNATOR-POSE", "(desig)", documentation="""
+The pose of an effective designator; nil before. Methods come from packages that know poses (cram-tf).""")
+designator_distance = generic("DESIG::DESIGNATOR-DISTANCE", "(desig-1 desig-2)", documentation="""
+The distance of two effective designators; nil if one is not effective.""")
 
 
 def unresolved(designator, control):
     """Signal that ``designator`` cannot be resolved, with the text ``control``."""
-    problem = make_condition(DesignatorError(control, designator))
+    problem = DesignatorError(control, designator)
     problem.about = designator
     return error(problem)
 
 
-def reference(designator, role=UNSUPPLIED):
-    """What ``designator`` stands for, always the same object; a ``designator-error`` if that cannot be found."""
+@reference.method(Designator)
+def _reference(designator, role=UNSUPPLIED):
     if designator.effective and not isinstance(designator, LocationDesignator) and designator.data is not None:
         return designator.data
     me = kernel.current()
@@ -72,32 +80,15 @@ def reference(designator, role=UNSUPPLIED):
                 kernel.unpark(task)
 
 
-def resolve_designator(designator, role=None):
-    """Find the solution, by the resolver for ``role`` if there is one, else by the kind of designator."""
-    for cls, function in _resolvers.get(role, ()):
-        if isinstance(designator, cls):
-            return function(designator, role)
-    if isinstance(designator, (ActionDesignator, MotionDesignator)):
-        return _resolve_by_prolog(designator)
-    if isinstance(designator, LocationDesignator):
-        return _resolve_location(designator)
-    if isinstance(designator, (ObjectDesignator, HumanDesignator)):
-        if designator.data is not None:
-            return designator.data
-        kind = "object" if isinstance(designator, ObjectDesignator) else "human"
-        return unresolved(designator, f"Designator `~a' does not reference an {kind}.")
-    from ..lisp.generic import no_applicable_method
-
-    return no_applicable_method("CRAM-DESIGNATORS:RESOLVE-DESIGNATOR", (designator, role))
-
-
 def _groundings(designator, predicate):
     for (value,) in ask(predicate, designator, Var()):
         if not (isinstance(value, Symbol) and is_var(value)):
             yield value
 
 
-def _resolve_by_prolog(designator):
+@resolve_designator.method(ActionDesignator, None)
+@resolve_designator.method(MotionDesignator, None)
+def _resolve_by_prolog(designator, role=None):
     # An action or motion without solution stays without, even when facts are added later: a new designator is tried afresh.
     action = isinstance(designator, ActionDesignator)
     if designator.solutions is UNBOUND:
@@ -109,7 +100,8 @@ def _resolve_by_prolog(designator):
     return value
 
 
-def _resolve_location(designator):
+@resolve_designator.method(LocationDesignator, None)
+def _resolve_location(designator, role=None):
     if designator.data is None:
         designator.data = location_solutions(designator)
         if designator.data is None:
@@ -119,37 +111,46 @@ def _resolve_location(designator):
     return designator.current_solution
 
 
-def next_solution(designator):
-    """A designator for the next possibility, equated to ``designator``, or nil. For locations always the same object."""
-    if isinstance(designator, LocationDesignator):
-        if designator.effective is None:
-            reference(designator)
-        if designator.successor is not None:
-            return designator.successor
-        rest = lazy_cdr(designator.data)
-        if rest is None:
-            return None
-        successor = designator.__class__(designator.description)
-        successor.data = rest
-        return equate(designator, successor)
-    if isinstance(designator, (ActionDesignator, MotionDesignator)):
+@resolve_designator.method(ObjectDesignator, None)
+def _resolve_object(designator, role=None):
+    return designator.data if designator.data is not None else unresolved(
+        designator, "Designator `~a' does not reference an object.")
+
+
+@resolve_designator.method(HumanDesignator, None)
+def _resolve_human(designator, role=None):
+    return designator.data if designator.data is not None else unresolved(
+        designator, "Designator `~a' does not reference an human.")
+
+
+@next_solution.method(LocationDesignator)
+def _next_location(designator):
+    if designator.effective is None:
         reference(designator)
-        rest = lazy_cdr(designator.solutions)
-        if rest is None:
-            return None
-        successor = (ActionDesignator if isinstance(designator, ActionDesignator) else MotionDesignator)(designator.description)
-        successor.solutions = rest
-        return equate(designator, successor)
-    from ..lisp.generic import no_applicable_method
+    if designator.successor is not None:
+        return designator.successor
+    rest = lazy_cdr(designator.data)
+    if rest is None:
+        return None
+    successor = designator.__class__(designator.description)
+    successor.data = rest
+    return equate(designator, successor)
 
-    return no_applicable_method("CRAM-DESIGNATORS:NEXT-SOLUTION", (designator,))
+
+@next_solution.method(ActionDesignator)
+@next_solution.method(MotionDesignator)
+def _next_grounding(designator):
+    reference(designator)
+    rest = lazy_cdr(designator.solutions)
+    if rest is None:
+        return None
+    successor = (ActionDesignator if isinstance(designator, ActionDesignator) else MotionDesignator)(designator.description)
+    successor.solutions = rest
+    return equate(designator, successor)
 
 
-def designator_solutions_equal(first, second):
-    """Whether two solutions are the same: strings without case, lists by ``equal``, arrays by ``equalp``, else ``eql``."""
-    from ..lisp import equality
-    from ..lisp.data import Cons
-
+@designator_solutions_equal.method(None, None)
+def _equal_solutions(first, second):
     if isinstance(first, str) and isinstance(second, str):
         return True if first.lower() == second.lower() else None
     if isinstance(first, Cons) or isinstance(second, Cons):
@@ -159,26 +160,18 @@ def designator_solutions_equal(first, second):
     return equality.eql(first, second)
 
 
-def designator_pose(designator):
-    """The pose of an effective designator; nil before. Methods come from packages that know poses (cram-tf)."""
-    return None if designator.effective is None else _no_primary_method("DESIGNATOR-POSE", designator)
+@designator_pose.method(Designator, qualifier="around", uses_next=True)
+def _pose_if_effective(next_method, designator):
+    return next_method() if designator.effective is not None else None
 
 
-def designator_distance(first, second):
-    """The distance of two effective designators; nil if one is not effective."""
-    if first.effective is None or second.effective is None:
-        return None
-    return _no_primary_method("DESIGNATOR-DISTANCE", first, second)
-
-
-def _no_primary_method(name, *arguments):
-    return error("There is no primary method for the generic function ~a when called with ~s.", name, list(arguments))
+@designator_distance.method(Designator, Designator, qualifier="around", uses_next=True)
+def _distance_if_effective(next_method, first, second):
+    return next_method() if first.effective is not None and second.effective is not None else None
 
 
 def loc_desig_location(designator):
     """The reference of the current designator; nil if it is no location designator."""
-    from .equating import current_desig
-
-    return reference(current_desig(designator)) if isinstance(designator, LocationDesignator) else None
+    return reference(youngest(designator)) if isinstance(designator, LocationDesignator) else None
 
 

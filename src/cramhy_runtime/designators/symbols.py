@@ -2,6 +2,7 @@
 
 from ..cpl.symbols import ensure_package
 from ..lisp.packages import sym
+from ..prolog import package as _prolog  # noqa: F401  this room's predicates and hooks have names of its packages
 
 DESIG = ensure_package("CRAM-DESIGNATORS", "DESIG")
 DESIG_PROPS = ensure_package("CRAM-DESIGNATOR-PROPERTIES", "DESIG-PROPS")

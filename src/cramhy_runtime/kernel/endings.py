@@ -17,7 +17,7 @@ from .errors import Abandoned, Deadlock, Interrupted, KernelError
 from .tasks import BLOCKED, RUNNABLE, Alarm
 
 GRACE = 1.0  # s of kernel time that tasks get for their cleanup when the kernel stops
-PATIENCE = 0.5  # s of wall time that a stopping kernel waits for calls that block
+PATIENCE = 10  # how often a stopping kernel looks whether calls that block have come back, with `LONGEST_WAIT` in between
 
 
 class Endings:
@@ -49,8 +49,15 @@ class Endings:
         """Whoever caught `Interrupted` says that it is dealt with: the next interrupt is a first one again."""
         self._unwinding = False
 
+    def interrupt_waits(self):
+        """True if the main task, about to go outside, would only hear when it is back that it was interrupted before."""
+        waiting = self._interrupts  # asked before the alarms, see `_read_interrupt`
+        alarms = list(self.main.alarms or ())
+        if self.main.shielded:
+            return bool(waiting and self._unwinding) or any(alarm.pierces_shield for alarm in alarms)
+        return bool(waiting or alarms)
+
     def _read_interrupt(self):
-        self._interrupts -= 1
         if not self._unwinding:
             self._unwinding = True
             self._alarm(Interrupted(), False)
@@ -59,6 +66,7 @@ class Endings:
             if self.main.alarms:
                 self.main.alarms.clear()
             self._alarm(Abandoned(), True)
+        self._interrupts -= 1  # last, so that `interrupt_waits` sees it either here or among the alarms
 
     def _abandon_tasks(self):
         """Give up the cleanup of all tasks that were asked to end, and the tasks below them."""
@@ -106,8 +114,8 @@ class Endings:
     def stop(self):
         """Cancel all tasks, let them unwind, and end the kernel. Called by the main task.
 
-        Tasks get `GRACE` seconds of the kernel's clock, then their cleanup is abandoned; a call that blocks is waited
-        for `PATIENCE` seconds. A task that is still there after that stays parked for ever.
+        Tasks get `GRACE` seconds of the kernel's clock, then their cleanup is abandoned; for calls that
+        block it waits half a second. A task that is still there after that stays parked for ever.
         """
         if self.stopped:
             return

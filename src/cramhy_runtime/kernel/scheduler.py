@@ -66,7 +66,7 @@ class Kernel(Endings):
         self._interrupts = 0  # sent, but not yet read from the inbox
         self._unwinding = False  # one was raised in the main task and is not over
         self._stopping = False
-        self._gave_up_waiting = False
+        self._patience = PATIENCE
         self.stopped = False
         self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
         self._scheduler = SchedulerTask(self)
@@ -343,7 +343,8 @@ class Kernel(Endings):
                 return task
             if self._settlers:
                 return self._settlers.pop()
-            self._end_of_instant()
+            if not self._inbox:
+                self._end_of_instant()
 
     def _all_busy(self):
         return self._lots is None or all(task.preempted for task in self._queue)
@@ -373,12 +374,13 @@ class Kernel(Endings):
             return
         self._steps = 0
         when, limit, clock = self._timers.next_time(), self._limit, self.clock
-        blocking = self._blocking and not self._gave_up_waiting
+        blocking = self._blocking and self._patience
         if when is None and not blocking and not self._outside:
             self._alarm(Deadlock("" if self._stopping else reports.deadlock_text(self)), True)
         elif clock.virtual and (blocking or when is None):
-            self._wait(None, PATIENCE if self._stopping else INFINITY)
-            self._gave_up_waiting = self._stopping and not self._inbox
+            self._wait(None)
+            if self._stopping and not self._inbox:
+                self._patience -= 1
         elif limit is not None and limit <= clock.now():
             self._reach_limit()
         else:
@@ -386,10 +388,10 @@ class Kernel(Endings):
                 when = INFINITY
             self._wait(when if limit is None or when < limit else limit)
 
-    def _wait(self, when, seconds=None):
+    def _wait(self, when):
         try:
             if when is None:
-                self._bell.wait(seconds)
+                self._bell.wait()
             else:
                 self.clock.go_to(when, self._bell)
         except KeyboardInterrupt:  # without a handler of ours Python raises it right here, in the main thread

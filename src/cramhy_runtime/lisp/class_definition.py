@@ -8,13 +8,21 @@ function is a bare attribute access. Source: ANSI 7.1, 7.5 and 9.1; texts are SB
 from __future__ import annotations
 
 from .class_objects import ClassSlot, DirectSlot, StandardClass, StandardObject, effective_slots, touch_classes
-from .classes import (BuiltInClass, StructureClass, class_name, find_class_or_error, invalid_class_definition, register_class,
-                      registered_class, symbol_class)
+from .classes import (
+    BuiltInClass,
+    StructureClass,
+    class_name,
+    find_class_or_error,
+    invalid_class_definition,
+    register_class,
+    registered_class,
+    symbol_class,
+)
 from .condition_types import Condition
 from .conditions import SimpleError, SimpleTypeError, error
-from .data import Cons, Symbol, UNBOUND, list_from, one, python_list
+from .data import UNBOUND, Cons, Symbol, list_from, one, python_list
 from .faces import python_name
-from .packages import is_symbol, printed, symbol_name, sym
+from .packages import is_symbol, printed, sym, symbol_name
 
 
 def slot_spec(name, *, initargs=None, initform=None, initform_source=None, readers=None, writers=None, accessors=None,

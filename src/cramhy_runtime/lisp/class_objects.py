@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 from . import builtin_classes
 from .conditions import SimpleError, error
-from .data import Symbol, UNBOUND
+from .data import UNBOUND, Symbol
 from .faces import python_name
 from .packages import keyword, printed, sym
 

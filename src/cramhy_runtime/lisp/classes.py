@@ -9,7 +9,7 @@ This module also re-exports what others need of the class world: `make_instance`
 
 from __future__ import annotations
 
-from .builtin_classes import BuiltInClass, CLASSES, lisp_mro, system_class
+from .builtin_classes import CLASSES, BuiltInClass, lisp_mro, system_class
 from .class_objects import StandardClass, StandardObject, touch_classes
 from .conditions import Condition, Error, SimpleProgramError, error, type_error
 from .data import Symbol
@@ -181,9 +181,12 @@ class ConditionClass(type):
 
 
 class StructureClass(type):
-    """The metaclass of classes made by ``defstruct``."""
+    """The metaclass of classes made by ``defstruct``. Python code makes instances with keywords: ``TurtleMotion(speed=5)``."""
 
     lisp_name = "STRUCTURE-CLASS"
+
+    def __call__(cls, *initargs, **keywords):
+        return cls.lisp_structure.construct(*initargs, **keywords)
 
 
 class ForwardReferencedClass(StandardClass):

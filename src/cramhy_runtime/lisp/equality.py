@@ -14,15 +14,14 @@ from __future__ import annotations
 import pathlib
 from fractions import Fraction
 from math import copysign
+from zlib import crc32
 
-from .conditions import type_error
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
 from .vectors import LispArray, is_bit_vector
 
 LISP_NAMES = "eq eql equal equalp sxhash"
 
 _content_classes: tuple = (pathlib.PurePath,)
-_structure_parts = []
 
 
 def compare_by_content(cls):
@@ -30,12 +29,6 @@ def compare_by_content(cls):
     global _content_classes
     _content_classes += (cls,)
     return cls
-
-
-def define_structure_parts(function):
-    """Make ``equalp`` descend into structures: ``function(object)`` gives their slot values, or ``None`` for other objects."""
-    _structure_parts.append(function)
-    return function
 
 
 def eq(x, y):
@@ -71,9 +64,8 @@ def equal(x, y):
         if not isinstance(y, Cons) or equal(x.car, y.car) is None:
             return None
         x, y = x.cdr, y.cdr
-    cls = x.__class__
-    if cls is str or cls is LispString:
-        return True if (y.__class__ is str or y.__class__ is LispString) and str(x) == str(y) else None
+    if isinstance(x, (str, LispString)):
+        return True if isinstance(y, (str, LispString)) and str(x) == str(y) else None
     if is_bit_vector(x):
         return True if is_bit_vector(y) and list(x) == list(y) else None
     if isinstance(x, _content_classes):
@@ -137,11 +129,12 @@ def _array_elements(x):
 
 
 def _slots(x):
-    for parts in _structure_parts:
-        slots = parts(x)
-        if slots is not None:
-            return slots
-    return None
+    # The slot values of a structure, or None for other objects: only structures are compared slot by slot.
+    if not hasattr(x.__class__, "lisp_structure"):
+        return None
+    from .structures import slots_of
+
+    return [value for _, value in slots_of(x)]
 
 
 # ---------------------------------------------------------------------------------------------------------------- hash keys
@@ -175,7 +168,7 @@ def equal_key(x):
         return x
     if cls in _OWN_KEY:
         return x
-    if cls is LispString:
+    if isinstance(x, (str, LispString)):
         return str(x)
     if isinstance(x, Cons):
         return _cons_key(x, equal_key)
@@ -222,9 +215,21 @@ KEYS = {"EQ": eq_key, "EQL": eql_key, "EQUAL": equal_key, "EQUALP": equalp_key}
 """The hash key of each equality, by the name of the equality."""
 
 
-def sxhash(x):
-    """``sxhash``: a non-negative integer that is the same for ``equal`` objects."""
-    try:
-        return hash(equal_key(x)) & 0x3FFFFFFFFFFFFFFF
-    except TypeError:
-        return type_error(x, "T")
+def sxhash(x, depth=4):
+    """``sxhash``: a non-negative integer that is the same for ``equal`` objects, and the same in every run."""
+    if isinstance(x, Cons):
+        return (sxhash(x.car, depth - 1) * 31 + sxhash(x.cdr, depth - 1) * 17 + 1) % _HASHES if depth else 1
+    if x.__class__ is int:
+        return abs(x) % _HASHES
+    if is_number(x):
+        return crc32(repr(x).encode())
+    if isinstance(x, (str, LispString)):
+        return crc32(str(x).encode("utf-8", "surrogatepass"))
+    if isinstance(x, (Symbol, Character)):
+        return crc32((x.name if isinstance(x, Symbol) else x.char).encode("utf-8", "surrogatepass")) + 1
+    if x is None or x is False:
+        return 0
+    return crc32("".join(map(str, x)).encode() if is_bit_vector(x) else x.__class__.__name__.encode())
+
+
+_HASHES = 0x4000000000000000

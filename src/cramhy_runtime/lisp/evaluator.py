@@ -7,8 +7,6 @@ loader compiles whole files with `Unit`, whose code can be kept. Top-level ``pro
 
 from __future__ import annotations
 
-import ast
-
 from .compiler.support import NAMESPACE
 from .conditions import CompileError, Condition, error
 from .data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
@@ -47,8 +45,8 @@ class Unit:
         self.constants = backend.Constants()
         self.names = {}
 
-    def compile(self, form):
-        """The code object of one top-level form. Running it leaves the values in the global ``Lresult``."""
+    def statements(self, form):
+        """The Hy statements that one top-level form is compiled to. They leave its values in the global ``Lresult``."""
         backend = compiler()
         analyzer = backend.Analyzer(self.filename, self.positions)
         analyzer._at = self.positions.get(id(form))
@@ -56,15 +54,20 @@ class Unit:
             node = analyzer.toplevel(form, self.names)
         except RecursionError:
             error(CompileError("The form is nested too deeply to be compiled.", position=analyzer.place()))
-        generator = backend.Generator(self.constants)
-        statements = generator.toplevel(node)
-        if self.stored:
-            statements = [*self.constants.take_forms(), *statements]
-        else:
-            self.namespace.update(self.constants.take_objects())
-        tree = backend.python_tree(statements, self.filename)
+        statements = backend.Generator(self.constants).toplevel(node)
         self.names.clear()
-        return compile(tree, self.filename, "exec")
+        if self.stored:
+            return [*self.constants.take_forms(), *statements]
+        self.namespace.update(self.constants.take_objects())
+        return statements
+
+    def code(self, statements):
+        """The code object of Hy statements."""
+        return compile(compiler().python_tree(statements, self.filename), self.filename, "exec")
+
+    def compile(self, form):
+        """The code object of one top-level form."""
+        return self.code(self.statements(form))
 
     def run(self, code):
         """Run compiled code; its values."""
@@ -208,7 +211,3 @@ def macro_expander(name, lambda_list, body, environment=None):
 def values_of(result):
     """The values of a form as a Python list."""
     return list(result) if isinstance(result, MultipleValues) else [result]
-
-
-def parse_tree(tree):
-    return ast.fix_missing_locations(tree)

@@ -132,6 +132,10 @@ def with_simple_restart(name, report, thunk):
     return conditions.with_simple_restart(name, report, thunk)
 
 
+def next_method_exists(next_method):
+    return next_method.exists
+
+
 # ------------------------------------------------------------------------------------------------------------------ packages
 
 

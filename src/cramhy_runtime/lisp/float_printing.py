@@ -53,10 +53,14 @@ def shortest(x):
             text = f"{x:.{precision}e}"
             if to_single(float(text)) == x:
                 break
+        if precision > 6:  # a tie in the last digit goes up in Lisp, to even in Python
+            return digits(x)
     elif x < _SMALLEST_DOUBLE:
         return digits(x)
     else:
         text = repr(float(x))
+        if len(text) > 16:
+            return digits(x)
         if "e" not in text:
             whole, _, fraction = text.partition(".")
             figures = (whole + fraction).lstrip("0")
@@ -181,8 +185,24 @@ def fixed_text(x, width=None, fraction_digits=None, scale=None, least=None):
 
 
 def scaled(x):
-    """(z, e) with 0.1 <= z < 1 and x = z * 10^e for ``x`` >= 0, of the same format; (0.0, 1) for zero."""
+    """(z, e) with 0.1 <= z < 1 and x about z * 10^e for ``x`` >= 0, of the same format; (0.0, 1) for zero.
+
+    Scaling is done in doubles and may lose the last digit of precision, in the very way of SBCL's SCALE-EXPONENT.
+    """
     if x == 0.0:
         return x, 1
-    figures, k = shortest(x)
-    return type(x)("0." + figures), k
+    single = _is_single(x)
+    value = to_single(x) if single else float(x)
+    power = round(math.frexp(value)[1] * 0.30102999566398114)  # SBCL's idea of the decimal logarithm of 2
+    if power < 0:
+        head = 1e16 if value < _SMALLEST_DOUBLE else 10.0
+        value = value * head * 10.0 ** (-power - (16 if head == 1e16 else 1))
+    else:
+        value = value / 10.0 / 10.0 ** (power - 1)
+    divisor, quotient = 10.0, value
+    while quotient >= 1.0:
+        quotient, power, divisor = value / divisor, power + 1, divisor * 10.0
+    factor, product = 10.0, quotient
+    while product < 0.1:
+        product, power, factor = quotient * factor, power - 1, factor * 10.0
+    return type(x)(to_single(product) if single else product), power

@@ -67,7 +67,7 @@ def run(nodes, state):
         elif node.handler is None:
             from .print_names import character_name
 
-            node.complain(f"Unknown format directive (character: {character_name(node.control[node.end - 1])})")
+            node.complain(f"Unknown format directive (character: {character_name(node.char)})")
         else:
             node.handler(node, state)
 

@@ -18,15 +18,16 @@ class FormatError(Error):
 
     lisp_name = "SB-FORMAT::FORMAT-ERROR"
 
-    def __init__(self, complaint=UNBOUND, control=None, offset=None, banner=True, **slots):
+    def __init__(self, complaint=UNBOUND, control=None, offset=None, section=None, **slots):
         super().__init__(**slots)
-        self.complaint, self.control, self.offset, self.banner = complaint, control, offset, banner
+        self.complaint, self.control, self.offset, self.section = complaint, control, offset, section
+        self.banner = True
 
     def report(self):
         text = ("error in FORMAT: " if self.banner else "") + self.complaint
         if self.control is not None:
             text += f"\n  {self.control}\n  {' ' * self.offset}^"
-        return text
+        return text if self.section is None else f"{text}\nSee also:\n  The ANSI Standard, Section {self.section}"
 
 
 class Directive:
@@ -43,9 +44,9 @@ class Directive:
         self.params, self.colon, self.at, self.char = params, colon, at, char
         self.clauses = self.separators = self.close = self.name = self.handler = self.cache = None
 
-    def complain(self, complaint, offset=None):
-        """Signal a `FormatError` at this directive, or at ``offset`` of the control."""
-        return error(FormatError(complaint, self.control, self.end - 1 if offset is None else offset))
+    def complain(self, complaint, offset=None, section=None):
+        """Signal a `FormatError` at this directive, or at ``offset`` of the control; ``section`` of ANSI says why."""
+        return error(FormatError(complaint, self.control, self.end - 1 if offset is None else offset, section))
 
     def reject(self, colon=False, at=False, both=False):
         """Complain about modifiers that the directive does not take."""
@@ -138,12 +139,12 @@ def _directive(control, start):
             error(FormatError("String ended before directive was found", control, start))
         return control[position]
 
-    def complain(text):
-        error(FormatError(text, control, position))
+    def complain(text, section=None):
+        error(FormatError(text, control, position, section))
 
     def in_order():
         if colon or at:
-            complain("Parameters found after #\\: or #\\@ modifier")
+            complain("Parameters found after #\\: or #\\@ modifier", "22.3")
 
     while True:
         char = character()
@@ -173,13 +174,13 @@ def _directive(control, start):
             params.append((position, None))
         elif char == ":":
             if colon:
-                complain("Too many colons supplied")
+                complain("Too many colons supplied", "22.3")
             colon = True
             position += 1
             continue
         elif char == "@":
             if at:
-                complain("Too many #\\@ characters supplied")
+                complain("Too many #\\@ characters supplied", "22.3")
             at = True
             position += 1
             continue
@@ -281,7 +282,7 @@ def _check_block(block):
         for node in block.clauses[index]:
             if isinstance(node, Directive):
                 node.complain(f"Cannot include format directives inside the {'prefix' if index == 0 else 'suffix'} segment of "
-                              "~<...~:>")
+                              "~<...~:>", node.end - 1, "22.3.5.2")
         texts[index // 2] = "".join(block.clauses[index])
     body = block.clauses[min(1, len(block.clauses) - 1)]
     if block.close.at:
@@ -316,9 +317,11 @@ def _with_fill_newlines(nodes, block):
 def _check_justification(opener):
     count = sum(map(_count_pretty, opener.clauses))
     if count:
-        opener.complain(f"{count} illegal directive{'s' if count != 1 else ''} found inside justification block")
+        opener.complain(f"{count} illegal directive{'s' if count != 1 else ''} found inside justification block",
+                        section="22.3.5.2")
     if opener.close.at:
-        opener.complain("@ modifier not allowed in close directive of justification block (i.e. ~<...~@>.", opener.close.end - 1)
+        opener.complain("@ modifier not allowed in close directive of justification block (i.e. ~<...~@>.",
+                        opener.close.end - 1, "22.3.6.2")
 
 
 def _count_pretty(nodes):

@@ -21,7 +21,7 @@ from .builtin_classes import lisp_mro
 from .class_objects import when_classes_change
 from .classes import find_class_or_error
 from .conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
-from .data import Cons, Keyword, Symbol, UndefinedFunction, list_from, lisp_list, python_list
+from .data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from .equality import eql_key
 from .faces import python_name
 from .generic_errors import incongruent, no_applicable_method_error

@@ -48,7 +48,7 @@ class HashTable:
     def __init__(self, test="EQL", weakness=None, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=False):
         self.test = test
         self.weakness = weakness
-        self.hash_key = KEYS[test]
+        self.hash_key = KEYS[test] if weakness is None else _weak_key(KEYS[test])
         self.entries = {}
         self.size, self.rehash_size, self.rehash_threshold = size, rehash_size, rehash_threshold
         self.synchronized = synchronized
@@ -144,6 +144,11 @@ class HashTable:
     def equalp_table_key(self):
         """The `equalp_key` of a table."""
         return ("hash table", self.test, frozenset((self.hash_key(key), equalp_key(value)) for key, value in self.items()))
+
+
+def _weak_key(hash_key):
+    # A symbol is its own hash key; a weak table must not hold it that way.
+    return lambda thing: (id(thing), None) if isinstance(thing, Symbol) else hash_key(thing)
 
 
 define_printer(HashTable, lambda table, stream: print_hash_table(table, stream, sym(table.test), len(table)))

@@ -11,10 +11,21 @@ import cmath
 import math
 from fractions import Fraction
 
-from .arithmetic import (division_by_zero, is_integer, is_rational, is_real, mul2, need_integer, need_number, need_real, normal,
-                         overflow, single)
+from .arithmetic import (
+    division_by_zero,
+    is_integer,
+    is_rational,
+    is_real,
+    mul2,
+    need_integer,
+    need_number,
+    need_real,
+    normal,
+    overflow,
+    single,
+)
 from .conditions import DivisionByZero, FloatingPointOverflow, error, type_error
-from .data import DoubleFloat, MultipleValues, UNSUPPLIED, lisp_list
+from .data import UNSUPPLIED, DoubleFloat, MultipleValues, lisp_list
 from .packages import sym
 
 LISP_NAMES = """sqrt isqrt exp expt log sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh float rational rationalize

@@ -150,8 +150,6 @@ def union(first, second, *, key=None, test=None, test_not=None):
     if len(items) < len(others):
         items, others, result = others, items, first
         compare = compare and _swapped(compare)
-    if not others:
-        return second if result is first else first
     present = _contains(others, key, compare)
     for item in items:
         if not present(item):

@@ -480,8 +480,12 @@ def _lockstep(lists, tails=False):
 def mapc(function, lst, *lists):
     """``mapc``: call ``function`` on the elements; returns ``lst``."""
     function = function_of(function)
-    for items in _lockstep((lst, *lists)):
-        function(*items)
+    if lists:
+        for items in _lockstep((lst, *lists)):
+            function(*items)
+    else:
+        for cell in cells(lst):
+            function(cell.car)
     return lst
 
 

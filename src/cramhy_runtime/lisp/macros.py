@@ -9,7 +9,6 @@ symbols in the macro file's package. So a macro is written once and serves ``.li
 from __future__ import annotations
 
 import importlib
-import importlib.util
 from fractions import Fraction
 
 from .conditions import CompileError, Condition, error
@@ -27,10 +26,9 @@ def ensure_loaded():
     global _loaded
     if _loaded:
         return
-    _loaded = True
     for name in FILES:
-        if importlib.util.find_spec(f"cramhy.{name}"):
-            importlib.import_module(f"cramhy.{name}")
+        importlib.import_module(f"cramhy.{name}")
+    _loaded = True
 
 
 def macro_function(symbol, environment=None):

@@ -8,9 +8,9 @@ from __future__ import annotations
 import importlib
 import importlib.util
 
-from . import cl_names, definitions, expansion_support, places, streams
+from . import cl_names, expansion_support
 from .faces import define_face, lispify
-from .packages import COMMON_LISP, Package, find_package, register, sym
+from .packages import Package, find_package, register, sym
 
 MODULES = ("equality", "functions", "lists", "list_sets", "sequences", "strings", "characters", "hash_tables", "arrays", "vectors", "numbers",
            "arithmetic", "bits", "irrational", "rounding", "random_state", "types", "classes", "generic", "structures", "streams", "printer", "pretty",
@@ -18,36 +18,37 @@ MODULES = ("equality", "functions", "lists", "list_sets", "sequences", "strings"
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
 HELPERS = {
-    definitions: "define-function define-macro define-variable define-constant define-symbol-macro",
-    places: "define-modifier define-setf-function define-setf-form define-expander",
-    expansion_support: """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
+    "class_definition": "slot-spec define-class define-condition",
+    "generic": "define-generic define-method",
+    "method_combination": "define-short-combination define-long-combination",
+    "structures": "structure-slot define-structure unsupplied",
+    "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
+    "places": "define-modifier define-setf-function define-setf-form define-expander",
+    "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
         handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart define-package set-package
-        package-symbols all-symbols package-iterator put-property remove-property time trace untrace""",
+        package-symbols all-symbols package-iterator put-property remove-property time trace untrace next-method-exists""",
 }
 
 
 def fill():
     """Define the faces; called once, when ``cramhy_runtime.lisp`` is imported."""
-    for name in cl_names.NAMES.split():
-        if name not in ("nil", "t"):
-            COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
     for name in MODULES:
         if importlib.util.find_spec(f"{__package__}.{name}") is None:
             continue
         module = importlib.import_module(f"{__package__}.{name}")
         names = " ".join(lisp_name for lisp_name in module.LISP_NAMES.split()
                          if lisp_name in _standard) if hasattr(module, "LISP_NAMES") else ""
-        define_face("COMMON-LISP", functions={module: names}, variables=getattr(module, "VARIABLES", None))
+        functions = {module: names, **getattr(module, "LISP_FUNCTIONS", {})}
+        define_face("COMMON-LISP", functions=functions, variables=getattr(module, "VARIABLES", None))
+        for constant in getattr(module, "CONSTANTS", ()):
+            sym(constant).constant = True
         for lisp_name, setter in getattr(module, "SETTERS", {}).items():
             sym(lisp_name).setf_function = lispify(setter)
     define_face("COMMON-LISP", functions={"proclaim": expansion_support.proclaim})
     if find_package("CRAMHY") is None:
         register(Package("CRAMHY"))
-    define_face("CRAMHY", functions=HELPERS)
-    for marker in ("&OPTIONAL", "&REST", "&KEY"):
-        sym(marker).plist = None
+    for name, names in HELPERS.items():
+        define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})
 
 
 _standard = set(cl_names.NAMES.split())
-
-__all__ = ["fill", "streams"]

@@ -7,6 +7,7 @@ message texts are SBCL's.
 
 from __future__ import annotations
 
+from . import cl_names
 from .data import Keyword, MultipleValues, Symbol
 
 
@@ -257,7 +258,7 @@ def keyword(name):
 
 KEYWORD = register(Package("KEYWORD"))
 COMMON_LISP = register(Package("COMMON-LISP", ["CL"]))
-COMMON_LISP.external.update(NIL=None, T=True)
+COMMON_LISP.external.update({name.upper(): Symbol(name.upper(), COMMON_LISP) for name in cl_names.NAMES.split()}, NIL=None, T=True)
 COMMON_LISP_USER = register(Package("COMMON-LISP-USER", ["CL-USER"], [COMMON_LISP]))
 
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from . import generic as generics
 from . import instances, slots
-from .class_objects import direct_slots, effective_slots, when_classes_change
 from .builtin_classes import CLASSES
+from .class_objects import direct_slots, effective_slots, when_classes_change
 from .classes import class_name
 from .conditions import SimpleError, error, type_error
-from .data import MultipleValues, NO_VALUES, Symbol, list_from, lisp_list, python_list
+from .data import NO_VALUES, MultipleValues, Symbol, lisp_list, list_from, python_list
 from .generic import EqlSpecializer, GenericFunction, find_method_or_none, generic, specializer_of, when_methods_change
 from .generic_errors import no_next_method_error
-from .packages import symbol_name, sym
+from .packages import sym, symbol_name
 
 LISP_NAMES = """make-instance allocate-instance initialize-instance reinitialize-instance shared-initialize change-class
 update-instance-for-different-class update-instance-for-redefined-class slot-missing slot-unbound no-applicable-method

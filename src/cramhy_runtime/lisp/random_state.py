@@ -12,7 +12,7 @@ import random as python_random
 
 from .arithmetic import is_integer, single
 from .conditions import SimpleTypeError, error, type_error
-from .data import DoubleFloat, UNBOUND
+from .data import UNBOUND, DoubleFloat
 from .packages import sym
 
 LISP_NAMES = "random make-random-state random-state-p"

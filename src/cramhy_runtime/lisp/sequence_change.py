@@ -11,7 +11,7 @@ from __future__ import annotations
 from .data import Cons, LispString
 from .equality import eql_key
 from .functions import key_of, match_of, predicate_of, test_of
-from .sequence_types import limit, same_kind, span, store_all
+from .sequence_types import elements, limit, same_kind, span, store_all
 from .vectors import Vector
 
 LISP_NAMES = """
@@ -37,6 +37,8 @@ def _chosen(match, sequence, from_end, start, end, count):
 
 
 def _removed(match, sequence, from_end, start, end, count):
+    if count is None and end is None and start == 0:
+        return same_kind(sequence, [item for item in elements(sequence) if not match(item)])
     items, chosen = _chosen(match, sequence, from_end, start, end, count)
     return same_kind(sequence, [item for index, item in enumerate(items) if index not in chosen])
 
@@ -99,7 +101,7 @@ def delete_if_not(predicate, sequence, *, from_end=None, start=0, end=None, coun
 # --------------------------------------------------------------------------------------------------------------- duplicates
 
 
-def _duplicates(sequence, from_end, test, test_not, start, end, key):
+def _duplicates(sequence, from_end, test, test_not, start, end, key, among_all=False):
     """(elements, set of the indices of those that occur again); the last one of equals stays, or the first if ``from_end``."""
     compare, key = test_of(test, test_not), key_of(key)
     items, start, end = span(sequence, start, end)
@@ -109,10 +111,22 @@ def _duplicates(sequence, from_end, test, test_not, start, end, key):
         return items, _repeated(keyed, start, first_stays)
     count = len(keyed)
     if first_stays:
-        chosen = {index for index in range(count) if any(compare(keyed[other], keyed[index]) for other in range(index))}
+        chosen = _later_ones(keyed, compare, among_all)
     else:
         chosen = {index for index in range(count) if any(compare(keyed[index], keyed[other]) for other in range(index + 1, count))}
     return items, {start + index for index in chosen}
+
+
+def _later_ones(keyed, compare, among_all):
+    # As SBCL asks: the later element first, and on vectors and in delete-duplicates only against those that stay.
+    chosen, others = set(), []
+    for index, one in enumerate(keyed):
+        if any(compare(one, other) for other in others):
+            chosen.add(index)
+            if not among_all:
+                continue
+        others.append(one)
+    return chosen
 
 
 def _repeated(keyed, start, first_stays):
@@ -127,7 +141,8 @@ def _repeated(keyed, start, first_stays):
 
 def remove_duplicates(sequence, *, from_end=None, test=None, test_not=None, start=0, end=None, key=None):
     """``remove-duplicates``: a sequence in which no two elements match; the last of equals stays, unless ``from_end``."""
-    items, chosen = _duplicates(sequence, from_end, test, test_not, start, end, key)
+    among_all = isinstance(sequence, Cons)
+    items, chosen = _duplicates(sequence, from_end, test, test_not, start, end, key, among_all)
     return same_kind(sequence, [item for index, item in enumerate(items) if index not in chosen])
 
 

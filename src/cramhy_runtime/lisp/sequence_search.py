@@ -40,7 +40,7 @@ def _first(match, sequence, from_end, start, end):
         return _walk(match, sequence)
     items = elements(sequence)
     wanted_end, size = end, len(items)
-    if isinstance(sequence, Cons) and start.__class__ is int and start >= 0:
+    if (sequence is None or isinstance(sequence, Cons)) and start.__class__ is int and start >= 0:
         # SBCL walks a list before it looks at the bounds: it misses a :start or :end behind the list if it can answer without.
         if end is None and start > size:
             return None

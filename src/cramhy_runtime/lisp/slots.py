@@ -14,7 +14,7 @@ from .class_objects import effective_slots, find_slot, when_classes_change
 from .classes import class_of
 from .condition_types import shown
 from .conditions import CellError, Condition, SimpleError, UnboundSlot, error, restart_case, type_error
-from .data import Symbol, UNBOUND, boolean, list_from
+from .data import UNBOUND, Symbol, boolean, list_from
 from .packages import sym, symbol_name
 
 LISP_NAMES = "slot-value slot-boundp slot-makunbound slot-exists-p"

@@ -471,3 +471,8 @@ def ask_for_form(prompt):
     stream.write(prompt)
     stream.flush()
     return one(evaluator.evaluate(read_from_stream(stream)))
+
+
+def standard_output():
+    """The stream that is the value of ``*standard-output*`` now."""
+    return output_stream(STANDARD_OUTPUT.value)

@@ -12,7 +12,7 @@ from cramhy_runtime.lisp.conditions import type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from
 from cramhy_runtime.lisp.packages import sym
 
-from .database import arguments_of, find_predicate, undefined_step, valid_functor
+from .database import arguments_of, find_predicate, undefined_step, valid_functor, warn_undefined
 from .machine import FAIL, Machine, SOLVED, fail
 from .terms import Restore, TermTail, Var, copy_term, deref, raw, unify, unset_variables
 
@@ -73,7 +73,8 @@ def solve(m, goal, k, b):
     if goal.__class__ is not Cons:
         goal = deref(goal)
         if goal is None:
-            return undefined_step(m, Cons(None, None))
+            warn_undefined(m, None)
+            return fail(m)
         if goal.__class__ is not Cons:
             return type_error(raw(goal, m.names), "LIST")
     functor = goal.car

@@ -141,7 +141,8 @@ def arguments_of(goal):
 
 def warn_undefined(m, goal):
     """The warning for a goal whose functor nobody has defined."""
-    warn("Trying to prove goal ~a with undefined functor ~s.", raw(goal, m.names), raw(goal.car, m.names))
+    warn("Trying to prove goal ~a with undefined functor ~s.", raw(goal, m.names),
+         None if goal is None else raw(goal.car, m.names))
 
 
 def _undefined(functor):

@@ -51,7 +51,7 @@ def _options(words, *with_value):
             break
         if word in with_value and words:
             options[word] = words.pop(0)
-        elif word.startswith("-") and len(word) > 1 and word[1].isalpha():
+        elif word == "-1" or (word.startswith("-") and len(word) > 1 and word[1].isalpha()):
             options[word] = True
         else:
             rest.append(word)
@@ -87,11 +87,28 @@ def rosnode_info(words, seconds):
 
     published = [f" * {topic} [{entry.type.ros_type}]" for topic, entry in sorted(node.publications.items())]
     subscribed = [f" * {topic} [{entry.type.ros_type}]" for topic, entry in sorted(node.subscriptions.items())]
-    connections = [line for topic, entry in sorted(node.publications.items()) for subscription in entry.connections for line in (
-        f" * topic: {topic}", f"    * to: {subscription.node.name}", "    * direction: outbound", "    * transport: INTRAPROCESS")]
-    return (f"{'-' * 80}\nNode [{name}]\n" + section("Publications", published) + "\n" + section("Subscriptions", subscribed) + "\n"
-            + section("Services", [f" * {service}" for service in sorted(node.services)]) + f"\n\ncontacting node http://{node.address}/ ...\n"
-            + f"Pid: {os.getpid()}\n" + ("Connections:\n" + "\n".join(connections) + "\n" if connections else ""))
+    connections = [
+        line
+        for topic, entry in sorted(node.publications.items())
+        for subscription in entry.connections
+        for line in (
+            f" * topic: {topic}",
+            f"    * to: {subscription.node.name}",
+            "    * direction: outbound",
+            "    * transport: INTRAPROCESS",
+        )
+    ]
+    return (
+        f"{'-' * 80}\nNode [{name}]\n"
+        + section("Publications", published)
+        + "\n"
+        + section("Subscriptions", subscribed)
+        + "\n"
+        + section("Services", [f" * {service}" for service in sorted(node.services)])
+        + f"\n\ncontacting node http://{node.address}/ ...\n"
+        + f"Pid: {os.getpid()}\n"
+        + ("Connections:\n" + "\n".join(connections) + "\n" if connections else "")
+    )
 
 
 def rosnode_kill(words, seconds):
@@ -125,8 +142,13 @@ def rostopic_list(words, seconds):
             if count:
                 yield f" * {topic.name} [{topic.type.ros_type}] {count} {what}{'s' if count > 1 else ''}"
 
-    return ("\nPublished topics:\n" + "\n".join(lines("publications", "publisher")) + "\n\nSubscribed topics:\n"
-            + "\n".join(lines("subscriptions", "subscriber")) + "\n\n")
+    return (
+        "\nPublished topics:\n"
+        + "\n".join(lines("publications", "publisher"))
+        + "\n\nSubscribed topics:\n"
+        + "\n".join(lines("subscriptions", "subscriber"))
+        + "\n\n"
+    )
 
 
 def rostopic_info(words, seconds):
@@ -135,7 +157,7 @@ def rostopic_info(words, seconds):
     def lines(entries):
         return "\n" + "\n".join(f" * {entry.node.name} (http://{entry.node.address}/)" for entry in entries) if entries else "None"
 
-    return (f"Type: {topic.type.ros_type}\n\nPublishers: {lines(topic.publications)}\n\nSubscribers: {lines(topic.subscriptions)}\n\n")
+    return f"Type: {topic.type.ros_type}\n\nPublishers: {lines(topic.publications)}\n\nSubscribers: {lines(topic.subscriptions)}\n\n"
 
 
 def rostopic_type(words, seconds):
@@ -208,8 +230,10 @@ def rostopic_hz(words, seconds):
     steps = [later - earlier for earlier, later in zip(times, times[1:])]
     mean = sum(steps) / len(steps)
     deviation = (sum((step - mean) ** 2 for step in steps) / len(steps)) ** 0.5
-    return (f"subscribed to [{name}]\naverage rate: {1 / mean:.3f}\n\tmin: {min(steps):.3f}s max: {max(steps):.3f}s std dev: {deviation:.5f}s "
-            f"window: {len(times)}")
+    return (
+        f"subscribed to [{name}]\naverage rate: {1 / mean:.3f}\n\tmin: {min(steps):.3f}s max: {max(steps):.3f}s std dev: {deviation:.5f}s "
+        f"window: {len(times)}"
+    )
 
 
 def rostopic_pub(words, seconds):
@@ -219,8 +243,10 @@ def rostopic_pub(words, seconds):
     name, type_name, *arguments = rest
     cls = messages.message_class_exact(type_name)
     if cls is None:
-        raise CommandError(f"ERROR: invalid message type: {type_name}.\nIf this is a valid message type, perhaps you need to type 'rosmake "
-                           f"{type_name.partition('/')[0]}'")
+        raise CommandError(
+            f"ERROR: invalid message type: {type_name}.\nIf this is a valid message type, perhaps you need to type 'rosmake "
+            f"{type_name.partition('/')[0]}'"
+        )
     try:
         message = wire.transmit(_fill(cls, [yaml_text.read(argument) for argument in arguments]))
     except _BadArguments as problem:
@@ -241,7 +267,11 @@ def rostopic_pub(words, seconds):
         node.shutdown()
     if "-r" in options:
         return ""
-    return "publishing and latching message for 3.0 seconds" if "-1" in options else "publishing and latching message. Press ctrl-C to terminate"
+    return (
+        "publishing and latching message for 3.0 seconds"
+        if "-1" in options
+        else "publishing and latching message. Press ctrl-C to terminate"
+    )
 
 
 # ---------------------------------------------------------------------------------------------------------------- services
@@ -362,21 +392,33 @@ def rosservice_call(words, seconds):
         kind = "Not enough" if len(arguments) < len(fields) else "Too many"
         shown = "\n".join(f" * {argument!r} (type {type(argument).__name__})" for argument in arguments)
         expected = [field.name for field in fields]
-        raise CommandError(f"ERROR: Incompatible arguments to call service:\n{kind} arguments:\n * Given: {arguments}\n * Expected: {expected}\n"
-                           f"Provided arguments are:\n{shown}\n\nService arguments are: [{' '.join(expected)}]", 2)
+        raise CommandError(
+            f"ERROR: Incompatible arguments to call service:\n{kind} arguments:\n * Given: {arguments}\n * Expected: {expected}\n"
+            f"Provided arguments are:\n{shown}\n\nService arguments are: [{' '.join(expected)}]",
+            2,
+        )
     try:
         request = _fill(service.type.request, arguments)
     except _BadArguments as problem:
-        raise CommandError(f"ERROR: Incompatible arguments to call service:\n{problem}\nProvided arguments are:\n * {arguments[0]!r} (type dict)\n\n"
-                           f"Service arguments are: [{_arguments_of(service)}]", 2) from None
+        raise CommandError(
+            f"ERROR: Incompatible arguments to call service:\n{problem}\nProvided arguments are:\n * {arguments[0]!r} (type dict)\n\n"
+            f"Service arguments are: [{_arguments_of(service)}]",
+            2,
+        ) from None
     except _BadValue as problem:
-        raise CommandError(f"ERROR: Unable to send request. One of the fields has an incorrect type:\n  {problem}\n\nsrv file:\n"
-                           f"{_service_text(service.type)}", 2) from None
+        raise CommandError(
+            f"ERROR: Unable to send request. One of the fields has an incorrect type:\n  {problem}\n\nsrv file:\n"
+            f"{_service_text(service.type)}",
+            2,
+        ) from None
     answer = services.Call(service, wire.transmit(request), kernel.current())
     service.submit(answer)
     answer.wait()
     if answer.lost:
-        raise CommandError(f"ERROR: transport error completing service call: unable to receive data from sender, check sender's logs for details", 2)
+        raise CommandError(
+            "ERROR: transport error completing service call: unable to receive data from sender, check sender's logs for details",
+            2,
+        )
     if answer.failure is not None:
         raise CommandError(f"ERROR: service [{_global(name)}] responded with an error: b'{answer.failure}'", 2)
     return "\n".join(yaml_text.show_message(answer.response)) or "\n"
@@ -443,5 +485,8 @@ def rossrv_show(words, seconds):
     return _service_text(kind) + "\n"
 
 
-_commands = {tuple(name.split("_", 1)): function for name, function in list(globals().items())
-             if name.startswith(("rosnode_", "rostopic_", "rosservice_", "rosparam_", "rosmsg_", "rossrv_"))}
+_commands = {
+    tuple(name.split("_", 1)): function
+    for name, function in list(globals().items())
+    if name.startswith(("rosnode_", "rostopic_", "rosservice_", "rosparam_", "rosmsg_", "rossrv_"))
+}

@@ -10,9 +10,18 @@ from __future__ import annotations
 import keyword
 from pathlib import Path
 
-INTEGERS = {"int8": (8, True), "int16": (16, True), "int32": (32, True), "int64": (64, True),
-            "uint8": (8, False), "uint16": (16, False), "uint32": (32, False), "uint64": (64, False),
-            "byte": (8, False), "char": (8, False)}
+INTEGERS = {
+    "int8": (8, True),
+    "int16": (16, True),
+    "int32": (32, True),
+    "int64": (64, True),
+    "uint8": (8, False),
+    "uint16": (16, False),
+    "uint32": (32, False),
+    "uint64": (64, False),
+    "byte": (8, False),
+    "char": (8, False),
+}
 """Bits and signedness. `byte` and `char` arrive as 0 … 255 (roslisp.md 5.2)."""
 PRIMITIVES = {*INTEGERS, "float32", "float64", "bool", "string", "time", "duration"}
 
@@ -78,8 +87,9 @@ def parse_message(text, package, where="message definition"):
             fields.append(_field(type_name, rest, package, where, number))
             lines.append(repr(fields[-1]))
         else:
-            raise DefinitionError(f'{where}, line {number}: "{line.strip()}" is neither a field (TYPE NAME) nor a constant '
-                                  f"(TYPE NAME=VALUE).")
+            raise DefinitionError(
+                f'{where}, line {number}: "{line.strip()}" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).'
+            )
     return Definition(fields, constants, lines)
 
 
@@ -127,8 +137,15 @@ def add_package_directory(directory):
 
 def known_packages():
     """The names of all packages with definitions."""
-    return sorted({entry.name for directory in _directories if directory.is_dir() for entry in directory.iterdir()
-                   if (entry / "msg").is_dir() or (entry / "srv").is_dir()})
+    return sorted(
+        {
+            entry.name
+            for directory in _directories
+            if directory.is_dir()
+            for entry in directory.iterdir()
+            if (entry / "msg").is_dir() or (entry / "srv").is_dir()
+        }
+    )
 
 
 def definition_files(package, kind):

@@ -27,8 +27,10 @@ class RosRpcError(Condition):
     def report(self):
         from ..lisp.printer import princ_to_string
 
-        return (f"ros-rpc call ({self.call}) to {princ_to_string(self.uri)} failed with code {self.code}, "
-                f"message {self.message}, values {self.result}")
+        return (
+            f"ros-rpc call ({self.call}) to {princ_to_string(self.uri)} failed with code {self.code}, "
+            f"message {self.message}, values {self.result}"
+        )
 
 
 class ServiceError(SimpleError):
@@ -83,14 +85,16 @@ class MissingSlot(Error):
         self.slot, self.instance = slot, instance
 
     def report(self):
-        return (f"When attempting to read the slot's value (slot-value), the slot {self.slot} is missing from the object "
-                f"{shown(self.instance)}.")
+        return (
+            f"When attempting to read the slot's value (slot-value), the slot {self.slot} is missing from the object "
+            f"{shown(self.instance)}."
+        )
 
 
 def ros_error(control, *arguments, topic=None):
     """Log the format control at level ERROR on ``topic`` (``nil``: the root), then signal it as a simple error."""
-    from . import logging
     from ..lisp.format import format_to_string
+    from . import logging
 
     logging.log_text(logging.ERROR, topic, format_to_string(control, *arguments))
     return conditions.error(SimpleError(control, *arguments))

@@ -82,14 +82,27 @@ def call_named_service(service_name, service_symbol, return_field, request):
     return services.call_named(service_name, service_symbol, return_field, *python_list(request))
 
 
-define_face("CRAMHY", functions={
-    "build-message": build_message, "build-request": build_request, "build-publisher-message": build_publisher_message,
-    "changed-message": changed_message, "message-field": message_field, "log-enabled": log_enabled, "ros-log-line": log_line,
-    "set-debug-levels": set_debug_levels, "with-ros-node": with_ros_node, "ros-spin-until": spin_until,
-    "loop-at-most-every": time.loop_at_most_every, "with-parallel-thread": time.with_parallel_thread,
-    "register-init-function": register_init_function, "register-cleanup-function": register_cleanup_function,
-    "register-service-of": services.register_service, "make-service-response": message_building.make_response,
-    "call-named-service": call_named_service,
-})
+define_face(
+    "CRAMHY",
+    functions={
+        "build-message": build_message,
+        "build-request": build_request,
+        "build-publisher-message": build_publisher_message,
+        "changed-message": changed_message,
+        "message-field": message_field,
+        "log-enabled": log_enabled,
+        "ros-log-line": log_line,
+        "set-debug-levels": set_debug_levels,
+        "with-ros-node": with_ros_node,
+        "ros-spin-until": spin_until,
+        "loop-at-most-every": time.loop_at_most_every,
+        "with-parallel-thread": time.with_parallel_thread,
+        "register-init-function": register_init_function,
+        "register-cleanup-function": register_cleanup_function,
+        "register-service-of": services.register_service,
+        "make-service-response": message_building.make_response,
+        "call-named-service": call_named_service,
+    },
+)
 
 __all__ = ["list_from"]

@@ -81,8 +81,8 @@ def log_text(level, topic, text):
 
 
 def _print(level, topic, text):
-    from . import graph, node, time
     from ..lisp.printer import princ_to_string
+    from . import graph, node, time
 
     shown_topic = princ_to_string(topic if topic is None or isinstance(topic, Cons) else lisp_list(topic))
     stream = _standard_output.value
@@ -104,8 +104,11 @@ def rosout(here, level, text):
     publication = here.publications.get("/rosout")
     if publication is None or not publication.connections:
         return 0
-    return publication.send(messages.message_class_exact("rosgraph_msgs/Log")(name=here.name, level=level,
-                                                                              msg=text.encode("latin-1", "replace").decode("latin-1")))
+    return publication.send(
+        messages.message_class_exact("rosgraph_msgs/Log")(
+            name=here.name, level=level, msg=text.encode("latin-1", "replace").decode("latin-1")
+        )
+    )
 
 
 def join_rosout(here, delay=0.0):
@@ -149,8 +152,10 @@ def set_debug_level(name, level):
     here = graph.active().lisp_node
     if here is None:
         return None
-    here.graph.parameters.set(here.resolve("~debug/" + "".join(part.lower() + "/" for part in path) + "level"),
-                              LEVEL_NAMES.get(code, str(code)).lower())
+    here.graph.parameters.set(
+        here.resolve("~debug/" + "".join(part.lower() + "/" for part in path) + "level"),
+        LEVEL_NAMES.get(code, str(code)).lower(),
+    )
     return 0
 
 
@@ -185,7 +190,7 @@ def read_levels(here):
     prefix = here.resolve("~debug/").rstrip("/") + "/"
     for name in here.graph.parameters.names():
         if name.startswith(prefix) and name.endswith("/level"):
-            path = tuple(part.upper() for part in name[len(prefix):].split("/")[:-1])
+            path = tuple(part.upper() for part in name[len(prefix) :].split("/")[:-1])
             word = str(here.graph.parameters.get(name)).upper()
             if word in LEVEL_CODES:
                 here.graph.debug_levels[path] = LEVEL_CODES[word]

@@ -100,7 +100,10 @@ def _no_field(name, target):
 def _as_deep_list(value):
     if not isinstance(value, RosMessage):
         return value
-    return Cons(value.lisp_symbol, list_from([Cons(key, _as_deep_list(part)) for key, part in zip(value.keywords, value.values())]))
+    return Cons(
+        value.lisp_symbol,
+        list_from([Cons(key, _as_deep_list(part)) for key, part in zip(value.keywords, value.values())]),
+    )
 
 
 def get_field(message, path):
@@ -147,9 +150,16 @@ def list_to_ros_message(form):
     if not isinstance(form, Cons):
         return form
     cls = messages.message_class(form.car)
-    return set_fields(cls(), [((symbol_name(entry.car),), list_to_ros_message(entry.cdr)
-                               if isinstance(entry.cdr, Cons) and messages.named(entry.cdr.car) else entry.cdr)
-                              for entry in python_list(form.cdr)])
+    return set_fields(
+        cls(),
+        [
+            (
+                (symbol_name(entry.car),),
+                list_to_ros_message(entry.cdr) if isinstance(entry.cdr, Cons) and messages.named(entry.cdr.car) else entry.cdr,
+            )
+            for entry in python_list(form.cdr)
+        ],
+    )
 
 
 def read_ros_message(stream):
@@ -175,8 +185,9 @@ def symbol_code(designator, key):
     for name, value in cls.constants.items():
         if name.upper() == symbol_name(key):
             return value
-    return conditions.error(SimpleError("~a", f"Could not get symbol code for {symbol_name(key)} for ROS message type "
-                                              f"{_shown_type(designator)}"))
+    return conditions.error(
+        SimpleError("~a", f"Could not get symbol code for {symbol_name(key)} for ROS message type {_shown_type(designator)}")
+    )
 
 
 def code_symbols(designator, code):

@@ -71,22 +71,41 @@ def _print_named(obj, stream):
 
 def _print_publication(publication, stream):
     connections = list_from([_Named(f"CONNECTION to {subscription.node.name}") for subscription in publication.connections])
-    print_structure("ROSLISP::PUBLICATION", [("PUB-TOPIC-TYPE", publication.type.ros_type), ("SUBSCRIBER-CONNECTIONS", connections),
-                                             ("IS-LATCHING", True if publication.latch else None), ("LAST-MESSAGE", publication.last_message)], stream)
+    print_structure(
+        "ROSLISP::PUBLICATION",
+        [
+            ("PUB-TOPIC-TYPE", publication.type.ros_type),
+            ("SUBSCRIBER-CONNECTIONS", connections),
+            ("IS-LATCHING", True if publication.latch else None),
+            ("LAST-MESSAGE", publication.last_message),
+        ],
+        stream,
+    )
 
 
 def _print_subscription(subscription, stream):
     topic = subscription.node.graph.topics.get(subscription.name)
     publishers = [_Named(f"CONNECTION from {publication.node.name}") for publication in (topic.publications if topic else ())]
     queue = _Named(f"ROSLISP-QUEUE:QUEUE with {len(subscription.queue)} elements")
-    print_structure("ROSLISP::SUBSCRIPTION", [("SUB-TOPIC-TYPE", subscription.type.ros_type), ("BUFFER", queue),
-                                              ("TOPIC-THREAD", _Named(f'SB-THREAD:THREAD "{subscription.task_name}"')),
-                                              ("CALLBACKS", list_from(subscription.callbacks)), ("PUBLISHER-CONNECTIONS", list_from(publishers))], stream)
+    print_structure(
+        "ROSLISP::SUBSCRIPTION",
+        [
+            ("SUB-TOPIC-TYPE", subscription.type.ros_type),
+            ("BUFFER", queue),
+            ("TOPIC-THREAD", _Named(f'SB-THREAD:THREAD "{subscription.task_name}"')),
+            ("CALLBACKS", list_from(subscription.callbacks)),
+            ("PUBLISHER-CONNECTIONS", list_from(publishers)),
+        ],
+        stream,
+    )
 
 
 def _print_subscriber(subscriber, stream):
-    print_structure("ROSLISP::SUBSCRIBER", [("TOPIC", subscriber.topic), ("SUBSCRIPTION", subscriber.subscription),
-                                            ("CALLBACK", subscriber.callback)], stream)
+    print_structure(
+        "ROSLISP::SUBSCRIBER",
+        [("TOPIC", subscriber.topic), ("SUBSCRIPTION", subscriber.subscription), ("CALLBACK", subscriber.callback)],
+        stream,
+    )
 
 
 def _print_service(service, stream):

@@ -8,12 +8,13 @@ Source: roslisp.md 5.
 
 from __future__ import annotations
 
+from inspect import Parameter, Signature
+
 from ..lisp import conditions
 from ..lisp.condition_types import CaseFailure, SimpleError
-from ..lisp.data import LispString, Symbol, UNSUPPLIED, lisp_list
+from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
 from ..lisp.packages import Package, find_package, intern, register, string_designator, sym
 from . import definition_text
-from .definition_text import PRIMITIVES
 
 
 class RosMessage:
@@ -64,6 +65,7 @@ _services: dict[str, ServiceType] = {}
 _by_symbol: dict[object, object] = {}
 _loaded: dict[str, tuple] = {}
 _listeners = []
+_warned = set()
 
 DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
 
@@ -82,8 +84,10 @@ def load_package(package):
             classes[0].append(_define_message(package, name, definition, "MSG", f"{package}/{name}"))
         for name, path in services.items():
             parts = definition_text.parse_service(path.read_text(), package, str(path))
-            request, response = (_define_message(package, f"{name}-{half}", part, "SRV", f"{package}/{name}{half.title()}")
-                                 for half, part in zip(("request", "response"), parts))
+            request, response = (
+                _define_message(package, f"{name}-{half}", part, "SRV", f"{package}/{name}{half.title()}")
+                for half, part in zip(("request", "response"), parts)
+            )
             symbol = intern(name.upper(), lisp_package(package, "SRV"))
             service = _services[f"{package}/{name}"] = _by_symbol[symbol] = ServiceType(f"{package}/{name}", request, response, symbol)
             classes[1].append(service)
@@ -128,10 +132,21 @@ def _define_message(package, name, definition, kind, ros_type):
     home = lisp_package(package, kind)
     symbol = home.intern(name.upper())
     attributes = {field.name.upper(): field.attribute for field in fields}
-    body = {"__slots__": names, "ros_type": ros_type, "fields": tuple(fields), "field_names": names,
-            "constants": definition.constants, "attributes": attributes, "initargs": attributes, "definition": definition,
-            "keywords": tuple(sym(":" + field.name.upper()) for field in fields), "lisp_symbol": symbol,
-            "lisp_name": f"{home.name}::{name.upper()}", "__module__": __name__, "__doc__": "\n".join(definition.lines)}
+    body = {
+        "__slots__": names,
+        "ros_type": ros_type,
+        "fields": tuple(fields),
+        "field_names": names,
+        "constants": definition.constants,
+        "attributes": attributes,
+        "initargs": attributes,
+        "definition": definition,
+        "keywords": tuple(sym(":" + field.name.upper()) for field in fields),
+        "lisp_symbol": symbol,
+        "lisp_name": f"{home.name}::{name.upper()}",
+        "__module__": __name__,
+        "__doc__": "\n".join(definition.lines),
+    }
     cls = type(name.replace("-request", "Request").replace("-response", "Response"), (RosMessage,), body)
     cls.__init__ = _deferred_initializer(cls, fields)
     if kind == "MSG":
@@ -144,9 +159,11 @@ def _define_message(package, name, definition, kind, ros_type):
 def _deferred_initializer(cls, fields):
     # Most types of a package are never used, and writing out their initializers is most of the work of loading it.
     def __init__(self, *arguments, **keywords):
-        cls.__init__ = _initializer(cls, fields)
+        if cls.__init__ is __init__:
+            cls.__init__ = _initializer(cls, fields)
         cls.__init__(self, *arguments, **keywords)
 
+    __init__.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("self", *cls.field_names)])
     return __init__
 
 
@@ -171,8 +188,12 @@ def _initializer(cls, fields):
 
 
 def _part_class(ros_type):
-    return message_class_exact(ros_type) or conditions.error(SimpleError(
-        "~a", f"The message type {ros_type} is not known, but it is the type of a field. Is its package on ROS_PACKAGE_PATH?"))
+    return message_class_exact(ros_type) or conditions.error(
+        SimpleError(
+            "~a",
+            f"The message type {ros_type} is not known, but it is the type of a field. Is its package on ROS_PACKAGE_PATH?",
+        )
+    )
 
 
 def _default(field):
@@ -238,6 +259,11 @@ def message_class(designator):
     if isinstance(designator, Symbol):
         found = named(designator)
         if isinstance(found, type):
+            if designator.name[0] == "<" and designator not in _warned:
+                _warned.add(designator)
+                old = f"{designator.package.name.lower()}:"
+                new = found.__name__ if found.fields and found.ros_type.endswith("/" + found.__name__) else found.lisp_symbol.name.title()
+                conditions.warn("~a", f"using old message class name {old}<{new}> is deprecated: use {old}{new} instead.")
             return found
         from ..lisp.classes import find_class_or_error
 
@@ -250,8 +276,13 @@ def _folded_or_error(text):
     if not slash or "/" in name:
         parts = " ".join(f'"{part.upper()}"' for part in text.split("/"))
         given = text.count("/") + 1
-        return conditions.error(SimpleError("~a", f"Error while parsing arguments to DESTRUCTURING-BIND:\n  too {'few' if given < 2 else 'many'} elements in\n"
-                                                  f"    ({parts})\n  to satisfy lambda list\n    (PKG-NAME TYPE):\n  exactly 2 expected, but got {given}"))
+        return conditions.error(
+            SimpleError(
+                "~a",
+                f"Error while parsing arguments to DESTRUCTURING-BIND:\n  too {'few' if given < 2 else 'many'} elements in\n"
+                f"    ({parts})\n  to satisfy lambda list\n    (PKG-NAME TYPE):\n  exactly 2 expected, but got {given}",
+            )
+        )
     if load_package(package.lower()) is None:
         return conditions.error(SimpleError("~a", f"Can't find package {package.upper()}-MSG"))
     return _folded(_messages, message_class_exact, text) or conditions.error(SimpleError("~a", f"Can't find class for {text}"))
@@ -275,8 +306,9 @@ def topic_class(designator):
     found = message_class_exact(text)
     if found is None:
         other = _folded(_messages, message_class_exact, text)
-        problem = (f"Case mismatch for message type {text}, did you mean {other.ros_type}?" if other is not None
-                   else f"No datatype {text} known")
+        problem = (
+            f"Case mismatch for message type {text}, did you mean {other.ros_type}?" if other is not None else f"No datatype {text} known"
+        )
         return conditions.error(SimpleError("~a", problem))
     return found
 
@@ -317,4 +349,3 @@ def lisp_attribute(cls, name):
         if found is None and upper.endswith("-VAL"):
             found = cls.attributes.get(upper[:-4])
     return found
-

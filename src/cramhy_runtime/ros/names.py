@@ -84,12 +84,16 @@ def check_graph_name(name):
     if not name:
         return None
     if name[0] not in _LETTERS and name[0] not in "/~":
-        return (f"Character [{name[0]}] is not valid as the first character in Graph Resource Name [{name}].  Valid characters "
-                "are a-z, A-Z, / and in some cases ~.")
+        return (
+            f"Character [{name[0]}] is not valid as the first character in Graph Resource Name [{name}].  Valid characters "
+            "are a-z, A-Z, / and in some cases ~."
+        )
     for index, character in enumerate(name[1:], 1):
         if character not in _NAME_CHARACTERS:
-            return (f"Character [{character}] at element [{index}] is not valid in Graph Resource Name [{name}].  Valid characters "
-                    "are a-z, A-Z, 0-9, / and _.")
+            return (
+                f"Character [{character}] at element [{index}] is not valid in Graph Resource Name [{name}].  Valid characters "
+                "are a-z, A-Z, 0-9, / and _."
+            )
     return None
 
 

@@ -90,7 +90,9 @@ def start_ros_node(name, *, master_uri=None, anonymous=None, cmd_line_args=None,
         return conditions.type_error(name, "STRING", "\nwhen binding ROSLISP::NAME")
     here = graph.active()
     if here.lisp_node is not None:
-        conditions.warn("Before starting node, node-status equalled RUNNING instead of :shutdown.  Shutting the previous node invocation down now.")
+        conditions.warn(
+            "Before starting node, node-status equalled RUNNING instead of :shutdown.  Shutting the previous node invocation down now."
+        )
         shutdown_ros_node()
     naming = _naming(here, str(name), anonymous, cmd_line_args)
     address = _master_address(master_uri)
@@ -120,7 +122,10 @@ def _naming(here, name, anonymous, arguments):
     naming = names.Naming(name, os.environ.get("ROS_NAMESPACE") or "/")
     if arguments is not None and not isinstance(arguments, (str, LispString)):
         arguments = python_list(arguments)
-    naming.apply_arguments(names.split_arguments(str(arguments) if isinstance(arguments, LispString) else arguments), names.read_private_value)
+    naming.apply_arguments(
+        names.split_arguments(str(arguments) if isinstance(arguments, LispString) else arguments),
+        names.read_private_value,
+    )
     return naming
 
 
@@ -132,8 +137,12 @@ def _master_address(given):
         if given is None:
             given = os.environ.get("ROS_MASTER_URI") or DEFAULT_MASTER
     if not isinstance(given, (str, LispString)) or not str(given):
-        return conditions.error(SimpleError("Master uri needs to be supplied either as an argument to start-ros-node, or through the environment "
-                                            "variable ROS_MASTER_URI, or by setting the lisp variable *default-master-uri*"))
+        return conditions.error(
+            SimpleError(
+                "Master uri needs to be supplied either as an argument to start-ros-node, or through the environment "
+                "variable ROS_MASTER_URI, or by setting the lisp variable *default-master-uri*"
+            )
+        )
     text = str(given)
     scheme, separator, rest = text.rstrip("/").partition("://")
     host, colon, port = rest.partition(":")
@@ -195,6 +204,7 @@ def shutdown_ros_node():
 
 def with_ros_node(name, body, *, spin=None, **options):
     """Run ``body`` with a node, and shut it down on every way out. With ``spin`` wait for ever after the body."""
+
     def shut_down(condition=None):
         text = "About to shutdown" if condition is None else f"About to shutdown due to condition {condition}"
         return _top(text)
@@ -227,7 +237,10 @@ def print_status():
     stream = sym("*STANDARD-OUTPUT*").value
     stream.fresh_line()
     stream.write(f"Node {NODE_NAME.value or 'NIL'} is {node_status().name}, master {princ_to_string(MASTER_URI.value)}\n")
-    for title, table in (("Publications", here.publications if here else {}), ("Subscriptions", here.subscriptions if here else {})):
+    for title, table in (
+        ("Publications", here.publications if here else {}),
+        ("Subscriptions", here.subscriptions if here else {}),
+    ):
         stream.write(f"{title}:\n" + "".join(f"  {name} [{entry.type.ros_type}]\n" for name, entry in table.items()))
 
 

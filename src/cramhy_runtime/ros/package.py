@@ -11,7 +11,20 @@ from ..lisp import conditions
 from ..lisp.classes import register_class
 from ..lisp.faces import define_face
 from ..lisp.printer import define_printer
-from . import (definition_text, graph, logging, message_building, message_printing, messages, node, parameters, services, time, topics, utilities)
+from . import (
+    definition_text,
+    graph,
+    logging,
+    message_building,
+    message_printing,
+    messages,
+    node,
+    parameters,
+    services,
+    time,
+    topics,
+    utilities,
+)
 from .errors import NoApplicableMethod
 from .messages import RosMessage
 
@@ -55,8 +68,13 @@ def define_message_symbols(package, classes, service_types):
         for field in cls.fields:
             name = field.name.upper()
             old = f"{package}-{kind.lower()}:{field.name}-val"
-            for reader_name, warning in ((name, None), (name + "-VAL", f"Using old-style slot reader {old} is deprecated.  Use "
-                                                        f"{package}-{kind.lower()}:{field.name} instead.")):
+            for reader_name, warning in (
+                (name, None),
+                (
+                    name + "-VAL",
+                    f"Using old-style slot reader {old} is deprecated.  Use {package}-{kind.lower()}:{field.name} instead.",
+                ),
+            ):
                 symbol = home.intern(reader_name)
                 home.export(symbol)
                 if not isinstance(symbol.function, FieldReader):
@@ -74,9 +92,12 @@ for _package in definition_text.known_packages():
 
 MSG_PROTOCOL = define_face(
     "ROSLISP-MSG-PROTOCOL",
-    functions={message_building: "ros-message-to-list list-to-ros-message symbol-codes symbol-code code-symbols code-symbol ros-datatype "
-                                 "message-definition"},
-    export="ros-message serialize deserialize md5sum serialization-length service-request-type service-response-type")
+    functions={
+        message_building: "ros-message-to-list list-to-ros-message symbol-codes symbol-code code-symbols code-symbol ros-datatype "
+        "message-definition"
+    },
+    export="ros-message serialize deserialize md5sum serialization-length service-request-type service-response-type",
+)
 
 ROSLISP_UTILS = define_face("ROSLISP-UTILS", export="spin-until loop-at-most-every tokens until-timeout")
 EXTENDED_REALS = define_face("ROSLISP-EXTENDED-REALS", export="infty -infty")
@@ -85,28 +106,39 @@ define_face("ROSLISP-QUEUE", export="queue")
 
 ROSLISP = define_face(
     "ROSLISP",
-    imports={"ROSLISP-MSG-PROTOCOL": "ros-message symbol-codes symbol-code code-symbols code-symbol",
-             "ROSLISP-UTILS": "loop-at-most-every spin-until"},
+    imports={
+        "ROSLISP-MSG-PROTOCOL": "ros-message symbol-codes symbol-code code-symbols code-symbol",
+        "ROSLISP-UTILS": "loop-at-most-every spin-until",
+    },
     functions={
         node: "start-ros-node shutdown-ros-node node-status make-uri fully-qualified-name print-status standalone-exec-debug-hook",
         topics: "advertise unadvertise publish subscribe unsubscribe num-subscribers",
         services: "call-service wait-for-service make-service-client register-service-fn call-persistent-service close-persistent-service "
-                  "persistent-service-ok",
+        "persistent-service-ok",
         parameters: "get-param set-param has-param delete-param list-params",
         logging: "set-debug-level debug-level print-debug-levels",
         time: "ros-time spin-until-ros-time-valid wait-duration",
         message_building: "make-response msg-slot-value read-ros-message",
         message_printing: "pprint-ros-message",
     },
-    variables={"*ros-node-name*": None, "*master-uri*": None, "*default-master-uri*": None, "*running-from-command-line*": None},
-    export="def-ros-node def-service-call def-service-callback defservice load-if-necessary load-message-types load-msg load-service-types load-srv "
-           "make-message make-msg make-publisher-msg make-request modify-message-copy persistent-service publish-msg reconnect "
-           "register-service ros-debug ros-error ros-fatal ros-info ros-warn roslisp ros-time-not-yet-received service-call-error service-error "
-           "set-debug-levels setf-msg store-message-in tcp top with-fields with-parallel-thread with-ros-node *current-ros-package*")
+    variables={
+        "*ros-node-name*": None,
+        "*master-uri*": None,
+        "*default-master-uri*": None,
+        "*running-from-command-line*": None,
+    },
+    export="def-ros-node def-service-call def-service-callback defservice load-if-necessary load-message-types load-msg load-service-types "
+    "load-srv make-message make-msg make-publisher-msg make-request modify-message-copy persistent-service publish-msg reconnect "
+    "register-service ros-debug ros-error ros-fatal ros-info ros-warn roslisp ros-time-not-yet-received service-call-error service-error "
+    "set-debug-levels setf-msg store-message-in tcp top with-fields with-parallel-thread with-ros-node *current-ros-package*",
+)
 
 ROSLISP_UTILITIES = define_face(
     "ROSLISP-UTILITIES",
-    functions={utilities: "startup-ros shutdown-ros lispify-ros-name rosify-lisp-name lispify-ros-underscore-name rosify-underscores-lisp-name"},
-    export="register-ros-init-function register-ros-cleanup-function")
+    functions={
+        utilities: "startup-ros shutdown-ros lispify-ros-name rosify-lisp-name lispify-ros-underscore-name rosify-underscores-lisp-name"
+    },
+    export="register-ros-init-function register-ros-cleanup-function",
+)
 
 __all__ = ["ROSLISP", "ROSLISP_UTILITIES", "FieldReader", "RosMessage", "graph"]

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from ..lisp import conditions
 from ..lisp.condition_types import SimpleError
-from ..lisp.data import Cons, LispString, Symbol, UNSUPPLIED, list_from
+from ..lisp.data import UNSUPPLIED, Cons, LispString, Symbol, list_from
 from ..lisp.packages import symbol_name
 from . import names
 
@@ -98,7 +98,9 @@ def encode(value):
         return {str(key): encode(element) for key, element in value.items()}
     from ..lisp.condition_types import shown
 
-    return conditions.error(SimpleError("~a", f"A parameter can be a string, number, boolean, list or vector of these, but not {shown(value)}."))
+    return conditions.error(
+        SimpleError("~a", f"A parameter can be a string, number, boolean, list or vector of these, but not {shown(value)}.")
+    )
 
 
 def decode(value):

@@ -99,15 +99,24 @@ class LispService(Service):
             call.finish(failure=f"service cannot process request: {condition.report()}")
 
         def fail(condition):
-            logging.log_text(logging.ERROR, ("ROSLISP", "SERVICE", "TCP"), f"Error processing request {shown(call.request)}:\n {condition.report()}")
+            logging.log_text(
+                logging.ERROR,
+                ("ROSLISP", "SERVICE", "TCP"),
+                f"Error processing request {shown(call.request)}:\n {condition.report()}",
+            )
             call.finish(failure=f"error processing request: {condition.report()}")
 
         def run():
             response = self.handler(call.request)
             if not isinstance(response, RosMessage) or response.ros_type != self.type.response.ros_type:
                 expected = self.type.response.lisp_name.replace("::", ":")
-                return conditions.error(SimpleError("~a", f"The callback of service {self.name} must return a {expected} (see make-response), "
-                                                          f"but it returned {shown(response)}."))
+                return conditions.error(
+                    SimpleError(
+                        "~a",
+                        f"The callback of service {self.name} must return a {expected} (see make-response), "
+                        f"but it returned {shown(response)}.",
+                    )
+                )
             call.finish(wire.transmit(response))
 
         try:
@@ -187,10 +196,17 @@ def make_service_client(service_name, service_type):
     """A client for `call_service` and `wait_for_service`; both arguments are strings."""
     for name, value in (("SERVICE-NAME", service_name), ("SERVICE-TYPE", service_type)):
         if not isinstance(value, (str, LispString)):
-            from ..lisp.condition_types import SimpleTypeError, shown as printed
+            from ..lisp.condition_types import SimpleTypeError
+            from ..lisp.condition_types import shown as printed
 
-            return conditions.error(SimpleTypeError("~a", f"The value of ROSLISP::{name} is {printed(value)}, which is not of type STRING.",
-                                                    datum=value, expected_type="STRING"))
+            return conditions.error(
+                SimpleTypeError(
+                    "~a",
+                    f"The value of ROSLISP::{name} is {printed(value)}, which is not of type STRING.",
+                    datum=value,
+                    expected_type="STRING",
+                )
+            )
     return ServiceClient(str(service_name), messages.service_type(service_type))
 
 
@@ -209,8 +225,13 @@ def call_service(service, *rest_args):
 
         return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args)
     elif not rest_args:
-        return conditions.error(SimpleError("~a", "Error while parsing arguments to DESTRUCTURING-BIND:\n  too few elements in\n    ()\n  to satisfy "
-                                                  "lambda list\n    (SERVICE-TYPE &REST REQUEST-ARGS):\n  at least 1 expected, but got 0"))
+        return conditions.error(
+            SimpleError(
+                "~a",
+                "Error while parsing arguments to DESTRUCTURING-BIND:\n  too few elements in\n    ()\n  to satisfy "
+                "lambda list\n    (SERVICE-TYPE &REST REQUEST-ARGS):\n  at least 1 expected, but got 0",
+            )
+        )
     else:
         name, service_type, arguments = str(service), messages.service_type(rest_args[0]), rest_args[1:]
     request = _request(service_type, arguments)
@@ -305,8 +326,16 @@ def call_persistent_service(service, *request):
         else:
             problem = "The connection is closed."
         failure = ServiceCallError(message=problem)
-        conditions.restart_case([(sym("ROSLISP::RECONNECT"), lambda: service.connect(here), "Try reconnecting and call the service again.")],
-                                lambda failure=failure: conditions.error(failure))
+        conditions.restart_case(
+            [
+                (
+                    sym("ROSLISP::RECONNECT"),
+                    lambda: service.connect(here),
+                    "Try reconnecting and call the service again.",
+                )
+            ],
+            lambda failure=failure: conditions.error(failure),
+        )
 
 
 def close_persistent_service(service):
@@ -328,4 +357,3 @@ def call_named(service_name, service_symbol, return_field, *request):
     from .message_building import get_field
 
     return get_field(response, (symbol_name(return_field),))
-

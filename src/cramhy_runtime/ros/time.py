@@ -7,7 +7,7 @@ here park, so in virtual time they take no time at all (law 5). Source: roslisp.
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp.data import DoubleFloat, MultipleValues, truth
+from ..lisp.data import DoubleFloat, MultipleValues, Symbol, truth
 
 
 def ros_time():
@@ -77,7 +77,10 @@ def spin_until(test, increment, body=None, timeout=None):
 
 
 def with_parallel_thread(function, name, body):
-    """Run ``function`` in a task called ``name`` while ``body`` runs, then end it; the values of ``body``."""
+    """Run ``function`` (or that of a symbol) in a task called ``name`` while ``body`` runs, then end it; the values of ``body``."""
+    if isinstance(function, Symbol):
+        name = name if name is not None else function.name
+        function = function.function
     task = kernel.spawn(function, name=str(name))
     try:
         return body()

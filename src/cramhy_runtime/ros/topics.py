@@ -13,8 +13,7 @@ from collections import deque
 from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, Error, SimpleError
-from ..lisp.data import LispString, NO_VALUES, Symbol
-
+from ..lisp.data import NO_VALUES, LispString, Symbol
 from . import wire
 from .errors import NoPrimaryMethod, ros_error
 from .messages import RosMessage, topic_class
@@ -36,8 +35,14 @@ class Publication:
         if subscription in self.connections or subscription.closed:
             return
         if subscription.type.ros_type != self.type.ros_type:
-            subscription.node.graph.log.append((8, subscription.node.name, f"Client [{subscription.node.name}] wants topic {self.name} to have "
-                                                f"datatype {subscription.type.ros_type}, but our version has {self.type.ros_type}. Dropping connection."))
+            subscription.node.graph.log.append(
+                (
+                    8,
+                    subscription.node.name,
+                    f"Client [{subscription.node.name}] wants topic {self.name} to have "
+                    f"datatype {subscription.type.ros_type}, but our version has {self.type.ros_type}. Dropping connection.",
+                )
+            )
             return
         self.connections.append(subscription)
         if self.latch and self.last_message is not None:
@@ -91,8 +96,14 @@ class NativeSubscription:
 
     def spoiled(self, publication, message):
         """A message of another type came over the wire: roscpp cannot read it, says so, and goes on."""
-        self.node.graph.log.append((8, self.node.name, f"Exception thrown when deserializing message of type [{message.ros_type}] from "
-                                    f"[{publication.node.name}] on topic [{self.name}], which has type [{self.type.ros_type}]"))
+        self.node.graph.log.append(
+            (
+                8,
+                self.node.name,
+                f"Exception thrown when deserializing message of type [{message.ros_type}] from "
+                f"[{publication.node.name}] on topic [{self.name}], which has type [{self.type.ros_type}]",
+            )
+        )
 
     def close(self):
         self.closed = True
@@ -131,8 +142,11 @@ class Subscription:
     def spoiled(self, publication, message):
         from . import logging
 
-        logging.log_text(logging.DEBUG, ("ROSLISP", "DESERIALIZATION-THREAD"),
-                         f"Dropped a {message.ros_type} that {publication.node.name} sent on {self.name}, whose type is {self.type.ros_type}")
+        logging.log_text(
+            logging.DEBUG,
+            ("ROSLISP", "DESERIALIZATION-THREAD"),
+            f"Dropped a {message.ros_type} that {publication.node.name} sent on {self.name}, whose type is {self.type.ros_type}",
+        )
 
     def close(self):
         self.closed = True
@@ -165,11 +179,14 @@ class Subscription:
         self.remaining = []
 
     def _failed(self, condition):
-        from . import logging
         from ..lisp.format import format_to_string
+        from . import logging
 
-        logging.log_text(logging.ERROR, ("ROSLISP", "SERVICE", "TCP"),
-                         format_to_string("Error during subscriber callback: '~a' for topic item: ~%~a ", condition, self.message))
+        logging.log_text(
+            logging.ERROR,
+            ("ROSLISP", "SERVICE", "TCP"),
+            format_to_string("Error during subscriber callback: '~a' for topic item: ~%~a ", condition, self.message),
+        )
 
 
 class Subscriber:
@@ -244,8 +261,14 @@ def publication_type(pub):
         return pub.type
     from ..lisp.condition_types import SimpleTypeError, shown
 
-    return conditions.error(SimpleTypeError("~a", f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION.",
-                                            datum=pub, expected_type="ROSLISP::PUBLICATION"))
+    return conditions.error(
+        SimpleTypeError(
+            "~a",
+            f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION.",
+            datum=pub,
+            expected_type="ROSLISP::PUBLICATION",
+        )
+    )
 
 
 def num_subscribers(pub):
@@ -278,8 +301,12 @@ def subscribe(topic, topic_type, callback, *, max_queue_length=None):
         subscription.callbacks.insert(0, callback)
         waiting = here.add_subscription(subscription)
     elif subscription.type is not cls:
-        return ros_error("Asserted topic type ~a for new subscription to ~a did not match existing type ~a", cls.ros_type, name,
-                         subscription.type.ros_type)
+        return ros_error(
+            "Asserted topic type ~a for new subscription to ~a did not match existing type ~a",
+            cls.ros_type,
+            name,
+            subscription.type.ros_type,
+        )
     else:
         subscription.callbacks.insert(0, callback)
     for publisher in waiting:
@@ -301,7 +328,9 @@ def _limit(length):
     if length is None or isinstance(length, Symbol):
         return None
     if length.__class__ is not int or length < 1:
-        return conditions.error(SimpleError("~a", f"The queue of a subscription must hold at least one message, but :max-queue-length is {length}."))
+        return conditions.error(
+            SimpleError("~a", f"The queue of a subscription must hold at least one message, but :max-queue-length is {length}.")
+        )
     return length
 
 

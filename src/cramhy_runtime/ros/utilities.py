@@ -6,7 +6,7 @@ Source: roslisp.md 11. Init functions run by descending rank; equal ranks in the
 from __future__ import annotations
 
 from ..lisp import conditions
-from ..lisp.data import Symbol, UNSUPPLIED
+from ..lisp.data import UNSUPPLIED, Symbol
 from ..lisp.packages import intern, string_designator, sym, symbol_name
 from . import graph, logging, node
 

@@ -22,7 +22,8 @@ from .errors import no_applicable_method
 _single = struct.Struct("<f")
 
 POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
-    intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")]
+    intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
+]
 
 
 def round_single(value):
@@ -104,7 +105,14 @@ def _time(value):
     return DoubleFloat(seconds + round((value - seconds) * 1e9) / 1e9)
 
 
-_primitives = {"float64": _float64, "float32": _float32, "bool": _bool, "string": _string, "time": _time, "duration": _time}
+_primitives = {
+    "float64": _float64,
+    "float32": _float32,
+    "bool": _bool,
+    "string": _string,
+    "time": _time,
+    "duration": _time,
+}
 _primitives.update({name: _integer(*size) for name, size in INTEGERS.items()})
 
 
@@ -114,11 +122,15 @@ def _part(base):
             if value.ros_type == base:
                 return transmit(value)
             return conditions.type_error(value, messages.message_class_exact(base).lisp_name.replace("::", ":"))
-        from . import logging
         from ..lisp.printer import prin1_to_string
+        from . import logging
 
-        logging.log_text(logging.ERROR, ("ROSLISP",), f"Hmm... unexpectedly asked for serialization length of {prin1_to_string(value)}.  Most likely "
-                         "because the aforementioned object was found some place where a (nonprimitive) ros message was expected.")
+        logging.log_text(
+            logging.ERROR,
+            ("ROSLISP",),
+            f"Hmm... unexpectedly asked for serialization length of {prin1_to_string(value)}.  Most likely "
+            "because the aforementioned object was found some place where a (nonprimitive) ros message was expected.",
+        )
         return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, value)
 
     return convert
@@ -132,8 +144,13 @@ def _array(field, convert):
             return conditions.type_error(value, "VECTOR")
         result = [convert(element) for element in value]
         if field.length and len(result) != field.length:
-            return conditions.error(SimpleError("~a", f"The field {field.name} is an array of {field.length} elements ({field.type}), but a vector "
-                                                      f"of {len(result)} was given."))
+            return conditions.error(
+                SimpleError(
+                    "~a",
+                    f"The field {field.name} is an array of {field.length} elements ({field.type}), but a vector "
+                    f"of {len(result)} was given.",
+                )
+            )
         return result
 
     return convert_all

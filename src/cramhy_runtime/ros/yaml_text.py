@@ -18,7 +18,17 @@ class YamlError(ValueError):
 _TOKEN = re.compile(r"""\s*(?:([\[\]{},])|(:)(?=\s|$)|"((?:[^"\\]|\\.)*)"|'((?:[^']|'')*)'|((?:(?!:\s|:$)[^\[\]{},])+))""")
 _INTEGER = re.compile(r"[-+]?(0x[0-9a-fA-F]+|\d+)$")
 _FLOAT = re.compile(r"[-+]?(\d+\.\d*|\.\d+|\d+)([eE][-+]?\d+)?$")
-_WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False, "null": None, "~": None, "": None}
+_WORDS = {
+    "true": True,
+    "yes": True,
+    "on": True,
+    "false": False,
+    "no": False,
+    "off": False,
+    "null": None,
+    "~": None,
+    "": None,
+}
 _SPECIAL = {".nan": float("nan"), ".inf": float("inf"), "-.inf": float("-inf")}
 
 
@@ -41,7 +51,7 @@ def _tokens(text):
         if not match or match.end() == position:
             if not text[position:].strip():
                 break
-            raise YamlError(f"Cannot read {text!r} at {text[position:position + 10]!r}.")
+            raise YamlError(f"Cannot read {text!r} at {text[position : position + 10]!r}.")
         mark, colon, double, single, plain = match.groups()
         if mark or colon:
             tokens.append((mark or colon, None))

@@ -14,7 +14,7 @@ import math
 SIZE = 500
 METRE = 45
 """Pixels per metre: the height of the turtle's picture."""
-_CENTRE = 0.5 - 2.0 ** -7  # of a pixel, from its corner; a little less than half, which decides about centres on the border
+_CENTRE = 0.5 - 2.0**-7  # of a pixel, from its corner; a little less than half, which decides about centres on the border
 _MOST_PENDING = 512
 
 
@@ -56,7 +56,7 @@ class Canvas:
         column = min(max(math.floor(min(max(x, 0.0), SIZE) + 0.5), 0), SIZE - 1)
         row = min(max(math.floor(min(max(y, 0.0), SIZE) + 0.5), 0), SIZE - 1)
         start = (row * SIZE + column) * 3
-        return tuple(self._pixels[start:start + 3])
+        return tuple(self._pixels[start : start + 3])
 
     def rgb(self):
         """All pixels as bytes, row by row from the top."""
@@ -81,7 +81,10 @@ class Canvas:
             across = row + _CENTRE - y0
             # Both conditions are linear in x: -half <= u <= length + half along the line, -half <= v <= half beside it.
             low, high = -math.inf, math.inf
-            for slope, offset, least, most in ((along_x, across * along_y, -half, length + half), (-along_y, across * along_x, -half, half)):
+            for slope, offset, least, most in (
+                (along_x, across * along_y, -half, length + half),
+                (-along_y, across * along_x, -half, half),
+            ):
                 if slope > 1e-12:
                     low, high = max(low, (least - offset) / slope), min(high, (most - offset) / slope)
                 elif slope < -1e-12:
@@ -94,7 +97,7 @@ class Canvas:
             right = min(math.floor(min(x0 + high, SIZE + 1.0) - _CENTRE), SIZE - 1)
             if left <= right:
                 start = (row * SIZE + left) * 3
-                pixels[start:start + 3 * (right - left + 1)] = paint * (right - left + 1)
+                pixels[start : start + 3 * (right - left + 1)] = paint * (right - left + 1)
 
 
 SHELLS = [(46, 125, 50), (178, 102, 34), (0, 121, 107), (142, 36, 170), (198, 40, 40), (93, 64, 55)]

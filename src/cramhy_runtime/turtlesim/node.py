@@ -19,7 +19,7 @@ from ..ros.names import check_graph_name
 from ..ros.services import Refusal
 from . import canvas
 from .canvas import METRE, Canvas
-from .world import CENTRE, TICK, EXTENT, Turtle
+from .world import CENTRE, TICK, Turtle
 
 BACKGROUND = (("background_r", 69), ("background_g", 86), ("background_b", 255))
 LABELS = {logging.INFO: " INFO", logging.WARN: " WARN", logging.ERROR: "ERROR"}
@@ -36,9 +36,14 @@ class Inhabitant:
         self.pose = node.advertise(f"{name}/pose", simulator.pose_type)
         self.colour = node.advertise(f"{name}/color_sensor", simulator.colour_type)
         self.commands = node.subscribe(f"{name}/cmd_vel", message_class_exact("geometry_msgs/Twist"), self._command, queue=1)
-        self.services = [node.serve(f"{name}/{service}", service_type_exact(f"turtlesim/{kind}"), handler) for service, kind, handler in (
-            ("set_pen", "SetPen", self._set_pen), ("teleport_absolute", "TeleportAbsolute", self._teleport_absolute),
-            ("teleport_relative", "TeleportRelative", self._teleport_relative))]
+        self.services = [
+            node.serve(f"{name}/{service}", service_type_exact(f"turtlesim/{kind}"), handler)
+            for service, kind, handler in (
+                ("set_pen", "SetPen", self._set_pen),
+                ("teleport_absolute", "TeleportAbsolute", self._teleport_absolute),
+                ("teleport_relative", "TeleportRelative", self._teleport_relative),
+            )
+        ]
         self.simulator = simulator
 
     def leave(self):
@@ -86,6 +91,7 @@ class Turtlesim:
     def __init__(self, name="turtlesim", namespace="/", echo=None):
         self.graph = graph.active()
         self.node = self.graph.node(name, namespace, spins=True)
+        self.node.simulator = self
         self.echo = echo
         self.lines = []
         self.pose_type, self.colour_type = message_class_exact("turtlesim/Pose"), message_class_exact("turtlesim/Color")
@@ -181,8 +187,11 @@ class Turtlesim:
         canvas.save_png(path, self.canvas, self._sprites())
 
     def _sprites(self):
-        return [(turtle.x * METRE, turtle.y * METRE, turtle.heading, turtle.number) for turtle in self.turtles.values()
-                if math.isfinite(turtle.x) and math.isfinite(turtle.y) and math.isfinite(turtle.heading)]
+        return [
+            (turtle.x * METRE, turtle.y * METRE, turtle.heading, turtle.number)
+            for turtle in self.turtles.values()
+            if math.isfinite(turtle.x) and math.isfinite(turtle.y) and math.isfinite(turtle.heading)
+        ]
 
     def shutdown(self):
         """Close the simulator."""
@@ -241,15 +250,16 @@ def start_turtlesim(name="turtlesim", namespace="/", echo=None):
     return Turtlesim(name, namespace, echo)
 
 
+def running_simulator(name="/turtlesim"):
+    """The simulator whose node has that name in the active graph, or ``None``."""
+    return getattr(graph.active().nodes.get(name), "simulator", None)
+
+
 def start_with_first_node(echo=None):
     """Have the simulator start with the first ``start-ros-node``, as if ``turtlesim_node`` had been running before."""
-    here = graph.active()
 
     def start():
-        if "/turtlesim" not in here.nodes:
-            here.simulator = start_turtlesim(echo=echo)
+        if running_simulator() is None:
+            start_turtlesim(echo=echo)
 
-    here.before_first_node.append(start)
-
-
-__all__ = ["EXTENT", "Turtlesim", "start_turtlesim", "start_with_first_node"]
+    graph.active().before_first_node.append(start)

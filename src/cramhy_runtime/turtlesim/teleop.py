@@ -19,7 +19,9 @@ class Teleop:
 
     def __init__(self, turtle="turtle1", name="teleop_turtle", namespace="/"):
         here = graph.active()
+        self.turtle = turtle
         self.node = here.node(name, namespace)
+        self.node.teleop = self
         self.twist = message_class_exact("geometry_msgs/Twist")
         self.publication = self.node.advertise(f"{turtle}/cmd_vel", self.twist)
         self.linear = self._scale("scale_linear")

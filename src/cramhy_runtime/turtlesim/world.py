@@ -39,8 +39,26 @@ DEFAULT_PEN = (179, 184, 255)
 class Turtle:
     """One turtle. x, y (down) in metres, heading in radians; ``warn(text)`` is called when it hits a wall."""
 
-    __slots__ = ("name", "number", "x", "y", "heading", "forward", "sideways", "turn", "commanded", "pen_on", "pen_colour", "pen_width", "teleports",
-                 "canvas", "warn", "at_rest", "_pose", "_segment")
+    __slots__ = (
+        "name",
+        "number",
+        "x",
+        "y",
+        "heading",
+        "forward",
+        "sideways",
+        "turn",
+        "commanded",
+        "pen_on",
+        "pen_colour",
+        "pen_width",
+        "teleports",
+        "canvas",
+        "warn",
+        "at_rest",
+        "_pose",
+        "_segment",
+    )
 
     def __init__(self, name, number, x, y, heading, canvas, warn):
         self.name, self.number = name, number

@@ -41,17 +41,17 @@
       (let ((goal (desig:a motion (type moving) (goal (?x ?y 0)))))
         (pm-execute 'turtlesim-navigation goal)))))
 
-(defun move-parallel (&optional (?x 9) (?y 1))
+(defun move-parallel ()
   "Two motions for one module at once: the second waits until the first is done."
   (top-level
     (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)
-      (let ((goal (desig:a motion (type moving) (goal (?x ?y 0))))
+      (let ((goal (desig:a motion (type moving) (goal (9 1 0))))
             (trajectory (desig:a motion (type driving) (speed 3) (angle 8))))
         (cpl:par
           (pm-execute 'turtlesim-navigation goal)
           (pm-execute 'turtlesim-navigation trajectory))))))
 
-(defun drive-n-draw (&optional (?x 9) (?y 9))
+(defun drive-n-draw (?x ?y)
   "Two modules at once: the turtle moves while its pen changes twice a second."
   (top-level
     (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)

@@ -106,6 +106,9 @@ class GreenletBackend:
         if task is kernel.main and kernel.nothing_can_happen():
             try:
                 kernel.interruptible = True
+                if kernel.interrupt_waits():
+                    kernel.interruptible = False
+                    kernel.end_slice()  # raises it
                 return call()
             finally:
                 kernel.interruptible = False

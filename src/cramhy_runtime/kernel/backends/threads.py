@@ -18,6 +18,7 @@ import sys
 import threading
 from collections import deque
 
+from ..clocks import LONGEST_WAIT
 from . import NoStack
 
 STACK_SIZE = 16 << 20 if sys.maxsize > 2**32 else 1 << 20  # bytes
@@ -91,11 +92,11 @@ class ThreadBackend:
     calls_back = False  # a task that is outside comes back when its call has returned, not before
 
     def __init__(self):
-        self._kernel = None
+        self._kernel = self._root = None
 
     def adopt(self, kernel):
         self._kernel = kernel
-        carrier = ThreadCarrier()
+        self._root = carrier = ThreadCarrier()
         carrier.ident = _thread.get_ident()
         return carrier
 
@@ -108,10 +109,13 @@ class ThreadBackend:
 
     def _wait(self, mine):
         """Wait for the baton. In the main thread Python runs signal handlers meanwhile, and one may raise."""
+        if mine is not self._root:
+            mine.lock.acquire()
+            return
         while True:
             try:
-                mine.lock.acquire()
-                return
+                if mine.lock.acquire(timeout=LONGEST_WAIT):
+                    return
             except KeyboardInterrupt:
                 kernel = self._kernel
                 kernel.interrupt()
@@ -130,7 +134,10 @@ class ThreadBackend:
         try:
             spare.lock.release()
             try:
-                kernel.interruptible = task is kernel.main
+                if task is kernel.main:
+                    kernel.interruptible = True
+                    if kernel.interrupt_waits():
+                        return None  # and have it raised by the kernel
                 return call()
             finally:
                 if task is kernel.main:

@@ -1,0 +1,244 @@
+"The macros of CLOS, conditions and structures: they take definitions apart and hand them to the runtime."
+
+(require cramhy.operators [defoperator])
+(import cramhy.operators *)
+
+(setv package "COMMON-LISP")
+
+(defn options-of [items]
+  "A property list of options as pairs (NAME, form)."
+  (setv items (list items))
+  (when (% (len items) 2)
+    (raise (ValueError "an option has no value.")))
+  (lfor #(key value) (zip (cut items 0 None 2) (cut items 1 None 2)) [(symbol-name key) value]))
+
+(defn quoted-list [items]
+  `(quote ~(list-from items)))
+
+(defn slot-specification [slot]
+  "The form that makes the description of a slot of `defclass` and `define-condition`."
+  (setv #(name #* rest) (if (listp slot) slot [slot]))
+  (setv options (options-of rest))
+  (defn every [key] (lfor #(option value) options :if (= option key) value))
+  (defn only [key] (if (every key) (get (every key) 0) None))
+  (setv initforms (every "INITFORM"))
+  `(%slot-spec (quote ~name)
+     :initargs ~(quoted-list (every "INITARG"))
+     :initform ~(if initforms `(lambda [] ~(get initforms 0)) None)
+     :initform-source (quote ~(only "INITFORM"))
+     :readers ~(quoted-list (every "READER"))
+     :writers ~(quoted-list (every "WRITER"))
+     :accessors ~(quoted-list (every "ACCESSOR"))
+     :allocation (quote ~(only "ALLOCATION"))
+     :type (quote ~(if (every "TYPE") (only "TYPE") True))
+     :documentation ~(only "DOCUMENTATION")))
+
+(defn initargs-form [arguments]
+  `(list ~@(lfor #(key value) (zip (cut arguments 0 None 2) (cut arguments 1 None 2))
+             `(list (quote ~key) (lambda [] ~value) (quote ~value)))))
+
+(defn function-form [form]
+  "What :report and its like take: a string, a name, or a lambda expression."
+  (cond
+    (or (is form None) (isinstance form str)) form
+    (listp form) `(function ~form)
+    True `(quote ~form)))
+
+(defn class-options [options]
+  "Keyword arguments of `define-class` and `define-condition` for class options like (:documentation \"...\")."
+  (setv arguments [])
+  (for [option options]
+    (setv key (symbol-name option.car) values (elements option.cdr))
+    (.extend arguments
+      (match key
+        "DOCUMENTATION" [(sym ":DOCUMENTATION") (get values 0)]
+        "DEFAULT-INITARGS" [(sym ":DEFAULT-INITARGS") (initargs-form values)]
+        "METACLASS" [(sym ":METACLASS") `(quote ~(get values 0))]
+        "REPORT" [(sym ":REPORT") (function-form (get values 0))]
+        _ (raise (ValueError (+ "there is no option :" key "."))))))
+  arguments)
+
+(defoperator defclass [name superclasses slots #* options]
+  `(%define-class (quote ~name) (quote ~superclasses)
+                  (list ~@(lfor slot (elements slots) (slot-specification slot)))
+                  ~@(class-options options)))
+
+(defoperator define-condition [name parents slots #* options]
+  `(%define-condition (quote ~name) (quote ~parents)
+                      (list ~@(lfor slot (elements slots) (slot-specification slot)))
+                      ~@(class-options options)))
+
+;; ----------------------------------------------------------------------------------------------------------- generic functions
+
+(setv method-words #{"CALL-NEXT-METHOD" "NEXT-METHOD-P"})
+
+(defn mentions-next [forms]
+  "Whether the forms may call the next method."
+  (setv cell forms)
+  (while (listp cell)
+    (setv item cell.car)
+    (when (or (and (isinstance item LispSymbol) (in item.name method-words)) (and (listp item) (mentions-next item)))
+      (return True))
+    (setv cell cell.cdr))
+  False)
+
+(defn method-parts [forms]
+  "(qualifiers, lambda list, body) of what follows the name in `defmethod`."
+  (setv forms (list forms) qualifiers [])
+  (while (and forms (not (listp (get forms 0))) (is-not (get forms 0) None))
+    (.append qualifiers (.pop forms 0)))
+  (when (not forms)
+    (raise (ValueError "the lambda list is missing.")))
+  #(qualifiers (get forms 0) (cut forms 1 None)))
+
+(defn plain-parameters [lambda-list]
+  "(parameters without specializers, forms of the specializers); after &key other keywords are allowed."
+  (setv plain [] specializers [] required True keys False allowed False)
+  (for [item (elements lambda-list)]
+    (setv marker (and (isinstance item LispSymbol) (.startswith item.name "&")))
+    (when marker
+      (setv required False)
+      (when (= item.name "&KEY") (setv keys True))
+      (when (= item.name "&ALLOW-OTHER-KEYS") (setv allowed True))
+      (when (and (= item.name "&AUX") keys (not allowed))
+        (.append plain (sym "&ALLOW-OTHER-KEYS"))
+        (setv allowed True)))
+    (cond
+      (not required) (.append plain item)
+      (listp item) (do
+        (.append plain item.car)
+        (setv specializer item.cdr.car)
+        (.append specializers
+          (if (and (listp specializer) (= (symbol-name specializer.car) "EQL"))
+              `(list (quote eql) ~specializer.cdr.car)
+              `(quote ~specializer))))
+      True (do (.append plain item) (.append specializers 't))))
+  (when (and keys (not allowed))
+    (.append plain (sym "&ALLOW-OTHER-KEYS")))
+  #((list-from plain) `(list ~@specializers)))
+
+(defn method-function [name lambda-list body]
+  "(function form, whether it takes the next methods)"
+  (setv block (if (listp name) name.cdr.car name) #(plain _) (plain-parameters lambda-list))
+  (setv forms (list body) declarations [])
+  (while (and (> (len forms) 1) (isinstance (get forms 0) str)) (.pop forms 0))
+  (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) (sym "DECLARE")))
+    (.append declarations (.pop forms 0)))
+  (if (mentions-next (list-from body))
+      (do
+        (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
+        #(`(lambda [~next ~@(elements plain)]
+             ~@declarations
+             (flet [[call-next-method [&rest ~rest] (apply ~next ~rest)]
+                    [next-method-p [] (%next-method-exists ~next)]]
+               (block ~block ~@forms)))
+          True))
+      #(`(lambda ~plain ~@declarations (block ~block ~@forms)) None)))
+
+(defoperator defmethod [name #* forms]
+  (setv #(qualifiers lambda-list body) (method-parts forms))
+  (setv #(_ specializers) (plain-parameters lambda-list) #(function uses-next) (method-function name lambda-list body))
+  (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) (get body 0) None))
+  `(%define-method (quote ~name) ~(quoted-list qualifiers) ~specializers (quote ~lambda-list) ~function ~uses-next
+                   :documentation ~documentation))
+
+(defn method-option [name option]
+  (setv #(qualifiers lambda-list body) (method-parts option.cdr))
+  (setv #(_ specializers) (plain-parameters lambda-list) #(function uses-next) (method-function name lambda-list body))
+  `(list ~(quoted-list qualifiers) ~specializers (quote ~lambda-list) ~function ~uses-next))
+
+(defoperator defgeneric [name lambda-list #* options]
+  (setv methods [] arguments [])
+  (for [option options]
+    (match (symbol-name option.car)
+      "METHOD" (.append methods (method-option name option))
+      "DOCUMENTATION" (.extend arguments [(sym ":DOCUMENTATION") option.cdr.car])
+      "METHOD-COMBINATION" (.extend arguments [(sym ":METHOD-COMBINATION") `(quote ~option.cdr)])
+      "ARGUMENT-PRECEDENCE-ORDER" (.extend arguments [(sym ":ARGUMENT-PRECEDENCE-ORDER") `(quote ~option.cdr)])
+      _ None))
+  `(%define-generic (quote ~name) (quote ~lambda-list) :methods (list ~@methods) ~@arguments))
+
+(defoperator define-method-combination [name #* rest]
+  (if (and rest (or (listp (get rest 0)) (is (get rest 0) None)))
+      (long-combination name #* rest)
+      (do
+        (setv options (dict (options-of rest)))
+        `(%define-short-combination (quote ~name) :operator (quote ~(.get options "OPERATOR" name))
+           :identity-with-one-argument ~(.get options "IDENTITY-WITH-ONE-ARGUMENT")
+           :documentation ~(.get options "DOCUMENTATION")))))
+
+(defn group-parts [group]
+  "(variable patterns order required) of a method group specifier."
+  (setv #(variable #* rest) group patterns [] rest (list rest))
+  (while (and rest (not (and (isinstance (get rest 0) LispSymbol) (in (. (get rest 0) name) ["ORDER" "REQUIRED" "DESCRIPTION"]))))
+    (.append patterns (.pop rest 0)))
+  (setv options (dict (options-of rest)))
+  [variable (list-from patterns) (.get options "ORDER") (.get options "REQUIRED")])
+
+(defn long-combination [name lambda-list groups #* body]
+  (setv parts (lfor group (elements groups) (group-parts group)) options (gensym "OPTIONS") generic (gensym "GENERIC"))
+  (setv forms (lfor form body :if (not (and (listp form) (in (symbol-name form.car) ["ARGUMENTS" "GENERIC-FUNCTION"]))) form))
+  `(%define-long-combination (quote ~name) (quote ~(list-from (lfor part parts (list-from part))))
+     (lambda [~generic ~options ~@(lfor part parts (get part 0))]
+       (destructuring-bind ~lambda-list ~options ~@forms))))
+
+(defoperator with-slots [slots instance #* body]
+  (setv variable (gensym "INSTANCE"))
+  `(let [[~variable ~instance]]
+     (symbol-macrolet [~@(lfor slot (elements slots)
+                           (if (listp slot)
+                               [slot.car `(slot-value ~variable (quote ~slot.cdr.car))]
+                               [slot `(slot-value ~variable (quote ~slot))]))]
+       ~@body)))
+
+(defoperator with-accessors [accessors instance #* body]
+  (setv variable (gensym "INSTANCE"))
+  `(let [[~variable ~instance]]
+     (symbol-macrolet [~@(lfor #(name accessor) (elements accessors) [name `(~accessor ~variable)])]
+       ~@body)))
+
+;; ------------------------------------------------------------------------------------------------------------------ structures
+
+(defn structure-slot [slot]
+  (setv #(name #* rest) (if (listp slot) slot [slot]))
+  (setv initform (if rest [(get rest 0)] []) options (dict (options-of (cut rest 1 None))))
+  `(%structure-slot (quote ~name)
+     :initform ~(if initform `(lambda [] ~(get initform 0)) None)
+     :type (quote ~(.get options "TYPE" True))
+     :read-only ~(.get options "READ-ONLY")))
+
+(defn constructor-form [entry slots]
+  "A constructor of `defstruct`: (name) or name with keywords, or (name lambda-list) by position."
+  (setv #(name #* rest) (if (listp entry) entry [entry]))
+  (if (not rest)
+      `(quote ~name)
+      (do
+        (import cramhy_runtime.lisp.structures [boa-lambda-list])
+        (setv #(lambda-list variables) (boa-lambda-list (get rest 0)))
+        `(list (quote ~name) (quote ~variables) (lambda ~lambda-list (list ~@(elements variables)))))))
+
+(defoperator defstruct [head #* slots]
+  (setv #(name #* options) (if (listp head) head [head]) slots (list slots))
+  (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
+  (setv arguments [] constructors [])
+  (for [option options]
+    (setv #(key #* values) (if (listp option) option [option]))
+    (match (symbol-name key)
+      "CONC-NAME" (.extend arguments [(sym ":CONC-NAME") (if values `(quote ~(get values 0)) None)])
+      "CONSTRUCTOR" (.append constructors
+                      (if values
+                          (if (is (get values 0) None) None (constructor-form (list-from values) slots))
+                          `(quote ~(.intern (. name package) (+ "MAKE-" name.name)))))
+      "COPIER" (when values (.extend arguments [(sym ":COPIER") `(quote ~(get values 0))]))
+      "PREDICATE" (when values (.extend arguments [(sym ":PREDICATE") `(quote ~(get values 0))]))
+      "INCLUDE" (.extend arguments [(sym ":INCLUDE") `(quote ~(get values 0))
+                                    (sym ":INCLUDE-SLOTS") `(list ~@(map structure-slot (cut values 1 None)))])
+      "TYPE" (.extend arguments [(sym ":TYPE") `(quote ~(get values 0))])
+      "NAMED" (.extend arguments [(sym ":NAMED") True])
+      "INITIAL-OFFSET" (.extend arguments [(sym ":INITIAL-OFFSET") (get values 0)])
+      "PRINT-FUNCTION" (when values (.extend arguments [(sym ":PRINT-FUNCTION") (function-form (get values 0))]))
+      "PRINT-OBJECT" (when values (.extend arguments [(sym ":PRINT-OBJECT") (function-form (get values 0))]))
+      _ (raise (ValueError (+ "there is no option :" (symbol-name key) ".")))))
+  (when constructors
+    (.extend arguments [(sym ":CONSTRUCTORS") `(list ~@(lfor each constructors :if (is-not each None) each))]))
+  `(%define-structure (quote ~name) (list ~@(map structure-slot slots)) ~@arguments :documentation ~documentation))

@@ -1,0 +1,51 @@
+"""How designators are printed: over several lines, one per property, always the same (designators.md section 4)."""
+
+from __future__ import annotations
+
+from ..lisp.data import Cons, Symbol, UNBOUND
+from ..lisp.conditions import type_error
+from ..lisp.packages import find_package, symbol_name
+from ..lisp.print_controls import PRINT_ESCAPE
+from ..lisp.printer import define_printer, print_unreadable, write
+from .classes import Designator, type_keyword
+from .symbols import sym
+
+PRINT_DESCRIPTION = sym("DESIG::*DESIGNATOR-PPRINT-DESCRIPTION*")
+PRINT_DESCRIPTION.special = True
+if PRINT_DESCRIPTION.value is UNBOUND:
+    PRINT_DESCRIPTION.value = True
+PACKAGE = sym("*PACKAGE*")
+
+
+def print_designator(designator, stream):
+    """``#<A MOTION``, a line ``    (KEY VALUE)`` per property, ``>``. Keys and values that are symbols go without colon."""
+    print_unreadable(designator, stream, body=lambda: _print_description(designator, stream))
+
+
+def _print_description(designator, stream):
+    if PRINT_DESCRIPTION.value is None:
+        return
+    escape = PRINT_ESCAPE.value is not None
+    _bare(designator.quantifier, stream, escape)
+    stream.write(" ")
+    _bare(type_keyword(designator), stream, escape)
+    description = designator.description
+    if description is not None and not isinstance(description, Cons):
+        type_error(description, "LIST")
+    for entry in description or ():
+        stream.write("\n    (")
+        _bare(entry.car, stream, escape)
+        stream.write(" ")
+        _bare(entry.cdr.car if entry.cdr is not None else None, stream, escape)
+        stream.write(")")
+
+
+def _bare(thing, stream, escape):
+    """Print ``thing``; a symbol as the symbol of its name in the current package, which needs no prefix."""
+    if isinstance(thing, Symbol):
+        package = find_package(PACKAGE.value) if PACKAGE.value is not UNBOUND else find_package("COMMON-LISP-USER")
+        thing = package.intern(symbol_name(thing))
+    write(thing, stream, escape)
+
+
+define_printer(Designator, print_designator)
