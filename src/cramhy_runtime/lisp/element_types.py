@@ -6,7 +6,7 @@ An implementation keeps only some specialised arrays and upgrades other types to
 
 from __future__ import annotations
 
-from .conditions import type_error
+from .conditions import error, type_error
 from .data import Character, Cons, DoubleFloat, Symbol, lisp_list
 from .packages import sym
 from .vectors import BIT, CHARACTER
@@ -37,7 +37,10 @@ def upgraded_element_type(specifier):
         from . import types
 
         expansion = types.expand_type(specifier)
-        return True if expansion is specifier else upgraded_element_type(expansion)
+        if expansion is not specifier:
+            return upgraded_element_type(expansion)
+        if not types.is_known_type(specifier):
+            error("Undefined type: ~S", specifier)
     return True
 
 

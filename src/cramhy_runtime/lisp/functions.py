@@ -10,6 +10,8 @@ texts are SBCL's.
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from .conditions import error, type_error
 from .data import Cons, MultipleValues, Symbol, UndefinedFunction, values
 from .equality import eql
@@ -65,12 +67,11 @@ def primary(function):
 
 def equal_to(item):
     """A Python predicate: is its argument ``eql`` to ``item``? Objects are compared by identity, numbers by type and value."""
-    cls = item.__class__
-    if cls is int:
+    if item.__class__ is int:
         return lambda element: element.__class__ is int and element == item
     if item is None or item is False:
         return lambda element: element is None or element is False
-    if isinstance(item, (float, complex)) or cls.__name__ == "Fraction":
+    if isinstance(item, (float, complex, Fraction)):
         return lambda element: eql(item, element) is not None
     return lambda element: element is item
 

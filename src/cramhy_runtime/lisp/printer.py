@@ -348,7 +348,8 @@ def report_to(condition, stream):
     elif report in _REPORTS:
         from .format import format_
 
-        format_(stream, *_REPORTS[report](condition))
+        with bound(PRINT_ESCAPE, True):
+            format_(stream, *_REPORTS[report](condition))
     else:
         stream.write(condition.report())
 
@@ -370,8 +371,8 @@ def _type_error_report(condition):
 
 _REPORTS = {
     TypeError_.report: _type_error_report,
-    CaseFailure.report: lambda condition: ("~@<~S fell through ~S expression. ~:_Wanted one of ~:S.~:>", condition.datum,
-                                           _Verbatim(str(condition.operator)), condition.possibilities),
+    CaseFailure.report: lambda condition: ("~@<~S fell through ~S expression.~@[ ~:_Wanted one of (~{~S~^ ~:_~}).~]~:>",
+                                           condition.datum, _Verbatim(str(condition.operator)), condition.possibilities),
 }
 
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 from .classes import StructureClass, register_class, registered_class
 from .conditions import SimpleError, error, program_error, type_error
 from .data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
-from .equality import define_structure_parts
 from .faces import python_name
 from .packages import Package, intern, is_symbol, keyword, string_designator, sym, symbol_name
 
@@ -161,12 +160,6 @@ def find_structure(name):
 def slots_of(obj):
     """The slots of a structure: a list of (Symbol, value)."""
     return [(slot.name, getattr(obj, slot.attribute, None)) for slot in type(obj).lisp_structure.slots]
-
-
-@define_structure_parts
-def _parts(obj):
-    structure = getattr(type(obj), "lisp_structure", None)
-    return None if structure is None else [getattr(obj, slot.attribute, None) for slot in structure.slots]
 
 
 def define_structure(name, slots=None, *, conc_name=UNSUPPLIED, constructors=UNSUPPLIED, copier=UNSUPPLIED, predicate=UNSUPPLIED,

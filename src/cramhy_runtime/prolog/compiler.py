@@ -10,6 +10,7 @@ Why source and not closures: with one Python call per closure, naive reverse ran
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
 from cramhy_runtime.lisp.packages import sym
 
@@ -21,7 +22,7 @@ from .patterns import ANONYMOUS, same_atom, variable
 from .relations import compile_relation
 from .terms import TermTail, UNSET, Var, unify
 
-LOOP = range(400)
+LOOP = range(100)
 _INLINE_LIMIT = 6
 _DEEP = 4
 _CUT = sym("CRAM-PROLOG::CUT")
@@ -120,7 +121,7 @@ class _Code:
                         "same_atom": same_atom, "LazyTail": LazyTail, "TermTail": TermTail, "index_key": index_key,
                         "Symbol": Symbol, "lisp_fun": lisp_calls.lisp_fun, "lisp_pred": lisp_calls.lisp_pred,
                         "compare": lisp_calls.compare, "resolve_argument": lisp_calls.resolve_argument,
-                        "raw_argument": lisp_calls.raw_argument, "try_clauses": try_clauses, "P": predicate}
+                        "raw_argument": lisp_calls.raw_argument, "try_clauses": try_clauses, "P": predicate, "budget": budget}
         self.constants = {}
         self.counter = 0
 
@@ -212,6 +213,7 @@ class _Code:
                 self._candidates(others, "OTHERS")
             self.depth -= 1
         self.depth -= 1
+        self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
         self.emit(f"return P.call, k{self.arguments}")
 
     def _branch(self, test, numbers, bucket):
@@ -423,17 +425,10 @@ class _Code:
         return f"raw_argument(m, {self._build(pattern, names)})"
 
     def _call(self, goal, goals, names, looping):
-        known = set(names)
-        arguments, end = [], None
-        if isinstance(goal, Cons):
-            end = goal.cdr
-            while isinstance(end, Cons):
-                arguments.append(end.car)
-                end = end.cdr
         functor = goal.car if isinstance(goal, Cons) else None
-        direct = isinstance(goal, Cons) and valid_functor(functor) and end is None and functor not in control.CONTROL
+        direct = _direct(goal)
         if direct:
-            given = [self._build(argument, names) for argument in arguments]
+            given = [self._build(argument, names) for argument in goal.cdr or ()]
         else:
             term = self._build(goal, names)
         if direct and not goals and looping and functor is self.predicate.functor and len(given) == self.arity:
@@ -442,7 +437,7 @@ class _Code:
                           f"{',' if self.arity == 1 else ''}")
             self.emit("continue")
             return
-        rest = self._continuation(goals, names, known)
+        rest = self._continuation(goals, names)
         if direct:
             callee = find_predicate(functor, len(given))
             self.emit(f"return {self.constant(callee)}.call, {rest}{''.join(', ' + item for item in given)}")
@@ -452,7 +447,7 @@ class _Code:
         else:
             self.emit(f"return {self.constant(control.solve)}(m, {term}, {rest}, b)")
 
-    def _continuation(self, goals, names, known):
+    def _continuation(self, goals, names):
         """An expression for the continuation that proves ``goals``; its function is written beside this one."""
         if not goals:
             return "k"
@@ -475,8 +470,16 @@ class _Code:
 
 
 def _uses_barrier(goal):
-    functor = goal.car if isinstance(goal, Cons) else None
-    return not isinstance(functor, Symbol) or functor is _CUT or functor in control.CONTROL or variable(functor)
+    return goal.car is _CUT if isinstance(goal, Cons) and goal.car in INLINED else not _direct(goal)
+
+
+def _direct(goal):
+    """Whether a goal is a call of a predicate that is known now, with a known number of arguments."""
+    if not isinstance(goal, Cons) or not valid_functor(goal.car) or goal.car in control.CONTROL:
+        return False
+    while isinstance(goal, Cons):
+        goal = goal.cdr
+    return goal is None
 
 
 def _occurs(name, pattern):

@@ -12,11 +12,12 @@ have machines of their own. The machine stops after each solution and goes on wh
 from __future__ import annotations
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.budget import budget
 
 from .terms import UNSET, undo, unify
 
-BUDGET = range(400)
-"""Steps between two checkpoints of the kernel."""
+BUDGET = range(50)
+"""Steps between two checkpoints of the kernel, which counts each of them."""
 
 
 class Machine:
@@ -50,6 +51,9 @@ class Machine:
         """Go on to the next solution: True, and variables have its values; False, and there is none."""
         step = self.start
         self.found = False
+        budget.left -= 1
+        if budget.left < 0:
+            kernel.checkpoint()
         if step is not None:
             self.start = None
         else:
@@ -63,6 +67,7 @@ class Machine:
                     return self.found
             if not self.choices:
                 self.trail.clear()
+            budget.left -= len(BUDGET) - 1
             kernel.checkpoint()
 
 

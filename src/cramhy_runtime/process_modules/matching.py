@@ -1,0 +1,71 @@
+"""Which process module is right for a designator: asked of Prolog (process-modules.md section 7)."""
+
+from __future__ import annotations
+
+from ..cpl.failures import attempt, fail, signal_failure
+from ..cpl.hooks import Hook
+from ..lisp.data import list_from, one, truth
+from ..prolog.facts import built_in_group
+from ..prolog.query import ask
+from ..prolog.terms import Var
+from .modules import pm_execute
+from .registry import get_running_process_module
+from .symbols import sym
+
+MATCHING, AVAILABLE = sym("CPM::MATCHING-PROCESS-MODULE"), sym("CPM::AVAILABLE-PROCESS-MODULE")
+on_preparing_performing = Hook("CPL::ON-PREPARING-PERFORMING-ACTION-DESIGNATOR", "(designator matching-process-modules)")
+on_finishing_performing = Hook("CPL::ON-FINISHING-PERFORMING-ACTION-DESIGNATOR", "(id success)")
+
+for _functor in (MATCHING, AVAILABLE, sym("CPM::PROJECTION-RUNNING")):
+    built_in_group(sym("CPM::PROCESS-MODULES"), _functor)
+
+
+def matching_names(designator):
+    """The names of modules that match ``designator`` and are available, in clause order, as a Python list."""
+    return [name for (name,) in ask(MATCHING, designator, Var()) if next(ask(AVAILABLE, name), None) is not None]
+
+
+def matching_process_module_names(designator):
+    """`matching_names` as a Lisp list."""
+    return list_from(matching_names(designator))
+
+
+def running_matches(designator):
+    return [name for name in matching_names(designator) if get_running_process_module(name) is not None]
+
+
+def matching_available_process_modules(designator, *, fail_if_none=None):
+    """Those of them that are running; none is a plan failure with ``fail_if_none``."""
+    names = running_matches(designator)
+    if not names and truth(fail_if_none):
+        return fail("No process modules found for executing designator ~a", designator)
+    return list_from(names)
+
+
+def pm_execute_matching(designator):
+    """Have the matching modules execute ``designator``, one after the other until one succeeds: the first value.
+
+    If all fail, with the failure of the first. Lisp errors end it at once.
+    """
+    names = running_matches(designator)
+    if not names:
+        return fail("No process modules found for executing designator ~a", designator)
+    observed = on_preparing_performing or on_finishing_performing
+    run_id = on_preparing_performing.first(designator, list_from(names)) if observed else None
+    success = None
+    try:
+        if len(names) == 1:
+            value = one(pm_execute(names[0], designator))
+            success = True
+            return value
+        first_failure = None
+        for name in names:
+            value, failure = attempt(lambda name=name: pm_execute(name, designator))
+            if failure is None:
+                success = True
+                return one(value)
+            first_failure = first_failure or failure
+        return signal_failure(first_failure)
+    finally:
+        if observed:
+            on_finishing_performing(run_id, success)

@@ -1,0 +1,30 @@
+"""Fixtures for all rooms: where the shared references lie, and a session in virtual time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[1]
+SHARED = REPOSITORY.parent / "shared"
+
+
+@pytest.fixture(scope="session")
+def shared():
+    """The folder of the shared references; tests that need it are skipped where it is missing."""
+    if not SHARED.is_dir():
+        pytest.skip("the shared references are not beside this checkout")
+    return SHARED
+
+
+@pytest.fixture
+def session():
+    """A session in virtual time, without the turtle."""
+    from cramhy_runtime import kernel
+    from cramhy_runtime.repl.session import Session
+
+    made = Session(time="virtual", turtlesim=False)
+    made.package = "CRAM-USER"
+    yield made
+    kernel.stop()

@@ -1,0 +1,72 @@
+"""The house keeps its order: floors, size of files, who may use threads and the wall clock (design.md section 3)."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src" / "cramhy_runtime"
+FLOORS = [["kernel"], ["lisp"], ["transforms", "cpl", "prolog", "ros"], ["designators", "turtlesim"], ["process_modules"], ["view", "repl"],
+          ["cli", "image", "pytest_plugin", "__init__"]]
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+ALLOWED_UPWARDS = {("repl", "image"), ("pytest_plugin", "image"), ("cli", "image")}
+"""``image`` puts all rooms together, so that a session can begin with it; nothing below the surfaces may import it."""
+
+FILES = sorted(SOURCE.rglob("*.py"))
+TEXTS = [*FILES, *sorted((ROOT / "hy_src").rglob("*.hy")), *sorted((ROOT / "hy_src").rglob("*.py")), *sorted((ROOT / "tests").rglob("*.py")),
+         *sorted((ROOT / "tutorials").rglob("*.py")), *sorted((ROOT / "benchmarks").rglob("*.py"))]
+
+
+def room_of(path):
+    return path.relative_to(SOURCE).parts[0].removesuffix(".py")
+
+
+def imported_rooms(path):
+    """The rooms of cramhy_runtime that a file imports, wherever in it the import stands."""
+    package = ["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts[:-1]]
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package[:len(package) - node.level + 1] if node.level else []
+            module = [*base, *(node.module or "").split(".")] if node.module else base
+            names = [".".join(module)] + [".".join([*module, alias.name]) for alias in node.names]
+        else:
+            continue
+        for name in names:
+            parts = name.split(".")
+            if parts[0] == "cramhy_runtime" and len(parts) > 1 and parts[1] in FLOOR:
+                yield parts[1]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_room_imports_only_from_floors_below_its_own(path):
+    room = room_of(path)
+    for other in set(imported_rooms(path)) - {room}:
+        assert FLOOR[other] < FLOOR[room] or (room, other) in ALLOWED_UPWARDS, f"{room} imports {other}"
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if room_of(path) != "kernel"], ids=lambda path: str(path.relative_to(SOURCE)))
+def test_threads_and_the_wall_clock_are_the_kernels(path):
+    text = path.read_text()
+    assert not re.search(r"^\s*(import|from) (_?threading|_thread|concurrent)\b", text, re.M)
+    assert not re.search(r"\btime\.(sleep|time)\(|from time import", text)
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_file_is_longer_than_600_lines(path):
+    assert len(path.read_text().splitlines()) <= 600
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_every_module_opens_with_a_paragraph(path):
+    assert ast.get_docstring(ast.parse(path.read_text()))
+
+
+def test_nothing_names_a_path_of_a_machine():
+    for path in TEXTS:
+        assert not re.search(r"(?<![\w.])/(home|work|Users|root)/\w", path.read_text()), path
