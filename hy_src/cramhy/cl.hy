@@ -137,7 +137,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
          (setq ~counter (1+ ~counter))
          (go ~next)
          ~end)
-       (let [[~variable ~counter]] ~@declarations ~variable ~@result))))
+       (let [[~variable ~counter]] ~@declarations ~variable ~@(or result [None])))))
 
 (defoperator dolist [spec #* body]
   (setv #(variable items #* result) spec)
@@ -296,7 +296,9 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator check-type [place type [name None]]
   `(if (typep ~place (quote ~type))
        nil
-       (setf ~place (%check-type-failed ~place (quote ~place) (quote ~type) ~name))))
+       ~(if (or (listp place) (isinstance place LispSymbol))
+            `(setf ~place (%check-type-failed ~place (quote ~place) (quote ~type) ~name))
+            `(%check-type-failed ~place (quote ~place) (quote ~type) ~name))))
 
 (defn handler-function [clause]
   "(type function) for a clause (type (variable) . body)."

@@ -139,8 +139,8 @@
   (setv #(qualifiers lambda-list body) (method-parts forms))
   (setv #(_ specializers) (plain-parameters lambda-list) #(function uses-next) (method-function name lambda-list body))
   (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) (get body 0) None))
-  `(%define-method (quote ~name) ~(quoted-list qualifiers) ~specializers (quote ~lambda-list) ~function ~uses-next
-                   :documentation ~documentation))
+  `(%define-method (quote ~name) ~(quoted-list qualifiers) ~specializers (quote ~lambda-list) ~function
+                   :uses-next ~uses-next :documentation ~documentation))
 
 (defn method-option [name option]
   (setv #(qualifiers lambda-list body) (method-parts option.cdr))

@@ -1,8 +1,8 @@
 "How a macro of the plan language is written: `defoperator`.
 
 An operator gets the forms of its call as they were read, and returns a form made by quasiquote, in which unqualified symbols
-belong to the Lisp package named by the file's `package`, `%name` to CRAMHY, where the runtime's helpers are, and
-`pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable."
+are those of Common Lisp or else of the Lisp package named by the file's `package`; `%name` belongs to CRAMHY, where the
+runtime's helpers are, and `pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable."
 
 (import cramhy_runtime.lisp.macros [define-operator malformed]
         cramhy_runtime.lisp.data [Cons Symbol :as LispSymbol list-from lisp-list]

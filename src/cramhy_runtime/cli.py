@@ -15,6 +15,7 @@ def _session_options():
     options.add_argument("--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first")
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in")
     options.add_argument("--no-turtlesim", action="store_true", help="do not start the simulator with the first node")
+    options.add_argument("--eval", action="append", default=[], dest="forms", metavar="FORM", help="a form to evaluate after loading")
     return options
 
 
@@ -26,7 +27,6 @@ def parser():
     repl.add_argument("--view", action="store_true", help="show the turtle's paper in a page")
     run = commands.add_parser("run", parents=[common], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file")
-    run.add_argument("--eval", action="append", default=[], dest="forms", metavar="FORM", help="a form to evaluate after loading")
     commands.add_parser("eval", parents=[common], help="evaluate forms given as JSON lines")
     test = commands.add_parser("test", parents=[common], help="run the lisp-unit tests of a system or file")
     test.add_argument("path")
@@ -50,7 +50,14 @@ def session(options, default_time="wall"):
         made.load(system)
     if options.package:
         made.package = options.package.upper()
+    if options.command != "run":
+        evaluate_forms(made, options.forms)
     return made
+
+
+def evaluate_forms(made, forms):
+    for form in forms:
+        made.evaluate_text(form, "<--eval>")
 
 
 def main(arguments=None):
@@ -101,8 +108,7 @@ def _run(options):
         made.load(options.file)
         if options.package:
             made.package = options.package.upper()
-        for form in options.forms:
-            made.evaluate_text(form, "<--eval>")
+        evaluate_forms(made, options.forms)
     except Interruption:
         return 130
     except (Exception, Condition) as problem:

@@ -7,14 +7,13 @@ the pytest plugin, and the Hy module ``cramhy``.
 from __future__ import annotations
 
 import importlib
-import importlib.util
 
-ROOMS = ("transforms", "prolog", "cpl", "ros", "designators", "process_modules")
+ROOMS = ("transforms", "prolog", "cpl", "ros", "turtlesim", "designators", "process_modules")
 """The rooms with a ``package.py``, in the order of their floors."""
 
 SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
 cram-executive cl-transforms roslisp roslisp-utilities std_msgs-msg std_srvs-srv geometry_msgs-msg rosgraph_msgs-msg turtlesim-msg
-turtlesim-srv cram-math alexandria lisp-unit actionlib_msgs-msg sensor_msgs-msg"""
+turtlesim-srv cram-math alexandria lisp-unit actionlib_msgs-msg roscpp-msg roscpp-srv roscpp_tutorials-srv turtlesim"""
 """The systems of CRAM and ROS that need no loading, because they are here."""
 
 _booted = False
@@ -35,8 +34,8 @@ def boot():
     package.fill()
     for room in ROOMS:
         importlib.import_module(f"cramhy_runtime.{room}.package")
-        if importlib.util.find_spec(f"cramhy_runtime.{room}.expansions"):
-            importlib.import_module(f"cramhy_runtime.{room}.expansions")
+    for room in ("prolog", "ros"):
+        importlib.import_module(f"cramhy_runtime.{room}.macro_support")
     systems.provide_system(SYSTEMS)
     ros_load.define_faces()
     importer.install()

@@ -216,18 +216,19 @@ def test_hooks_of_failure_handling_begin_and_end_once():
     assert events == [["PlanFailure"], "id"]
 
 
-def test_counters_allow_exactly_so_many_retries():
-    counters = cpl.RetryCounters([("c", lambda: 2)])
+def test_a_counter_allows_exactly_so_many_retries_and_can_be_reset():
+    counter = cpl.RetryCounter(lambda: 2)
     left = []
 
     def handler(failure, retry):
-        left.append(counters.get_counter("c"))
-        counters.do_retry("c", retry)
+        left.append(counter.left)
+        if counter.use():
+            retry()
         retry.leave("exhausted")
 
     assert plan(lambda: handling((cpl.PlanFailure, handler), body=lambda: cpl.fail("f"))) == "exhausted"
     assert left == [2, 1, 0]
-    assert counters.reset_counter("c") == 2
+    assert counter.reset() == 2
 
 
 def test_an_unhandled_failure_leaves_the_plan_as_the_same_object():

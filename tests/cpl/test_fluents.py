@@ -6,7 +6,7 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import fluent_operators as op
-from cramhy_runtime.cpl.fluents import CachedNet, Fluent, get_update_callback
+from cramhy_runtime.cpl.fluents import CachedNet, get_update_callback
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.packages import keyword
@@ -371,6 +371,6 @@ def test_two_tasks_may_update_two_inputs_of_one_net():
 
 
 def test_a_parameter_reads_and_assigns_its_hidden_fluent():
-    parameter = op.Parameter("speed", 1)
-    parameter.set(parameter.get() + 1)
-    assert parameter.get() == 2 and isinstance(parameter.fluent, Fluent)
+    name = op.define_cpl_parameter(keyword("SPEED"), 1)
+    op.set_parameter_value(op.parameter_value(name) + 1, name)
+    assert op.parameter_value(name) == 2

@@ -15,16 +15,26 @@ ROOT = Path(__file__).parents[2]
 SHARED = ROOT.parent / "shared"
 
 
-def command():
-    """The evaluator with the tutorial loaded, as the comparing tool starts it."""
-    return f"{sys.executable} -m cramhy_runtime.cli eval --load cram-my-beginner-tutorial --package tut"
+STARTED = """--eval '(start-ros-node "turtle1")' --eval '(init-ros-turtle "turtle1")' """
+
+
+def command(path):
+    """The evaluator with the tutorial loaded, as the comparing tool starts it; file 03 was recorded with the turtle running."""
+    started = STARTED if path.stem == "03_ros_errors" else ""
+    return f"{sys.executable} -m cramhy_runtime.cli eval --load cram-my-beginner-tutorial --package tut {started}"
 
 
 def score(files, show=0):
-    """The tool's output for golden ``files``."""
-    done = subprocess.run([sys.executable, str(SHARED / "tools" / "golden.py"), "--cmd", command(), "--show", str(show), *map(str, files)],
-                          capture_output=True, text=True, cwd=ROOT, env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""})
-    return done.stdout + done.stderr
+    """The tool's output for golden ``files``, and the sum."""
+    output, passed, total = "", 0, 0
+    for path in files:
+        done = subprocess.run([sys.executable, str(SHARED / "tools" / "golden.py"), "--cmd", command(path), "--show", str(show), str(path)],
+                              capture_output=True, text=True, cwd=ROOT, env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""})
+        *lines, last = done.stdout.strip().splitlines() or [""]
+        output += "\n".join(lines) + "\n" + done.stderr
+        good, _, all_of_them = last.removeprefix("passed ").partition(" of ")
+        passed, total = passed + int(good or 0), total + int(all_of_them or 0)
+    return f"{output}passed {passed} of {total}"
 
 
 if __name__ == "__main__":

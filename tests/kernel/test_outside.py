@@ -175,9 +175,7 @@ def test_a_thread_without_the_baton_is_refused(k, use, what):
             told.append(str(error))
 
     in_a_thread(outside).join(10)
-    assert told == [
-        f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only."
-    ]
+    assert told == [f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only."]
     kernel.sleep(1)
     task.cancel()
 

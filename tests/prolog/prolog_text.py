@@ -8,7 +8,7 @@ for name in cl_names.NAMES.split():
     if name not in ("nil", "t"):
         COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
 
-import cramhy_runtime.prolog.package  # noqa: E402  after the names of Common Lisp are there
+import cramhy_runtime.prolog.package  # noqa: E402, F401  after the names of Common Lisp are there
 from cramhy_runtime.lisp.printer import prin1_to_string  # noqa: E402
 from cramhy_runtime.lisp.reader import read_from_string  # noqa: E402
 from cramhy_runtime.prolog import facts, query  # noqa: E402

@@ -84,7 +84,7 @@ def test_a_function_object_is_rejected(warnings_given):
 
     goal = list_from([read("lisp-fun"), lambda: 1, read("?x")])
     assert query.prolog(goal) is None
-    assert "is not of type" in warnings_given[0]
+    assert "is not of type SYMBOL" in " ".join(warnings_given[0].split())
 
 
 def test_errors_propagate_if_asked_to():
@@ -127,7 +127,8 @@ def test_error_and_warn_goals(warnings_given):
 
 def test_symbol_values():
     read("*thing*").value = 4
-    assert ask("(symbol-value *thing* ?x)") in ("(((?X . 4)))",) or True
+    function("cl:symbol-value")(lambda symbol: symbol.value)
+    assert ask("(symbol-value *thing* ?x)") == "(((?X . 4)))"
     assert ask("(set-symbol-value *thing* (1 2))") == "(NIL)"
     assert show(read("*thing*").value) == "(1 2)"
 

@@ -20,7 +20,7 @@ Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``
 """
 
 from .failure_types import *  # noqa: F403
-from .failures import RetryCounters, fail, with_failure_handling
+from .failures import RetryCounter, fail, with_failure_handling
 from .fluent_operators import (fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed)
 from .fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
 from .operators import (named_top_level, par, par_loop, partial_order, pursue, seq, top_level, try_all, try_each_in_order, try_in_order,

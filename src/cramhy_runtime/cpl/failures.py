@@ -15,7 +15,7 @@ from cramhy_runtime import kernel
 from ..lisp import condition_types as types
 from ..lisp import conditions
 from ..lisp.conditions import error, handler_bind, handler_case, make_condition, matches, signal_condition
-from ..lisp.data import truth
+from ..lisp.data import one, truth
 from ..lisp.dynamic import binding
 from .symbols import sym
 from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure
@@ -167,31 +167,26 @@ def composite_failure(failures):
     return fail(CompositeFailure(failures=list_from(failures)))
 
 
-class RetryCounters:
-    """The counters of one ``with-retry-counters``: name to initial-value function, evaluated once at entry, in parallel.
+class RetryCounter:
+    """One counter of ``with-retry-counters``; ``initial`` is the function of its initial-value form."""
 
-    The macro compiles ``(do-retry name form...)`` to ``counters.do_retry(name, thunk)``, and ``(get-counter name)`` and
-    ``(reset-counter name)`` likewise.
-    """
+    __slots__ = ("initial", "left")
 
     def __init__(self, initial):
-        self.initial = dict(initial)
-        self.left = {name: thunk() for name, thunk in self.initial.items()}
+        self.initial = initial
+        self.left = one(initial())
 
-    def do_retry(self, name, thunk):
-        """While the counter is above zero: subtract one and return the values of ``thunk``; then nil."""
-        if self.left[name] > 0:
-            self.left[name] -= 1
-            return thunk()
+    def use(self):
+        """``do-retry``: true, and one less left, as long as the counter is above zero; then nil."""
+        if self.left > 0:
+            self.left -= 1
+            return True
         return None
 
-    def get_counter(self, name):
-        return self.left[name]
-
-    def reset_counter(self, name):
-        """Evaluate the initial-value form again and store its value, which is returned."""
-        self.left[name] = self.initial[name]()
-        return self.left[name]
+    def reset(self):
+        """``reset-counter``: evaluate the initial-value form again and store its value, which is returned."""
+        self.left = one(self.initial())
+        return self.left
 
 
 def assert_no_returning(forms, thunk):

@@ -173,21 +173,20 @@ def fl_value_changed(fluent, *, test=None, key=None):
     return ChangeFluent(fluent, function_of(test) or unchanged, function_of(key) or (lambda current: current))
 
 
-class Parameter:
-    """What ``def-cpl-parameter`` makes: a place with a hidden fluent, so that access is observed like a fluent's."""
-
-    def __init__(self, name, initial=None):
-        self.fluent = ValueFluent(name, initial)
-
-    def get(self):
-        return self.fluent.stored
-
-    def set(self, new):
-        return self.fluent.set(new)
+_parameters = {}
 
 
 def define_cpl_parameter(name, initial=None):
-    """``(def-cpl-parameter name initial)``: the `Parameter` behind ``name``, kept on the symbol for reading and assigning."""
-    parameter = name.compiler_data = Parameter(name, initial)
-    return parameter
+    """``(def-cpl-parameter name initial)``: a place with a hidden fluent, so that access is observed like a fluent's."""
+    _parameters[name] = ValueFluent(name, initial)
+    return name
 
+
+def parameter_value(name):
+    """The value of the parameter ``name``."""
+    return _parameters[name].stored
+
+
+def set_parameter_value(new, name):
+    """Assign the parameter ``name``; returns ``new``."""
+    return _parameters[name].set(new)

@@ -8,7 +8,7 @@ defined in ``hy_src/cramhy/cpl.hy``.
 from __future__ import annotations
 
 from ..lisp.faces import define_face
-from . import (failures, fluent_operators, fluents, hooks, logging, operators, plans, policies, printing, readers, suspension,
+from . import (failures, fluent_operators, fluents, hooks, logging, macro_support, operators, plans, policies, printing, readers, suspension,
                task_variables, tasks, tree, waiting)  # fmt: skip
 from .symbols import CPL_IMPL, sym
 
@@ -93,6 +93,7 @@ def define_faces():
         functions={**{name: OPERATORS[operator] for name, operator in SHADOWING.items()},
                    "SLEEP": waiting.sleep_star, "PULSED": fluent_operators.fl_pulsed},
         reexport=["COMMON-LISP"])
+    macro_support.define()
     define_face("CRAM-USER", ["CPL-USER"], use=["CRAM-LANGUAGE"])
 
 

@@ -12,7 +12,8 @@ description to thing · ``hints`` why not · ``predicates`` for Prolog · ``synt
 ``language_support`` with-designators · ``package`` the Lisp faces. Reference: designators.md.
 """
 
-from . import predicates as _predicates  # noqa: F401
+from . import symbols as _symbols  # noqa: F401  the packages come first
+from . import predicates as _predicates  # noqa: F401, I001
 from .classes import (ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator,
                       ObjectDesignator, desig_prop_value, desig_prop_values, make_all_designator, make_designator)
 from .equating import current_desig, desig_equal, equate, first_desig

@@ -6,7 +6,7 @@ from ..cpl import package as _cpl  # noqa: F401  CRAM-LANGUAGE-DESIGNATOR-SUPPOR
 from ..lisp.faces import define_face
 from ..prolog.package import CUT
 from ..prolog.rete import define_object_id
-from . import classes, equating, language_support, locations, readers, resolution, syntax
+from . import classes, equating, language_support, locations, macro_support, readers, resolution, syntax
 from . import predicates as _predicates  # noqa: F401
 from . import printing as _printing  # noqa: F401
 from .classes import Designator
@@ -52,6 +52,7 @@ def define_faces():
                 functions={language_support: "register-designator-create-function"}, export="with-designators with-equate-fluent")
     define_object_id(Designator, lambda designator: designator.object_id)
     locations.register_defaults()
+    macro_support.define()
     return desig
 
 

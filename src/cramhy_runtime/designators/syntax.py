@@ -18,6 +18,12 @@ MAKE, MAKE_ALL, PRESENT = sym("DESIG::MAKE-DESIGNATOR"), sym("DESIG::MAKE-ALL-DE
 _nested = {name: sym(f"DESIG::{name}") for name in ("A", "AN", "ALL")}
 
 
+def expand(form):
+    """The form that ``(a type pair...)``, ``(an ...)`` or ``(all ...)`` stands for."""
+    operator, type_, *pairs = form
+    return designator_form(type_, list_from(pairs), operator.name)
+
+
 def designator_form(type_, pairs, quantifier="A"):
     """The form that ``(a type pair...)`` stands for; ``quantifier`` is "A" or "ALL". ``type_`` is a symbol or string."""
     name = (type_ if isinstance(type_, str) else type_.name).upper()

@@ -240,9 +240,7 @@ class Kernel(Endings):
         return shield(self.current)
 
     def _refuse(self, what):
-        raise KernelError(
-            f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only."
-        )
+        raise KernelError(f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only.")
 
     # ------------------------------------------------------------------ the baton
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 import struct
+import sys
 from fractions import Fraction
 
 from .conditions import DivisionByZero, FloatingPointOverflow, error, type_error
@@ -28,6 +29,8 @@ _REALS = frozenset((int, float, DoubleFloat, Fraction))
 _MACHINE = frozenset((int, float, DoubleFloat))  # asked after _PLAIN: at least one argument is a double
 _NUMBERS = _REALS | {complex}
 
+_LARGEST = sys.float_info.max
+
 _pack_single = struct.Struct("f")
 
 
@@ -37,6 +40,29 @@ def single(value):
         return _pack_single.unpack(_pack_single.pack(value))[0]
     except OverflowError:
         return math.copysign(math.inf, value)
+
+
+class DoubleComplex(complex):
+    """A complex number of double-floats, as plain ``complex`` is one of single-floats."""
+
+    __slots__ = ()
+    double = True  # asked by the printer
+
+
+def _keep_double(name):
+    operation = getattr(complex, name)
+
+    def method(self, other):
+        result = operation(self, complex(other))
+        return result if result is NotImplemented else DoubleComplex(result)
+
+    return method
+
+
+for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
+    setattr(DoubleComplex, f"__{_name}__", _keep_double(f"__{_name}__"))
+DoubleComplex.__neg__ = lambda self: DoubleComplex(complex.__neg__(self))
+DoubleComplex.conjugate = lambda self: DoubleComplex(complex.conjugate(self))
 
 
 # ---------------------------------------------------------------------------------------------------------------- the kinds
@@ -119,6 +145,13 @@ def overflow(operation, *operands):
     return error(FloatingPointOverflow(sym(operation), lisp_list(*operands)))
 
 
+def _finite(operation, result, *operands):
+    """``result``, or an overflow when it is infinite though no operand was."""
+    if math.isinf(result) and all(math.isfinite(operand) for operand in operands):
+        return overflow(operation, *operands)
+    return result
+
+
 def _operate(operation, function, a, b):
     need_number(a)
     need_number(b)
@@ -156,11 +189,14 @@ def mul2(a, b):
     """``(* a b)``"""
     if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
         try:
-            return a * b
+            product = a * b
         except OverflowError:
             return overflow("*", a, b)
+        if product.__class__ is float and not -_LARGEST <= product <= _LARGEST:
+            return _finite("*", product, a, b)
+        return product
     if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
-        return DoubleFloat(float(a) * float(b))
+        return DoubleFloat(_finite("*", float(a) * float(b), a, b))
     return _operate("*", lambda x, y: x * y, a, b)
 
 
@@ -355,7 +391,8 @@ def oddp(integer):
 
 
 def abs_(number):
-    return abs(need_number(number))
+    size = abs(need_number(number))
+    return DoubleFloat(size) if isinstance(number, DoubleComplex) else size
 
 
 def signum(number):

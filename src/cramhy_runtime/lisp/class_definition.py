@@ -14,6 +14,7 @@ from .classes import (
     class_name,
     find_class_or_error,
     invalid_class_definition,
+    qualified,
     register_class,
     registered_class,
     symbol_class,
@@ -22,7 +23,7 @@ from .condition_types import Condition
 from .conditions import SimpleError, SimpleTypeError, error
 from .data import UNBOUND, Cons, Symbol, list_from, one, python_list
 from .faces import python_name
-from .packages import is_symbol, printed, sym, symbol_name
+from .packages import is_symbol, sym, symbol_name
 
 
 def slot_spec(name, *, initargs=None, initform=None, initform_source=None, readers=None, writers=None, accessors=None,
@@ -82,7 +83,7 @@ def _superclass(name, base):
         return register_class(base, cls)
     if isinstance(cls, (BuiltInClass, StructureClass)):
         return error(SimpleError("The class ~A was specified as a superclass of the class ~A, but it is a ~A: only classes of "
-                                 "defclass can be superclasses.", printed(class_name(cls)), printed(name),
+                                 "defclass can be superclasses.", qualified(class_name(cls)), qualified(name),
                                  "structure class" if isinstance(cls, StructureClass) else "built-in class"))
     return cls
 

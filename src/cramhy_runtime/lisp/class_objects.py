@@ -62,18 +62,17 @@ def _rightmost_subclass(free, result):
 
 
 def _contradiction(cls, rest):
-    names = [printed(_name(current)) for current in rest]
+    names = [_name(current) for current in rest]
     return error(SimpleError(
         "While computing the class precedence list of the class named ~A.~%It is not possible to compute the class precedence "
         "list because~%there is a circularity in the local precedence relations.~%This arises because of these classes: ~A.~%"
         "A class that is listed as a superclass must not come before its own subclass.",
-        printed(_name(cls)), ", ".join(names)))
+        _name(cls), ", ".join(names)))
 
 
 def _name(cls):
-    from .classes import class_name
-
-    return class_name(cls)
+    symbol = vars(cls).get("lisp_symbol")  # the class is not complete, so it cannot be asked
+    return printed(symbol) if symbol is not None else vars(cls).get("lisp_name", cls.__name__)
 
 
 @dataclass

@@ -13,7 +13,8 @@ from .builtin_classes import CLASSES, BuiltInClass, lisp_mro, system_class
 from .class_objects import StandardClass, StandardObject, touch_classes
 from .conditions import Condition, Error, SimpleProgramError, error, type_error
 from .data import Symbol
-from .packages import find_package, is_symbol, printed, sym
+from .packages import Package, find_package, is_symbol, sym
+from .packages import register as register_package
 
 LISP_NAMES = "find-class class-of class-name"
 
@@ -31,7 +32,14 @@ class ClassNotFoundError(Error):
         self.name = name
 
     def report(self):
-        return f"There is no class named {printed(self.name)}."
+        return f"There is no class named {qualified(self.name)}."
+
+
+def qualified(symbol):
+    """The name of ``symbol`` with its package, always, as SBCL shows it in messages about classes."""
+    from .print_names import symbol_with_prefix
+
+    return symbol_with_prefix(symbol)
 
 
 def register_class(symbol, cls):
@@ -163,14 +171,21 @@ def class_name(cls):
 
 
 def named(lisp_name):
-    """The symbol for a ``lisp_name`` attribute; an uninterned one while its package does not exist."""
+    """The symbol for a ``lisp_name`` attribute. SBCL's own packages are made when a class is first named by one of their symbols."""
     package, _, name = lisp_name.rpartition("::")
+    if package.startswith("SB-"):
+        home = find_package(package) or register_package(Package(package))
+        symbol = home.intern(name)
+        if package in _EXPORTING or name == "CLASS-NOT-FOUND-ERROR":
+            home.export(symbol)
+        return symbol
     if package and find_package(package) is None:
         return _uninterned.setdefault(lisp_name, Symbol(name))
     return sym(lisp_name)
 
 
 _uninterned: dict = {}
+_EXPORTING = ("SB-EXT", "SB-INT", "SB-KERNEL", "SB-SYS", "SB-MOP")  # all class names in these are external symbols
 
 
 # ------------------------------------------------------------------------------------------------------------ kinds of classes

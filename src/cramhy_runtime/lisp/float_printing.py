@@ -1,10 +1,10 @@
 """Floats as text: the shortest digits that read back as the same float, and digits up to a given place.
 
-A plain Python float stands for a single-float, held at double precision. It is rounded to the nearest IEEE single here, where
-it becomes text, and nowhere else; a `DoubleFloat` keeps its 53 bits. The law is that of Steele and White: free-format output
-reads back as the same number and has as few digits as that allows. `digits` is the algorithm of Burger and Dybvig with SBCL's
-extension for a cut-off place (SBCL, ``src/code/print.lisp``), on which ``~F``, ``~E``, ``~G`` and ``~$`` build; `shortest` is
-the quick way to the same digits where no place is given.
+A plain Python float stands for a single-float, held at double precision. It is rounded to the nearest IEEE single
+here, where it becomes text, and nowhere else; a `DoubleFloat` keeps its 53 bits. The law is that of Steele and White:
+free-format output reads back as the same number and has as few digits as that allows. `digits` is the algorithm of
+Burger and Dybvig with SBCL's extension for a cut-off place (SBCL, ``src/code/print.lisp``), on which ``~F``, ``~E``,
+``~G`` and ``~$`` build; `shortest` is the quick way to the same digits where no place is given.
 
 A plain float beyond the range of singles cannot be rounded to one; its double digits are shown.
 """
@@ -22,8 +22,8 @@ READ_DEFAULT_FLOAT_FORMAT.special = True
 if not isinstance(READ_DEFAULT_FLOAT_FORMAT.value, Symbol):
     READ_DEFAULT_FLOAT_FORMAT.value = sym("SINGLE-FLOAT")
 _DOUBLE_NAMES = (sym("DOUBLE-FLOAT"), sym("LONG-FLOAT"))
-_SMALLEST_SINGLE = 2.0 ** -126
-_SMALLEST_DOUBLE = 2.0 ** -1022
+_SMALLEST_SINGLE = 2.0**-126
+_SMALLEST_DOUBLE = 2.0**-1022
 _single = struct.Struct("<f")
 
 
@@ -49,7 +49,12 @@ def shortest(x):
         x = to_single(x)
         if x < _SMALLEST_SINGLE:
             return digits(x)
-        for precision in (5, 6, 7, 8):  # a decimal of 6 digits survives the way through a single, 9 tell all singles apart
+        for precision in (
+            5,
+            6,
+            7,
+            8,
+        ):  # a decimal of 6 digits survives the way through a single, 9 tell all singles apart
             text = f"{x:.{precision}e}"
             if to_single(float(text)) == x:
                 break
@@ -73,7 +78,8 @@ def shortest(x):
 def digits(x, position=None, relative=False):
     """(digits, k) of ``x`` >= 0: 0.DIGITS times ten to the k, rounded at the place ten to the ``position``.
 
-    With ``relative`` the place counts from the first digit: ``position`` digits are wanted. Source: SBCL's FLONUM-TO-DIGITS.
+    With ``relative`` the place counts from the first digit: ``position`` digits are wanted. Source: SBCL's
+    FLONUM-TO-DIGITS.
     """
     if _is_single(x):
         x, precision, least = to_single(x), 24, -149
@@ -102,7 +108,7 @@ def digits(x, position=None, relative=False):
             position = k - position if 2 * r * scale + half < 2 * s * power * scale else k - position - 1
         scale = 2 * 10 ** max(0, -position)
         r, s, above, below = r * scale, s * scale, above * scale, below * scale
-        place = s * 10 ** position // 2 if position >= 0 else s // (2 * 10 ** -position)
+        place = s * 10**position // 2 if position >= 0 else s // (2 * 10**-position)
         below, above = max(below, place), max(above, place)
         low_ok = high_ok = True
     k = 0
@@ -160,8 +166,8 @@ def _special_text(x):
 def fixed_text(x, width=None, fraction_digits=None, scale=None, least=None):
     """The decimal text of ``x`` >= 0 with a point and no exponent, and perhaps nothing before or after the point.
 
-    ``width``: how many characters are wanted, ``fraction_digits``: how many digits after the point, ``scale``: a power of ten
-    to multiply with, ``least``: least number of digits after the point. Source: SBCL's FLONUM-TO-STRING.
+    ``width``: how many characters are wanted, ``fraction_digits``: how many digits after the point, ``scale``: a
+    power of ten to multiply with, ``least``: least number of digits after the point. Source: SBCL's FLONUM-TO-STRING.
     """
     if fraction_digits is not None:
         figures, e = digits(x, min(-(fraction_digits + (scale or 0)), -(least or 0)))
@@ -181,7 +187,11 @@ def fixed_text(x, width=None, fraction_digits=None, scale=None, least=None):
     text = "." + "0" * -e
     if fraction_digits is None:
         return text + figures
-    return text + figures[:min(len(figures), max(least or 0, fraction_digits + e))] + "0" * (fraction_digits + e - len(figures))
+    return (
+        text
+        + figures[: min(len(figures), max(least or 0, fraction_digits + e))]
+        + "0" * (fraction_digits + e - len(figures))
+    )
 
 
 def scaled(x):

@@ -1,8 +1,9 @@
 """``format``: text from a control string and arguments.
 
 `format_` is Lisp's function, `format_to_string` the one for Python callers. A control string is parsed once
-(``format_parser.py``), then each use walks over its directives with a `State`: where the output goes and which argument is
-next. What each directive does is in ``format_directives.py`` and the modules that it names. Source: ANSI 22.3.
+(``format_parser.py``), then each use walks over its directives with a `State`: where the output goes and which
+argument is next. What each directive does is in ``format_directives.py`` and the modules that it names. Source: ANSI
+22.3.
 """
 
 from __future__ import annotations
@@ -23,8 +24,9 @@ class UpAndOut(BaseException):
 class State:
     """One walk over a control: ``stream``, and the arguments ``args`` of which ``position`` is the next.
 
-    block: the logical block whose list the arguments are. rest: inside ``~:{``, how many sublists follow this one, else
-    ``None``. colon_up: whether ``~:^`` is allowed. outer: the state around, for arguments taken by enclosing constructs.
+    block: the logical block whose list the arguments are. rest: inside ``~:{``, how many sublists follow this one,
+    else ``None``. colon_up: whether ``~:^`` is allowed. outer: the state around, for arguments taken by enclosing
+    constructs.
     """
 
     __slots__ = ("stream", "args", "position", "block", "rest", "colon_up")
@@ -99,14 +101,15 @@ def format_on(stream, control, args, state=None):
 def _call_formatter(stream, function, args, state):
     from .data import one, python_list
 
-    left = one(function(stream, *(args if state is None else state.args[state.position:])))
+    left = one(function(stream, *(args if state is None else state.args[state.position :])))
     if state is not None:
         state.position = len(state.args) - len(python_list(left))
     return state
 
 
 def format_(destination, control, *args):
-    """``cl:format``: print to ``destination``; nil gives a string, t is ``*standard-output*``, a string with fill pointer grows.
+    """``cl:format``: print to ``destination``; nil gives a string, t is ``*standard-output*``, a string with fill
+    pointer grows.
 
     Arguments are Lisp objects. Errors: `FormatError`, when control and arguments do not fit.
     """
@@ -135,12 +138,14 @@ def format_to_string(control, *args):
 
 
 def formatter(control):
-    """What the macro ``formatter`` becomes: a function of a stream and arguments that returns the arguments left over."""
+    """What the macro ``formatter`` becomes: a function of a stream and arguments that returns the arguments left
+    over.
+    """
     parse(control)
 
     def formatting(stream, *args):
         state = format_on(output_stream(stream), control, args)
-        return list_from(args[state.position:])
+        return list_from(args[state.position :])
 
     return formatting
 
@@ -156,6 +161,16 @@ def list_arguments(directive, arg):
     return type_error(arg, "LIST")
 
 
-__all__ = ["Directive", "FormatError", "State", "UpAndOut", "format_", "format_on", "format_to_string", "formatter", "run",
-           "MultipleValues"]
+__all__ = [
+    "Directive",
+    "FormatError",
+    "State",
+    "UpAndOut",
+    "format_",
+    "format_on",
+    "format_to_string",
+    "formatter",
+    "run",
+    "MultipleValues",
+]
 LISP_NAMES = "format formatter"

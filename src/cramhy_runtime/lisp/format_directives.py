@@ -1,6 +1,7 @@
 """The directives of ``format``, one function each, found by their character in `HANDLERS`.
 
-A handler gets the parsed `Directive` and the `State` of the walk. Source: ANSI 22.3, with SBCL 2.2.9 for what that leaves open.
+A handler gets the parsed `Directive` and the `State` of the walk. Source: ANSI 22.3, with SBCL 2.2.9 for what that
+leaves open.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ def parameters(directive, state, *defaults):
     return values
 
 
-# ------------------------------------------------------------------------------------------------------------ any objects
+# ---------------------------------------------------------------------------------------------------------- any objects
 
 
 def _object(to_string, escape):
@@ -115,7 +116,7 @@ def _function_name(directive):
     return package.intern(name.removeprefix(":"))
 
 
-# --------------------------------------------------------------------------------------------------------------- numbers
+# -------------------------------------------------------------------------------------------------------------- numbers
 
 
 def _integer(base):
@@ -129,8 +130,17 @@ def _integer(base):
                     write(arg, state.stream, False)
             return
         mincol, padchar, commachar, interval = parameters(directive, state, 0, " ", ",", 3)
-        numbers.write_integer(state.stream, state.next(directive), base, directive.colon, directive.at, mincol, padchar,
-                              commachar, interval)
+        numbers.write_integer(
+            state.stream,
+            state.next(directive),
+            base,
+            directive.colon,
+            directive.at,
+            mincol,
+            padchar,
+            commachar,
+            interval,
+        )
 
     return directive_d
 
@@ -143,7 +153,9 @@ def _radix(directive, state):
     base, mincol, padchar, commachar, interval = parameters(directive, state, None, 0, " ", ",", 3)
     arg = state.next(directive)
     if base is not None:
-        numbers.write_integer(state.stream, arg, base, directive.colon, directive.at, mincol, padchar, commachar, interval)
+        numbers.write_integer(
+            state.stream, arg, base, directive.colon, directive.at, mincol, padchar, commachar, interval
+        )
         return
     if not isinstance(arg, int) or isinstance(arg, bool):
         directive.complain(f"{prin1_to_string(arg)} is not of type INTEGER.")
@@ -173,9 +185,12 @@ def _fixed(directive, state):
 
 def _exponential(directive, state):
     directive.reject(colon=True)
-    width, digits, exponent, scale, overflow, padchar, mark = parameters(directive, state, None, None, None, 1, None, " ", None)
-    numbers.write_exponential(state.stream, state.next(directive), width, digits, exponent, scale, overflow, padchar, mark,
-                              directive.at)
+    width, digits, exponent, scale, overflow, padchar, mark = parameters(
+        directive, state, None, None, None, 1, None, " ", None
+    )
+    numbers.write_exponential(
+        state.stream, state.next(directive), width, digits, exponent, scale, overflow, padchar, mark, directive.at
+    )
 
 
 def _general(directive, state):
@@ -186,16 +201,18 @@ def _general(directive, state):
 
 def _dollars(directive, state):
     digits, least, width, padchar = parameters(directive, state, 2, 1, 0, " ")
-    numbers.write_dollars(state.stream, state.next(directive), digits, least, width, padchar, directive.colon, directive.at)
+    numbers.write_dollars(
+        state.stream, state.next(directive), digits, least, width, padchar, directive.colon, directive.at
+    )
 
 
-# ----------------------------------------------------------------------------------------------- lines, columns, arguments
+# -------------------------------------------------------------------------------------------- lines, columns, arguments
 
 
 def _repeated(text):
     def directive_newline(directive, state):
         directive.reject(colon=True, at=True)
-        count, = parameters(directive, state, 1)
+        (count,) = parameters(directive, state, 1)
         state.stream.write(text * count)
 
     return directive_newline
@@ -203,7 +220,7 @@ def _repeated(text):
 
 def _fresh_line(directive, state):
     directive.reject(colon=True, at=True)
-    count, = parameters(directive, state, 1)
+    (count,) = parameters(directive, state, 1)
     if count > 0:
         state.stream.fresh_line()
         state.stream.write("\n" * (count - 1))
@@ -235,17 +252,19 @@ def _conditional_newline(directive, state):
 
 def _indent(directive, state):
     directive.reject(at=True)
-    amount, = parameters(directive, state, 0)
+    (amount,) = parameters(directive, state, 0)
     pprint_indent("current" if directive.colon else "block", amount, state.stream)
 
 
 def _go_to(directive, state):
     directive.reject(both=True)
     if directive.at or directive.colon:
-        count, = parameters(directive, state, 0 if directive.at else 1)
+        (count,) = parameters(directive, state, 0 if directive.at else 1)
         position = count if directive.at else state.position - count
         if not 0 <= position <= len(state.args):
-            directive.complain(f"Index {position} is out of bounds. It should have been between 0 and {len(state.args)}.")
+            directive.complain(
+                f"Index {position} is out of bounds. It should have been between 0 and {len(state.args)}."
+            )
         state.position = position
     else:
         for _ in range(parameters(directive, state, 1)[0]):
@@ -257,14 +276,14 @@ def _skip_newline(directive, state):
     parameters(directive, state)
 
 
-# ------------------------------------------------------------------------------------------------------------- indirection
+# ---------------------------------------------------------------------------------------------------------- indirection
 
 
 def _indirectly(directive, stream, control, args, state=None):
     """Format another control; an error in it is reported together with where it was used."""
 
     def explain(condition):
-        if isinstance(condition, FormatError) and not getattr(condition, "explained", None) is directive:
+        if isinstance(condition, FormatError) and getattr(condition, "explained", None) is not directive:
             condition.explained = directive
             condition.complaint = condition.report() + "\nwhile processing indirect format string:"
             condition.control, condition.offset, condition.banner = directive.control, directive.end - 1, False
@@ -282,7 +301,7 @@ def _recursive(directive, state):
         _indirectly(directive, state.stream, control, list_arguments(directive, state.next(directive)))
 
 
-# ------------------------------------------------------------------------------------------------------------------- case
+# ----------------------------------------------------------------------------------------------------------------- case
 
 
 class CaseStream(OutputStream):
@@ -313,7 +332,7 @@ class CaseStream(OutputStream):
         else:
             for index, character in enumerate(text):
                 if character.isalnum():
-                    text = text[:index] + character.upper() + text[index + 1:].lower()
+                    text = text[:index] + character.upper() + text[index + 1 :].lower()
                     self.mode = "downcase"
                     break
         self.target.write(text)
@@ -336,7 +355,12 @@ class CaseStream(OutputStream):
 
 def _case(directive, state):
     parameters(directive, state)
-    modes = {(False, False): "downcase", (True, False): "capitalize", (False, True): "capitalize-first", (True, True): "upcase"}
+    modes = {
+        (False, False): "downcase",
+        (True, False): "capitalize",
+        (False, True): "capitalize-first",
+        (True, True): "upcase",
+    }
     inner = state.on(CaseStream(state.stream, modes[directive.colon, directive.at]))
     try:
         run(directive.clauses[0], inner)
@@ -344,7 +368,7 @@ def _case(directive, state):
         state.position = inner.position
 
 
-# -------------------------------------------------------------------------------------------------- choice and iteration
+# ------------------------------------------------------------------------------------------------- choice and iteration
 
 
 def _choose(directive, state):
@@ -364,7 +388,7 @@ def _choose(directive, state):
         parameters(directive, state)
         run(clauses[1 if _true(state.next(directive)) else 0], state)
     else:
-        index, = parameters(directive, state, None)
+        (index,) = parameters(directive, state, None)
         if index is None:
             index = state.next(directive)
         if index.__class__ is not int:
@@ -382,7 +406,7 @@ def _true(value):
 
 
 def _iterate(directive, state):
-    limit, = parameters(directive, state, None)
+    (limit,) = parameters(directive, state, None)
     control = None
     if not directive.clauses[0]:
         control = state.next(directive)
@@ -445,7 +469,7 @@ def _escape_upward(directive, state):
         raise UpAndOut(directive.colon)
 
 
-# ------------------------------------------------------------------------------------------ logical blocks, justification
+# ---------------------------------------------------------------------------------------- logical blocks, justification
 
 
 def _angle(directive, state):
@@ -458,7 +482,7 @@ def _angle(directive, state):
 def _logical_block(directive, state):
     prefix, suffix, per_line = directive.cache
     if directive.at:
-        lst, args, start = list_from(state.args[state.position:]), state.args, state.position
+        lst, args, start = list_from(state.args[state.position :]), state.args, state.position
     else:
         lst = state.next(directive)
         args, start = (list(lst) if isinstance(lst, Cons) else ()), 0
@@ -525,10 +549,34 @@ def _rendered(clause, state):
 
 
 HANDLERS = {
-    "A": _object(princ_to_string, False), "S": _object(prin1_to_string, True), "W": _write, "C": _character, "/": _call,
-    "D": _integer(10), "B": _integer(2), "O": _integer(8), "X": _integer(16), "R": _radix, "P": _plural,
-    "F": _fixed, "E": _exponential, "G": _general, "$": _dollars,
-    "%": _repeated("\n"), "|": _repeated("\f"), "~": _repeated("~"), "&": _fresh_line, "\n": _skip_newline,
-    "T": _tabulate, "_": _conditional_newline, "I": _indent, "*": _go_to, "?": _recursive,
-    "(": _case, "[": _choose, "{": _iterate, "^": _escape_upward, "<": _angle,
+    "A": _object(princ_to_string, False),
+    "S": _object(prin1_to_string, True),
+    "W": _write,
+    "C": _character,
+    "/": _call,
+    "D": _integer(10),
+    "B": _integer(2),
+    "O": _integer(8),
+    "X": _integer(16),
+    "R": _radix,
+    "P": _plural,
+    "F": _fixed,
+    "E": _exponential,
+    "G": _general,
+    "$": _dollars,
+    "%": _repeated("\n"),
+    "|": _repeated("\f"),
+    "~": _repeated("~"),
+    "&": _fresh_line,
+    "\n": _skip_newline,
+    "T": _tabulate,
+    "_": _conditional_newline,
+    "I": _indent,
+    "*": _go_to,
+    "?": _recursive,
+    "(": _case,
+    "[": _choose,
+    "{": _iterate,
+    "^": _escape_upward,
+    "<": _angle,
 }

@@ -1,4 +1,5 @@
-"""Numbers in ``format``: integers with commas, words, Roman numerals, and floats in fixed, exponential and money notation.
+"""Numbers in ``format``: integers with commas, words, Roman numerals, and floats in fixed, exponential and money
+notation.
 
 Source: ANSI 22.3.2 and 22.3.3; roundings and widths as in SBCL 2.2.9 (``src/code/target-format.lisp``).
 """
@@ -26,7 +27,7 @@ def pad(stream, text, mincol, colinc, minpad, padchar, padleft):
     stream.write(padding + text if padleft else text + padding)
 
 
-# ---------------------------------------------------------------------------------------------------------------- integers
+# ------------------------------------------------------------------------------------------------------------- integers
 
 
 def write_integer(stream, number, base, commas=False, sign=False, mincol=0, padchar=" ", commachar=",", interval=3):
@@ -37,7 +38,9 @@ def write_integer(stream, number, base, commas=False, sign=False, mincol=0, padc
     text = digits_in_base(abs(number), base)
     if commas:
         head = (len(text) - 1) % interval + 1
-        text = commachar.join([text[:head], *(text[index:index + interval] for index in range(head, len(text), interval))])
+        text = commachar.join(
+            [text[:head], *(text[index : index + interval] for index in range(head, len(text), interval))]
+        )
     text = ("-" if number < 0 else "+" if sign else "") + text
     stream.write(text.rjust(mincol, padchar) if mincol else text)
 
@@ -45,9 +48,11 @@ def write_integer(stream, number, base, commas=False, sign=False, mincol=0, padc
 _ONES = "? one two three four five six seven eight nine".split()
 _TEENS = "ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen".split()
 _TENS = "? ? twenty thirty forty fifty sixty seventy eighty ninety".split()
-_PERIODS = ("? thousand million billion trillion quadrillion quintillion sextillion septillion octillion nonillion decillion "
-            "undecillion duodecillion tredecillion quattuordecillion quindecillion sexdecillion septendecillion octodecillion "
-            "novemdecillion vigintillion").split()
+_PERIODS = (
+    "? thousand million billion trillion quadrillion quintillion sextillion septillion octillion nonillion decillion "
+    "undecillion duodecillion tredecillion quattuordecillion quindecillion sexdecillion septendecillion octodecillion "
+    "novemdecillion vigintillion"
+).split()
 _ORDINAL_ONES = "? first second third fourth fifth sixth seventh eighth ninth".split()
 _ORDINAL_TENS = "? tenth twentieth thirtieth fortieth fiftieth sixtieth seventieth eightieth ninetieth".split()
 
@@ -102,8 +107,21 @@ def ordinal(number):
     return text + ("th" if size else "zeroth")
 
 
-_ROMAN = [(1000, "M"), (900, "CM"), (500, "D"), (400, "CD"), (100, "C"), (90, "XC"), (50, "L"), (40, "XL"), (10, "X"), (9, "IX"),
-          (5, "V"), (4, "IV"), (1, "I")]
+_ROMAN = [
+    (1000, "M"),
+    (900, "CM"),
+    (500, "D"),
+    (400, "CD"),
+    (100, "C"),
+    (90, "XC"),
+    (50, "L"),
+    (40, "XL"),
+    (10, "X"),
+    (9, "IX"),
+    (5, "V"),
+    (4, "IV"),
+    (1, "I"),
+]
 
 
 def roman(number, old=False):
@@ -118,7 +136,7 @@ def roman(number, old=False):
     return text
 
 
-# ------------------------------------------------------------------------------------------------------------------ floats
+# --------------------------------------------------------------------------------------------------------------- floats
 
 
 def as_float(number):
@@ -161,7 +179,9 @@ def write_fixed(stream, number, width=None, digits=None, scale=None, overflow=No
 
 
 def _fit(text, space, no_fraction):
-    """(text with the zeros that there is room for, space left over) for digits ``text`` in ``space`` columns, or ``None``."""
+    """(text with the zeros that there is room for, space left over) for digits ``text`` in ``space`` columns, or
+    ``None``.
+    """
     leading = text[0] == "."
     trailing = text[-1] == "." and not no_fraction
     if space is not None:
@@ -222,8 +242,14 @@ def _exponential(stream, number, width, digits, exponent_digits, scale, overflow
     if width is not None and space < 0 and overflow is not None:
         stream.write(overflow * width)
         return
-    stream.write((padchar * space if width is not None else "") + ("-" if negative else "+" if sign else "") + text
-                 + (mark or marker(number)) + ("-" if exponent < 0 else "+") + exponent_text.rjust(exponent_digits or 0, "0"))
+    stream.write(
+        (padchar * space if width is not None else "")
+        + ("-" if negative else "+" if sign else "")
+        + text
+        + (mark or marker(number))
+        + ("-" if exponent < 0 else "+")
+        + exponent_text.rjust(exponent_digits or 0, "0")
+    )
 
 
 def write_general(stream, number, width, digits, exponent_digits, scale, overflow, padchar, mark, sign):
@@ -246,7 +272,9 @@ def write_general(stream, number, width, digits, exponent_digits, scale, overflo
         overflowed = _fixed(stream, value, narrower, fraction, None, overflow, padchar, sign)
         stream.write((overflow if overflowed else " ") * exponent_columns)
     else:
-        _exponential(stream, value, width, digits, exponent_digits, 1 if scale is None else scale, overflow, padchar, mark, sign)
+        _exponential(
+            stream, value, width, digits, exponent_digits, 1 if scale is None else scale, overflow, padchar, mark, sign
+        )
 
 
 def write_dollars(stream, number, digits, least, width, padchar, sign_first, sign):

@@ -1,8 +1,9 @@
 """Control strings of ``format``, parsed once: text, directives, and the clauses of those that enclose others.
 
-A parsed control is a list of strings and `Directive` objects. What encloses (``~{ ~}``, ``~[ ~]``, ``~( ~)``, ``~< ~>``) has
-its clauses as such lists. Controls are few and used often, so they are remembered. A bad control is a `FormatError`, whose
-report shows the control with a mark below the place, as SBCL's does. Source: ANSI 22.3; texts of SBCL 2.2.9.
+A parsed control is a list of strings and `Directive` objects. What encloses (``~{ ~}``, ``~[ ~]``, ``~( ~)``, ``~<
+~>``) has its clauses as such lists. Controls are few and used often, so they are remembered. A bad control is a
+`FormatError`, whose report shows the control with a mark below the place, as SBCL's does. Source: ANSI 22.3; texts of
+SBCL 2.2.9.
 """
 
 from __future__ import annotations
@@ -33,11 +34,25 @@ class FormatError(Error):
 class Directive:
     """One directive: ``char`` in upper case, ``params`` a list of (offset, value), ``start`` and ``end`` its extent.
 
-    ``clauses`` and ``separators`` belong to the enclosing ones, whose closing directive is ``close``; ``name`` to ``~/name/``.
+    ``clauses`` and ``separators`` belong to the enclosing ones, whose closing directive is ``close``; ``name`` to
+    ``~/name/``.
     """
 
-    __slots__ = ("control", "start", "end", "params", "colon", "at", "char", "clauses", "separators", "close", "name", "handler",
-                 "cache")
+    __slots__ = (
+        "control",
+        "start",
+        "end",
+        "params",
+        "colon",
+        "at",
+        "char",
+        "clauses",
+        "separators",
+        "close",
+        "name",
+        "handler",
+        "cache",
+    )
 
     def __init__(self, control, start, end, params, colon, at, char):
         self.control, self.start, self.end = control, start, end
@@ -86,7 +101,7 @@ def _place(nodes):
                 _place(clause)
 
 
-# ------------------------------------------------------------------------------------------------------------------ tokens
+# --------------------------------------------------------------------------------------------------------------- tokens
 
 
 def _tokens(control):
@@ -117,7 +132,9 @@ def _add_text(tokens, text, keep=False):
 
 
 def _literal(directive):
-    """The text that ``directive`` always stands for, or ``None``: ``~%``, ``~~``, ``~|`` with constant counts, ``~newline``."""
+    """The text that ``directive`` always stands for, or ``None``: ``~%``, ``~~``, ``~|`` with constant counts,
+    ``~newline``.
+    """
     if directive.char == NEWLINE:
         if directive.params or (directive.colon and directive.at):
             return None
@@ -200,7 +217,7 @@ def _directive(control, start):
         closing = control.find("/", position + 1)
         if closing < 0:
             complain("No matching closing slash")
-        name = control[position + 1:closing]
+        name = control[position + 1 : closing]
         position = closing
     directive = Directive(control, start, position + 1, params, colon, at, char.upper())
     directive.name = name
@@ -220,11 +237,13 @@ class _Mark:
 ARGUMENT_MARK, REMAINING_MARK = _Mark("V"), _Mark("#")
 
 
-# ----------------------------------------------------------------------------------------------------------------- nesting
+# -------------------------------------------------------------------------------------------------------------- nesting
 
 
 def _nest(tokens, index, opener):
-    """(nodes, next index, the directive that ended them) of the tokens from ``index`` on, inside ``opener`` or at top."""
+    """(nodes, next index, the directive that ended them) of the tokens from ``index`` on, inside ``opener`` or at
+    top.
+    """
     nodes = []
     while index < len(tokens):
         token = tokens[index]
@@ -252,8 +271,11 @@ def _misplaced(token):
         token.complain("~; not contained within either ~[...~] or ~<...~>")
     if token.char == ">":
         token.complain("~> without a matching ~<", token.start)
-    token.complain({")": "no corresponding open paren", "]": "No corresponding open bracket",
-                    "}": "No corresponding open brace"}[token.char])
+    token.complain(
+        {")": "no corresponding open paren", "]": "No corresponding open bracket", "}": "No corresponding open brace"}[
+            token.char
+        ]
+    )
 
 
 def _enclose(tokens, index, opener):
@@ -281,8 +303,12 @@ def _check_block(block):
     for index in outer:
         for node in block.clauses[index]:
             if isinstance(node, Directive):
-                node.complain(f"Cannot include format directives inside the {'prefix' if index == 0 else 'suffix'} segment of "
-                              "~<...~:>", node.end - 1, "22.3.5.2")
+                node.complain(
+                    f"Cannot include format directives inside the {'prefix' if index == 0 else 'suffix'} segment of "
+                    "~<...~:>",
+                    node.end - 1,
+                    "22.3.5.2",
+                )
         texts[index // 2] = "".join(block.clauses[index])
     body = block.clauses[min(1, len(block.clauses) - 1)]
     if block.close.at:
@@ -317,11 +343,15 @@ def _with_fill_newlines(nodes, block):
 def _check_justification(opener):
     count = sum(map(_count_pretty, opener.clauses))
     if count:
-        opener.complain(f"{count} illegal directive{'s' if count != 1 else ''} found inside justification block",
-                        section="22.3.5.2")
+        opener.complain(
+            f"{count} illegal directive{'s' if count != 1 else ''} found inside justification block", section="22.3.5.2"
+        )
     if opener.close.at:
-        opener.complain("@ modifier not allowed in close directive of justification block (i.e. ~<...~@>.",
-                        opener.close.end - 1, "22.3.6.2")
+        opener.complain(
+            "@ modifier not allowed in close directive of justification block (i.e. ~<...~@>.",
+            opener.close.end - 1,
+            "22.3.6.2",
+        )
 
 
 def _count_pretty(nodes):

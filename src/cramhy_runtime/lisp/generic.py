@@ -19,14 +19,14 @@ import weakref
 
 from .builtin_classes import lisp_mro
 from .class_objects import when_classes_change
-from .classes import find_class_or_error
+from .classes import find_class_or_error, qualified
 from .conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
 from .data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from .equality import eql_key
 from .faces import python_name
 from .generic_errors import incongruent, no_applicable_method_error
 from .method_combination import STANDARD, Combination, find_combination
-from .packages import is_symbol, keyword, printed, sym, symbol_name
+from .packages import is_symbol, keyword, sym, symbol_name
 
 _all = weakref.WeakSet()
 
@@ -428,7 +428,7 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
 
 
 def _refuse_ordinary(symbol):
-    condition = SimpleProgramError("~A already names an ordinary function or a macro.", printed(symbol))
+    condition = SimpleProgramError("~A already names an ordinary function or a macro.", qualified(symbol))
     if symbol.package is not None and symbol.package.name == "COMMON-LISP":
         return error(condition)
     return restart_case([(sym("CONTINUE"), lambda: None, "Replace the function binding.")], lambda: error(condition))
@@ -476,12 +476,12 @@ def specializer_of(designator):
     return find_class_or_error(designator)
 
 
-def define_method(name, qualifiers, specializers, lambda_list, function, *, uses_next=True, documentation=None):
+def define_method(name, qualifiers, specializers, lambda_list, function, uses_next=True, *, documentation=None):
     """``defmethod``: add a method to the generic function ``name``, which is made if there is none; returns the method.
 
     name: a Symbol or ``(setf symbol)``. qualifiers: a list. specializers: a list with one entry per required parameter: a
     class name (T for unspecialized ones) or a list ``(eql value)`` whose value is evaluated. lambda_list: the lambda list,
-    specialized or not. function: see the top of this module. uses_next: whether it takes ``next``.
+    specialized or not. function: see the top of this module. uses_next: whether it takes ``next``; nil is false.
     """
     classes = [specializer_of(specializer) for specializer in python_list(specializers)]
     generic_function = ensure_generic_function(name, _generic_lambda_list(lambda_list) if find_generic_function(name) is None else None)

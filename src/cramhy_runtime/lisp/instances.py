@@ -14,12 +14,12 @@ import inspect
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
 from .class_objects import StandardObject, effective_slots, find_slot, when_classes_change
-from .classes import StructureClass, class_name, class_of, find_class_or_error
+from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
 from .condition_types import Condition, Error, shown
 from .conditions import SimpleError, error, program_error
 from .data import UNBOUND, list_from, one, python_list
 from .generic import when_methods_change
-from .packages import is_symbol, keyword, printed, symbol_name
+from .packages import is_symbol, keyword, symbol_name
 
 
 class InitargError(Error):
@@ -147,7 +147,7 @@ def _check_finalized(cls):
         if vars(base).get("lisp_forward_reference"):
             error(SimpleError("While computing the class precedence list of the class named ~A.~%The class named ~A is a forward "
                               "referenced class.~%It is named as a superclass, but no defclass for it has been seen.",
-                              printed(class_name(cls)), printed(class_name(base))))
+                              qualified(class_name(cls)), qualified(class_name(base))))
 
 
 def _python_init(cls, slots):

@@ -12,6 +12,7 @@ import math
 from fractions import Fraction
 
 from .arithmetic import (
+    DoubleComplex,
     division_by_zero,
     is_integer,
     is_rational,
@@ -24,7 +25,7 @@ from .arithmetic import (
     overflow,
     single,
 )
-from .conditions import DivisionByZero, FloatingPointOverflow, error, type_error
+from .conditions import ArithmeticError_, DivisionByZero, FloatingPointOverflow, error, type_error
 from .data import UNSUPPLIED, DoubleFloat, MultipleValues, lisp_list
 from .packages import sym
 
@@ -32,12 +33,24 @@ LISP_NAMES = """sqrt isqrt exp expt log sin cos tan asin acos atan sinh cosh tan
 complex realpart imagpart conjugate phase cis decode-float integer-decode-float scale-float float-digits float-precision
 float-radix float-sign"""
 
+class ArgumentsOutOfDomain(ArithmeticError_):
+    """A function has no value for these arguments, as ``(expt 0 0.0)``."""
+
+    lisp_name = "SB-INT::ARGUMENTS-OUT-OF-DOMAIN-ERROR"
+
+
 PI = DoubleFloat(math.pi)
 
 
 def result_kind(*numbers):
     """The float class of a function of ``numbers``: `DoubleFloat` if one of them is a double, else ``float``."""
     return DoubleFloat if any(number.__class__ is DoubleFloat for number in numbers) else float
+
+
+def complex_kind(*numbers):
+    """The complex class of a function of ``numbers``, likewise."""
+    doubles = (DoubleFloat, DoubleComplex)
+    return DoubleComplex if any(number.__class__ in doubles for number in numbers) else complex
 
 
 def _float(number):
@@ -51,10 +64,10 @@ def _float(number):
 def _apply(name, real, complex_, number, domain=None):
     need_number(number)
     if isinstance(number, complex):
-        return complex_(number)
+        return complex_kind(number)(complex_(number))
     argument = _float(number)
     if domain is not None and not domain(argument):
-        return complex_(complex(argument, 0.0))
+        return complex_kind(number)(complex_(complex(argument, 0.0)))
     try:
         return result_kind(number)(real(argument))
     except OverflowError:
@@ -87,7 +100,7 @@ def asin(number):
         value = float(number)
         if not -1 <= value <= 1:
             result = cmath.asin(complex(abs(value), 0.0)).conjugate()
-            return result if value > 0 else -result
+            return complex_kind(number)(result if value > 0 else -result)
     return _apply("asin", math.asin, cmath.asin, number)
 
 
@@ -96,7 +109,7 @@ def acos(number):
     if is_real(number):
         value = float(number)
         if not -1 <= value <= 1:
-            return cmath.acos(complex(value, -0.0)) if value > 0 else cmath.acos(complex(value, 0.0))
+            return complex_kind(number)(cmath.acos(complex(value, -0.0 if value > 0 else 0.0)))
     return _apply("acos", math.acos, cmath.acos, number)
 
 
@@ -113,10 +126,10 @@ def sqrt(number):
     """``cl:sqrt``: complex for negative arguments."""
     need_number(number)
     if isinstance(number, complex):
-        return cmath.sqrt(number)
+        return complex_kind(number)(cmath.sqrt(number))
     kind = result_kind(number)
     if number < 0:
-        return complex(0.0, math.sqrt(_float(-number)))
+        return complex_kind(number)(0.0, math.sqrt(_float(-number)))
     return kind(math.sqrt(_float(number)))
 
 
@@ -135,9 +148,9 @@ def log(number, base=UNSUPPLIED):
     if number == 0:
         return error(DivisionByZero())
     if isinstance(number, complex):
-        return cmath.log(number)
+        return complex_kind(number)(cmath.log(number))
     if number < 0:
-        return complex(_natural_log(-number), math.pi)
+        return complex_kind(number)(_natural_log(-number), math.pi)
     return result_kind(number)(_natural_log(number))
 
 
@@ -172,10 +185,11 @@ def expt(base, power):
     if base == 0:
         if isinstance(power, complex) or power > 0:
             return mul2(base, power)
-        return error(DivisionByZero(sym("EXPT"), lisp_list(base, power)))
+        return error(ArgumentsOutOfDomain(sym("EXPT"), lisp_list(base, power)))
     kind = result_kind(base, power)
     if isinstance(base, complex) or isinstance(power, complex) or base < 0:
-        return complex(base) ** (complex(power) if isinstance(power, complex) else float(power))
+        result = complex(base) ** (complex(power) if isinstance(power, complex) else float(power))
+        return complex_kind(base, power)(result)
     try:
         return kind(math.pow(float(base), float(power)))
     except OverflowError:
@@ -191,7 +205,7 @@ def _integer_power(base, power):
         if is_rational(base):
             return base ** power if power > 0 and base.__class__ is int else normal(Fraction(base) ** power)
         if isinstance(base, complex):
-            return base ** power
+            return complex_kind(base)(complex(base) ** power)
         return base.__class__(float(base) ** power)
     except OverflowError:
         return overflow("EXPT", base, power)
@@ -316,16 +330,20 @@ def complex_(realpart, imagpart=0):
     need_real(imagpart)
     if imagpart == 0 and is_rational(realpart) and is_rational(imagpart):
         return realpart
-    return complex(realpart, imagpart)
+    return complex_kind(realpart, imagpart)(realpart, imagpart)
+
+
+def _part(number, value):
+    return DoubleFloat(value) if isinstance(number, DoubleComplex) else value
 
 
 def realpart(number):
-    return need_number(number).real if isinstance(number, complex) else need_number(number)
+    return _part(number, number.real) if isinstance(number, complex) else need_number(number)
 
 
 def imagpart(number):
     if isinstance(need_number(number), complex):
-        return number.imag
+        return _part(number, number.imag)
     return number * 0 if isinstance(number, float) else 0
 
 
@@ -337,7 +355,7 @@ def phase(number):
     """The angle of ``number`` in the complex plane, in radians."""
     need_number(number)
     if isinstance(number, complex):
-        return cmath.phase(number)
+        return _part(number, cmath.phase(number))
     kind = result_kind(number)
     return kind(math.pi) if number < 0 else kind(0.0) if isinstance(number, float) else 0
 
@@ -345,7 +363,7 @@ def phase(number):
 def cis(radians):
     """``e`` to the power of ``i * radians``"""
     need_real(radians)
-    return complex(math.cos(radians), math.sin(radians))
+    return complex_kind(radians)(math.cos(radians), math.sin(radians))
 
 
 def _limits():

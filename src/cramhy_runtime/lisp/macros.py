@@ -2,8 +2,8 @@
 
 An expander is a Python function ``(form, environment) -> form`` kept in ``symbol.macro``. The standard macros and those of the
 plan language are written in Hy, in ``hy_src/cramhy``, with Hy's quasiquote; `define_operator` enters them here. What they
-return is made of Hy models and of the forms that they were given; `from_hy` turns it into Lisp data, reading unqualified
-symbols in the macro file's package. So a macro is written once and serves ``.lisp`` files, the REPL and ``.hy`` files.
+return is made of Hy models and of the forms that they were given; `from_hy` turns it into Lisp data: an unqualified symbol is
+that of Common Lisp if there is one, else one of the macro file's package. So a macro is written once and serves ``.lisp`` files, the REPL and ``.hy`` files.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from .conditions import CompileError, Condition, error
 from .data import Character, Cons, Symbol, list_from
-from .packages import find_package_or_error, intern, is_symbol, keyword, sym
+from .packages import COMMON_LISP, find_package_or_error, intern, is_symbol, keyword, sym
 
 FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp")
 """The modules of ``hy_src/cramhy`` that define operators, in order."""
@@ -111,7 +111,8 @@ def _symbol(text, package):
     head, colons, name = text.partition("::") if "::" in text else text.partition(":")
     if colons and head and name:
         return intern(name.upper(), head.upper())
-    return package.intern(text.upper())
+    standard, found = COMMON_LISP.lookup(text.upper())
+    return standard if found == "external" else package.intern(text.upper())
 
 
 def macroexpand_1(form, environment=None):

@@ -181,8 +181,13 @@ def symbol_package(symbol):
 
 
 def printed(symbol):
-    package = symbol_package(symbol)
-    return f"{package.name}::{symbol_name(symbol)}" if package else f"#:{symbol_name(symbol)}"
+    """The full name of a symbol, as messages show it: ``PACKAGE:NAME``, with two colons when it is internal."""
+    package, name = symbol_package(symbol), symbol_name(symbol)
+    if package is None:
+        return f"#:{name}"
+    if package is KEYWORD:
+        return f":{name}"
+    return f"{package.name}{':' if name in package.external else '::'}{name}"
 
 
 def is_symbol(obj):

@@ -1,8 +1,9 @@
 """How code is laid out: the functions that pretty-print ``let``, ``defun``, calls and the other forms.
 
-With ``*print-pretty*`` on, a list that looks like code is printed as code, data or not; for each operator a function knows
-where its lines may break. The layouts are those of SBCL (``src/code/pprint.lisp``, public domain), which writes them as format
-controls; here they are functions, because they run often. Which function prints what: ``pprint_dispatch.py``.
+With ``*print-pretty*`` on, a list that looks like code is printed as code, data or not; for each operator a function
+knows where its lines may break. The layouts are those of SBCL (``src/code/pprint.lisp``, public domain), which writes
+them as format controls; here they are functions, because they run often. Which function prints what:
+``pprint_dispatch.py``.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def _output(obj, stream):
     output_object(obj, stream)
 
 
-# ----------------------------------------------------------------------------------------------------------------- layouts
+# -------------------------------------------------------------------------------------------------------------- layouts
 
 
 def _newline(out, kind):
@@ -112,12 +113,23 @@ def pprint_call_form(stream, form, *_):
     _block(stream, form, macro_call)
 
 
-_BODIES = {"DEFGENERIC": 2, "DEFINE-COMPILER-MACRO": 2, "DEFINE-CONDITION": 3, "DEFINE-METHOD-COMBINATION": 1, "HANDLER-BIND": 1,
-           "RESTART-BIND": 1, "RESTART-CASE": 1, "WITH-ACCESSORS": 2, "WITH-CONDITION-RESTARTS": 2, "WITH-SLOTS": 2}
+_BODIES = {
+    "DEFGENERIC": 2,
+    "DEFINE-COMPILER-MACRO": 2,
+    "DEFINE-CONDITION": 3,
+    "DEFINE-METHOD-COMBINATION": 1,
+    "HANDLER-BIND": 1,
+    "RESTART-BIND": 1,
+    "RESTART-CASE": 1,
+    "WITH-ACCESSORS": 2,
+    "WITH-CONDITION-RESTARTS": 2,
+    "WITH-SLOTS": 2,
+}
 _OPERATORS = frozenset(
-    "AND ASSERT CALL-METHOD CHECK-TYPE COND DECF DEFCLASS DEFINE-SYMBOL-MACRO FORMATTER GO HANDLER-CASE IGNORE-ERRORS IN-PACKAGE "
-    "INCF LOAD-TIME-VALUE LOOP-FINISH MULTIPLE-VALUE-LIST NTH-VALUE OR POP PPRINT-EXIT-IF-LIST-EXHAUSTED PPRINT-POP PUSH PUSHNEW "
-    "REMF RETURN ROTATEF SHIFTF THE TRACE UNTRACE".split()) | frozenset(_BODIES)
+    "AND ASSERT CALL-METHOD CHECK-TYPE COND DECF DEFCLASS DEFINE-SYMBOL-MACRO FORMATTER GO HANDLER-CASE "
+    "IGNORE-ERRORS IN-PACKAGE INCF LOAD-TIME-VALUE LOOP-FINISH MULTIPLE-VALUE-LIST NTH-VALUE OR POP "
+    "PPRINT-EXIT-IF-LIST-EXHAUSTED PPRINT-POP PUSH PUSHNEW REMF RETURN ROTATEF SHIFTF THE TRACE UNTRACE".split()
+) | frozenset(_BODIES)
 
 
 def _body_position(symbol):
@@ -137,7 +149,9 @@ def _body_position(symbol):
 
 
 def is_operator(symbol):
-    """Whether ``symbol`` names a function, macro or special operator, so that a list that starts with it looks like a call."""
+    """Whether ``symbol`` names a function, macro or special operator, so that a list that starts with it looks like a
+    call.
+    """
     if not isinstance(symbol.function, UndefinedFunction) or symbol.macro is not None:
         return True
     return symbol.package is COMMON_LISP and symbol.name in _OPERATORS
@@ -188,8 +202,15 @@ def _optional_argument(key):
     def body(out, block):
         block.exit_if_exhausted()
         if key:
-            _block(out, block.pop(), lambda inner, names: (names.exit_if_exhausted(), _output(names.pop(), inner),
-                                                           _each(inner, names, "fill")))
+            _block(
+                out,
+                block.pop(),
+                lambda inner, names: (
+                    names.exit_if_exhausted(),
+                    _output(names.pop(), inner),
+                    _each(inner, names, "fill"),
+                ),
+            )
         else:
             _output(block.pop(), out)
         _each(out, block, "linear")
@@ -525,8 +546,9 @@ def pprint_prog(stream, form, *_):
 
 
 _LOOP_WORDS = frozenset(
-    "AND WITH FOR INITIALLY FINALLY DO DOING COLLECT COLLECTING APPEND APPENDING NCONC NCONCING COUNT COUNTING SUM SUMMING "
-    "MAXIMIZE MAXIMIZING MINIMIZE MINIMIZING IF WHEN UNLESS END WHILE UNTIL REPEAT ALWAYS NEVER THEREIS".split())
+    "AND WITH FOR INITIALLY FINALLY DO DOING COLLECT COLLECTING APPEND APPENDING NCONC NCONCING COUNT COUNTING SUM "
+    "SUMMING MAXIMIZE MAXIMIZING MINIMIZE MINIMIZING IF WHEN UNLESS END WHILE UNTIL REPEAT ALWAYS NEVER THEREIS".split()
+)
 
 
 def pprint_loop(stream, form, *_):
@@ -561,4 +583,3 @@ def pprint_if(stream, form, *_):
         _each(out, block, "mandatory")
 
     _block(stream, form, body)
-

@@ -1,15 +1,15 @@
 """Which function pretty-prints which object: the tables of ``*print-pprint-dispatch*``.
 
-An entry says: objects of this type are printed by that function, with this priority. The standard entries have the lowest
-priority and are kept apart in a form that is quick to look up: a dict from operator to layout, and rules for other lists and
-for arrays. Entries that a user adds with ``set-pprint-dispatch`` are tried by type, the highest priority first.
-Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
+An entry says: objects of this type are printed by that function, with this priority. The standard entries have the
+lowest priority and are kept apart in a form that is quick to look up: a dict from operator to layout, and rules for
+other lists and for arrays. Entries that a user adds with ``set-pprint-dispatch`` are tried by type, the highest
+priority first. Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
 """
 
 from __future__ import annotations
 
 from . import pprint_code as code
-from .data import Cons, Symbol, UNBOUND, python_list
+from .data import UNBOUND, Cons, Symbol, python_list
 from .packages import sym
 from .pretty import pprint_fill
 from .print_arrays import is_printed_array, pprint_array
@@ -17,10 +17,13 @@ from .print_arrays import is_printed_array, pprint_array
 _LAYOUTS = {
     code.pprint_lambda: "lambda",
     code.pprint_declare: "declare declaim",
-    code.pprint_block: "block catch return-from throw eval-when multiple-value-call multiple-value-prog1 unwind-protect defconstant "
-                       "defparameter defstruct defvar multiple-value-setq prog1 pprint-logical-block print-unreadable-object unless "
-                       "when with-compilation-unit with-simple-restart with-hash-table-iterator with-package-iterator "
-                       "with-input-from-string with-output-to-string with-open-file with-open-stream",
+    code.pprint_block: (
+        "block catch return-from throw eval-when multiple-value-call multiple-value-prog1 unwind-protect "
+        "defconstant defparameter defstruct defvar multiple-value-setq prog1 pprint-logical-block "
+        "print-unreadable-object unless when with-compilation-unit with-simple-restart "
+        "with-hash-table-iterator with-package-iterator with-input-from-string with-output-to-string "
+        "with-open-file with-open-stream"
+    ),
     code.pprint_flet: "flet labels macrolet",
     code.pprint_quote: "function quote",
     code.pprint_if: "if",
@@ -128,7 +131,9 @@ def pprint_dispatch(obj, table=PRINT_PPRINT_DISPATCH):
 
 
 def set_pprint_dispatch(type_, function, priority=0, table=None):
-    """``set-pprint-dispatch``: print objects of ``type_`` with ``function`` (of stream and object); nil removes the entry."""
+    """``set-pprint-dispatch``: print objects of ``type_`` with ``function`` (of stream and object); nil removes the
+    entry.
+    """
     table = table or PRINT_PPRINT_DISPATCH.value
     if isinstance(function, Symbol):
         symbol = function
@@ -156,7 +161,12 @@ def set_pprint_dispatch(type_, function, priority=0, table=None):
 def _heads(type_):
     """The symbols for a type ``(cons (member ...))`` or ``(cons (eql x))``; ``None`` for other types."""
     parts = python_list(type_) if isinstance(type_, Cons) else []
-    if len(parts) == 2 and parts[0] is sym("CONS") and isinstance(parts[1], Cons) and parts[1].car in (sym("MEMBER"), sym("EQL")):
+    if (
+        len(parts) == 2
+        and parts[0] is sym("CONS")
+        and isinstance(parts[1], Cons)
+        and parts[1].car in (sym("MEMBER"), sym("EQL"))
+    ):
         return [head for head in parts[1].cdr if isinstance(head, Symbol)]
     return None
 

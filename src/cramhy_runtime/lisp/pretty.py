@@ -1,7 +1,8 @@
 """The pretty printer: logical blocks, conditional newlines, indentation, tabs.
 
-Printing a form that may not fit on the line is done by saying where lines may be broken, and under which conditions, and
-letting the stream decide when it knows enough (``pretty_stream.py``). Source: ANSI 22.2; details as in SBCL 2.2.9.
+Printing a form that may not fit on the line is done by saying where lines may be broken, and under which conditions,
+and letting the stream decide when it knows enough (``pretty_stream.py``). Source: ANSI 22.2; details as in SBCL
+2.2.9.
 
 How a class of the runtime prints itself:
 
@@ -21,8 +22,9 @@ How a class of the runtime prints itself:
 
     define_printer(Message, print_message)
 
-Kinds of newlines are given by name: "linear" breaks when the section does not fit, "fill" when the next section does not,
-"miser" when room is short, "mandatory" always. Outside of a pretty-printing stream these calls do nothing, as in Lisp.
+Kinds of newlines are given by name: "linear" breaks when the section does not fit, "fill" when the next section does
+not, "miser" when room is short, "mandatory" always. Outside of a pretty-printing stream these calls do nothing, as in
+Lisp.
 """
 
 from __future__ import annotations
@@ -44,11 +46,13 @@ class BlockExit(BaseException):
         self.block = block
 
 
-# ---------------------------------------------------------------------------------------------------------- logical blocks
+# ------------------------------------------------------------------------------------------------------- logical blocks
 
 
 def on_pretty_stream(stream, function, *arguments):
-    """Call ``function(pretty_stream, *arguments)`` with ``stream``, or a pretty stream over it if it is an ordinary one."""
+    """Call ``function(pretty_stream, *arguments)`` with ``stream``, or a pretty stream over it if it is an ordinary
+    one.
+    """
     if stream.is_pretty:
         function(stream, *arguments)
         return
@@ -85,14 +89,21 @@ class Block:
             raise BlockExit(self)
 
     def check(self):
-        """Leave the block when the rest is no list, or cut off by ``*print-length*``, or was met before; that is printed."""
+        """Leave the block when the rest is no list, or cut off by ``*print-length*``, or was met before; that is
+        printed.
+        """
         remaining, stream = self.remaining, self.stream
         if not self.whole and remaining is not None and (not isinstance(remaining, Cons) or _is_backquoted(remaining)):
             self._leave(". ")
         if controls.PRINT_LENGTH.value is not None and self.count >= controls.length_limit():
             stream.write("...")
             raise BlockExit(self)
-        if remaining is not None and self.count and PRINT_CIRCLE.value is not None and check_circularity(remaining, in_block=True):
+        if (
+            remaining is not None
+            and self.count
+            and PRINT_CIRCLE.value is not None
+            and check_circularity(remaining, in_block=True)
+        ):
             self._leave(". ")
         self.count += 1
 
@@ -206,7 +217,7 @@ class logical_block:  # noqa: N801  a context manager, used like a function
 pprint_logical_block = logical_block
 
 
-# ------------------------------------------------------------------------------------------------------- what users call
+# ------------------------------------------------------------------------------------------------------ what users call
 
 
 def _pretty(stream):
@@ -236,7 +247,7 @@ def pprint_newline(kind, stream=None):
 
 
 def pprint_indent(relative_to, n, stream=None):
-    """``pprint-indent``: lines of this block start ``n`` columns right of its start ("block") or of here ("current")."""
+    """``pprint-indent``: lines of the block start ``n`` columns right of its start ("block") or of here ("current")."""
     relative_to = _checked(relative_to, "block", "current")
     stream = _pretty(stream)
     if stream is not None:
@@ -244,7 +255,9 @@ def pprint_indent(relative_to, n, stream=None):
 
 
 def pprint_tab(kind, column, increment, stream=None):
-    """``pprint-tab``: go to ``column``, or on by multiples of ``increment``; kinds line, section, and both with -relative."""
+    """``pprint-tab``: go to ``column``, or on by multiples of ``increment``; kinds line, section, and both with
+    -relative.
+    """
     kind = _checked(kind, "line", "section", "line-relative", "section-relative")
     stream = _pretty(stream)
     if stream is not None:

@@ -1,10 +1,10 @@
 """The stream behind pretty printing: it decides, line by line, where to break.
 
-`PrettyStream` keeps what was written in a buffer, with a queue of the operations asked for (newlines, indentations, starts and
-ends of blocks), and gives lines away as soon as it can decide about them: a section fits on the line or does not, or more must
-be seen first. This is XP, Waters' algorithm of ANSI 22.2, as SBCL 2.2.9 carries it out (``src/code/pprint.lisp``, public
-domain), decision for decision, because the recorded answers of the course show its line breaks. What users of it call is in
-``pretty.py``.
+`PrettyStream` keeps what was written in a buffer, with a queue of the operations asked for (newlines, indentations,
+starts and ends of blocks), and gives lines away as soon as it can decide about them: a section fits on the line or
+does not, or more must be seen first. This is XP, Waters' algorithm of ANSI 22.2, as SBCL 2.2.9 carries it out
+(``src/code/pprint.lisp``, public domain), decision for decision, because the recorded answers of the course show its
+line breaks. What users of it call is in ``pretty.py``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,18 @@ DEFAULT_LINE_LENGTH = 80
 class _Op:
     """Something queued: ``kind`` says what, ``posn`` where in all the text that was written to the stream."""
 
-    __slots__ = ("kind", "posn", "depth", "section_end", "block_end", "prefix", "suffix", "amount", "style", "increment")
+    __slots__ = (
+        "kind",
+        "posn",
+        "depth",
+        "section_end",
+        "block_end",
+        "prefix",
+        "suffix",
+        "amount",
+        "style",
+        "increment",
+    )
 
     def __init__(self, kind, posn, depth=0, style=None, amount=0, increment=0, prefix=None, suffix=""):
         self.kind, self.posn, self.depth, self.style = kind, posn, depth, style
@@ -27,10 +38,18 @@ class _Op:
 
 
 class _Block:
-    """A logical block whose start was given away: where it is on the line, and what stands before and after its lines."""
+    """A logical block whose start was given away: where it is on the line, and what stands before and after its
+    lines.
+    """
 
-    __slots__ = ("start_column", "section_column", "per_line_prefix_end", "prefix_length", "suffix_length",
-                 "section_start_line")
+    __slots__ = (
+        "start_column",
+        "section_column",
+        "per_line_prefix_end",
+        "prefix_length",
+        "suffix_length",
+        "section_start_line",
+    )
 
     def __init__(self, column=0, per_line_prefix_end=0, prefix_length=0, suffix_length=0, line=0):
         self.start_column = self.section_column = column
@@ -46,7 +65,9 @@ class LineLimit(BaseException):
 
 
 class PrettyStream(OutputStream):
-    """A stream over ``target`` that breaks lines where it must. Positions count all text written, columns those of a line."""
+    """A stream over ``target`` that breaks lines where it must. Positions count all text written, columns those of a
+    line.
+    """
 
     lisp_name = "SB-PRETTY::PRETTY-STREAM"
     is_pretty = True
@@ -111,7 +132,13 @@ class PrettyStream(OutputStream):
     def start_block(self, prefix="", suffix="", per_line=False):
         if prefix:
             self.write(prefix)
-        op = _Op("start", self.offset + len(self.buffer), len(self.pending), prefix=prefix if per_line else None, suffix=suffix)
+        op = _Op(
+            "start",
+            self.offset + len(self.buffer),
+            len(self.pending),
+            prefix=prefix if per_line else None,
+            suffix=suffix,
+        )
         self.queue.append(op)
         self.pending.append(op)
 
@@ -157,7 +184,7 @@ class PrettyStream(OutputStream):
                     return
                 if fits:  # the whole block fits: nothing in it needs a decision
                     self._expand_tabs(op.block_end)
-                    del queue[:queue.index(op.block_end) + 1]
+                    del queue[: queue.index(op.block_end) + 1]
                     continue
                 self._really_start_block(op)
             elif kind == "indent":
@@ -195,7 +222,7 @@ class PrettyStream(OutputStream):
         if self.print_lines is not None and self.line_number >= self.print_lines:
             self.target.write(" ..")
             if block.suffix_length:
-                self.target.write(self.suffix[len(self.suffix) - block.suffix_length:])
+                self.target.write(self.suffix[len(self.suffix) - block.suffix_length :])
             raise LineLimit(self)
         self.target.write("\n")
         self.start_column = 0
@@ -217,7 +244,7 @@ class PrettyStream(OutputStream):
             start = column - len(op.prefix)
             self.prefix = self.prefix[:start].ljust(start) + op.prefix + self.prefix[column:]
         if op.suffix:
-            self.suffix = op.suffix + self.suffix[len(self.suffix) - block.suffix_length:]
+            self.suffix = op.suffix + self.suffix[len(self.suffix) - block.suffix_length :]
             block.suffix_length += len(op.suffix)
 
     def _really_end_block(self):

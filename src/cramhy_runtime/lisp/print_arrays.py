@@ -97,7 +97,9 @@ def pprint_array(stream, array, *_):
     if _characters(array) is not None or (PRINT_ARRAY.value is None and PRINT_READABLY.value is None):
         print_array(array, stream)
     elif _is_vector(array):
-        call_logical_block(stream, NO_OBJECT, lambda out, block: _fill_elements(out, block, _elements(array)), "#(", ")")
+        call_logical_block(
+            stream, NO_OBJECT, lambda out, block: _fill_elements(out, block, _elements(array)), "#(", ")"
+        )
     else:
         stream.write(f"#{len(array.dimensions)}A")
         _pprint_dimension(stream, array.active(), array.dimensions, 0)

@@ -1,9 +1,9 @@
 """The variables that control the printer, and the two things it counts: depth and shared objects.
 
-``*print-level*`` needs to know how deep the printer is, ``*print-circle*`` which objects it has met. Both counts are kept in
-specials of our own, because a print function is user code: it may be preempted while another task prints. They are bound only
-when the control variable asks for it. Source: ANSI 22.1; the search for circles is SBCL's (``src/code/print.lisp``), which
-walks the object once into nowhere and marks what it meets twice.
+``*print-level*`` needs to know how deep the printer is, ``*print-circle*`` which objects it has met. Both counts are
+kept in specials of our own, because a print function is user code: it may be preempted while another task prints.
+They are bound only when the control variable asks for it. Source: ANSI 22.1; the search for circles is SBCL's
+(``src/code/print.lisp``), which walks the object once into nowhere and marks what it meets twice.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from fractions import Fraction
 
 from cramhy_runtime import kernel
 
-from .data import Character, Symbol, UNBOUND
+from .data import UNBOUND, Character, Symbol
 from .dynamic import binding
-from .packages import COMMON_LISP_USER, sym, keyword
+from .packages import COMMON_LISP_USER, keyword, sym
 
 
 def _control(name, value):
@@ -66,7 +66,9 @@ class _Rebound:
 
 
 def bound(*pairs):
-    """``with bound(symbol, value, ...):`` as `dynamic.binding`, also when no kernel runs: Python code may print any time."""
+    """``with bound(symbol, value, ...):`` as `dynamic.binding`, also when no kernel runs: Python code may print any
+    time.
+    """
     return binding(*pairs) if kernel.active() is not None else _Rebound(pairs)
 
 
@@ -101,7 +103,7 @@ def length_limit():
     return float("inf") if limit is None or PRINT_READABLY.value is not None else limit
 
 
-# ------------------------------------------------------------------------------------------------------------- circularity
+# ---------------------------------------------------------------------------------------------------------- circularity
 
 SEEN, BLOCK, BLOCK_CIRCULAR = "seen", "block", "block circular"
 LOOK, ASSIGN = False, True
@@ -109,7 +111,7 @@ INITIATE = "initiate"
 
 
 class Circularity:
-    """What was met: object identity → mark. ``counter`` is ``None`` while looking, then the number of the last label."""
+    """What was met: object identity → mark. ``counter`` is ``None`` while looking, then the last label's number."""
 
     def __init__(self):
         self.marks = {}
@@ -125,8 +127,9 @@ def identified_by_print(obj):
 
 
 def check_circularity(obj, assign=LOOK, in_block=False):
-    """The mark to print ``obj`` with: ``None`` for none, ``True`` for "met before while looking", a number for ``#n=``, a
-    negative number for ``#n#``, `INITIATE` when looking has not begun. Source: SBCL's CHECK-FOR-CIRCULARITY.
+    """The mark to print ``obj`` with: ``None`` for none, ``True`` for "met before while looking", a number for
+    ``#n=``, a negative number for ``#n#``, `INITIATE` when looking has not begun. Source: SBCL's
+    CHECK-FOR-CIRCULARITY.
     """
     if PRINT_CIRCLE.value is None:
         return None

@@ -1,9 +1,9 @@
 """Symbols, strings, characters and integers as text.
 
-A symbol prints so that reading the text gives the symbol again: with the package in front where the current package would not
-find it, and between bars where its name would be read as something else, such as ``|foo|`` or ``|1|``. Whether a name needs
-bars is told by the automaton of SBCL (``SYMBOL-QUOTEP`` in ``src/code/print.lisp``), because "might be a number" is a matter
-of many cases (ANSI 2.3.1.1). Source: ANSI 22.1.3.3.
+A symbol prints so that reading the text gives the symbol again: with the package in front where the current package
+would not find it, and between bars where its name would be read as something else, such as ``|foo|`` or ``|1|``.
+Whether a name needs bars is told by the automaton of SBCL (``SYMBOL-QUOTEP`` in ``src/code/print.lisp``), because
+"might be a number" is a matter of many cases (ANSI 2.3.1.1). Source: ANSI 22.1.3.3.
 """
 
 from __future__ import annotations
@@ -12,10 +12,19 @@ import unicodedata
 
 from .data import Symbol
 from .packages import COMMON_LISP, KEYWORD
-from .print_controls import (CAPITALIZE, DOWNCASE, PACKAGE, PRINT_BASE, PRINT_CASE, PRINT_GENSYM, PRINT_RADIX, PRINT_READABLY,
-                             UPCASE)
+from .print_controls import (
+    CAPITALIZE,
+    DOWNCASE,
+    PACKAGE,
+    PRINT_BASE,
+    PRINT_CASE,
+    PRINT_GENSYM,
+    PRINT_RADIX,
+    PRINT_READABLY,
+    UPCASE,
+)
 
-# ----------------------------------------------------------------------------------------------------------------- integers
+# ------------------------------------------------------------------------------------------------------------- integers
 
 _DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
@@ -52,7 +61,7 @@ def _decimal(number):
     except ValueError:  # Python refuses to print integers of more than 4300 digits in one go
         sign, number = "-" if number < 0 else "", abs(number)
         half = number.bit_length() * 3 // 20
-        high, low = divmod(number, 10 ** half)
+        high, low = divmod(number, 10**half)
         return sign + _decimal(high) + _decimal(low).rjust(half, "0")
 
 
@@ -62,7 +71,7 @@ def ratio_text(ratio):
     return f"{prefix}{digits_in_base(ratio.numerator, base)}/{digits_in_base(ratio.denominator, base)}"
 
 
-# ------------------------------------------------------------------------------------------------------------------ symbols
+# -------------------------------------------------------------------------------------------------------------- symbols
 
 _OTHER, _NUMBER, _UPPER, _LOWER, _SIGN, _EXTENSION, _DOT, _SLASH, _FUNNY = (1 << index for index in range(9))
 _ATTRIBUTES = dict.fromkeys("!@$%&*=~[]{}?<>", _OTHER) | dict.fromkeys("0123456789", _NUMBER)
@@ -73,25 +82,64 @@ _ATTRIBUTES |= {"-": _SIGN, "+": _SIGN, "^": _EXTENSION, "_": _EXTENSION, ".": _
 # "digit" and "letter digit" depend on the base; a rule "again" looks at the same character in another state.
 _SIGNS = _SIGN | _SLASH
 _STATES = {
-    "start": [("letter digit", "last digit alpha", 0), ("digit", "digit", 0), (_UPPER | _NUMBER | _OTHER | _SLASH, "other", 1),
-              (_DOT, "dot", 0), (_SIGN | _EXTENSION, "start stuff", 1)],
-    "dot": [(_UPPER, "start dot marker", 1), ("digit", "dot digit", 0), (_NUMBER | _OTHER, "other", 1),
-            (_EXTENSION | _SIGNS, "start dot stuff", 1), (_DOT, "dot", 0)],
-    "start stuff": [("letter digit", "last digit alpha", 0), ("digit", "digit", 0), (_NUMBER | _OTHER, "other", 1),
-                    (_UPPER, "start marker", 1), (_DOT, "start dot stuff", 1), (_SIGNS | _EXTENSION, "start stuff", 1)],
+    "start": [
+        ("letter digit", "last digit alpha", 0),
+        ("digit", "digit", 0),
+        (_UPPER | _NUMBER | _OTHER | _SLASH, "other", 1),
+        (_DOT, "dot", 0),
+        (_SIGN | _EXTENSION, "start stuff", 1),
+    ],
+    "dot": [
+        (_UPPER, "start dot marker", 1),
+        ("digit", "dot digit", 0),
+        (_NUMBER | _OTHER, "other", 1),
+        (_EXTENSION | _SIGNS, "start dot stuff", 1),
+        (_DOT, "dot", 0),
+    ],
+    "start stuff": [
+        ("letter digit", "last digit alpha", 0),
+        ("digit", "digit", 0),
+        (_NUMBER | _OTHER, "other", 1),
+        (_UPPER, "start marker", 1),
+        (_DOT, "start dot stuff", 1),
+        (_SIGNS | _EXTENSION, "start stuff", 1),
+    ],
     "start marker": [(_UPPER, "other", 1), ("again", "start stuff", 0)],
-    "start dot stuff": [(_UPPER, "start dot stuff", 1), ("digit", "dot digit", 0),
-                        (_SIGNS | _EXTENSION | _DOT, "start dot stuff", 1), (_NUMBER | _OTHER, "other", 1)],
+    "start dot stuff": [
+        (_UPPER, "start dot stuff", 1),
+        ("digit", "dot digit", 0),
+        (_SIGNS | _EXTENSION | _DOT, "start dot stuff", 1),
+        (_NUMBER | _OTHER, "other", 1),
+    ],
     "start dot marker": [(_UPPER, "other", 1), ("again", "start dot stuff", 0)],
-    "dot digit": [(_UPPER, "dot marker", 0), ("digit", "dot digit", 0), (_NUMBER | _OTHER, "other", 1),
-                  (_SIGNS | _EXTENSION | _DOT, "dot digit", 0)],
+    "dot digit": [
+        (_UPPER, "dot marker", 0),
+        ("digit", "dot digit", 0),
+        (_NUMBER | _OTHER, "other", 1),
+        (_SIGNS | _EXTENSION | _DOT, "dot digit", 0),
+    ],
     "dot marker": [(_UPPER, "other", 1), ("again", "dot digit", 0)],
-    "last digit alpha": [("digit", "alpha digit", 0), (_SIGNS, "alpha digit", 0), (_UPPER | _NUMBER | _OTHER | _DOT, "other", 1)],
-    "alpha digit": [("letter digit", "last digit alpha", 0), ("digit", "alpha digit", 0), (_SIGNS, "alpha digit", 0),
-                    (_UPPER, "alpha marker", 0), (_NUMBER | _OTHER | _DOT, "other", 1)],
+    "last digit alpha": [
+        ("digit", "alpha digit", 0),
+        (_SIGNS, "alpha digit", 0),
+        (_UPPER | _NUMBER | _OTHER | _DOT, "other", 1),
+    ],
+    "alpha digit": [
+        ("letter digit", "last digit alpha", 0),
+        ("digit", "alpha digit", 0),
+        (_SIGNS, "alpha digit", 0),
+        (_UPPER, "alpha marker", 0),
+        (_NUMBER | _OTHER | _DOT, "other", 1),
+    ],
     "alpha marker": [(_UPPER, "other", 1), ("again", "alpha digit", 0)],
-    "digit": [("letter digit", "alpha digit", 0), ("digit", "digit", 0), (_NUMBER | _OTHER, "other", 1), (_UPPER, "marker", 0),
-              (_EXTENSION | _SIGNS, "digit", 0), (_DOT, "dot digit", 0)],
+    "digit": [
+        ("letter digit", "alpha digit", 0),
+        ("digit", "digit", 0),
+        (_NUMBER | _OTHER, "other", 1),
+        (_UPPER, "marker", 0),
+        (_EXTENSION | _SIGNS, "digit", 0),
+        (_DOT, "dot digit", 0),
+    ],
     "marker": [(_UPPER, "other", 1), ("again", "digit", 0)],
 }
 
@@ -158,8 +206,10 @@ def in_print_case(name):
     if case is DOWNCASE:
         return name.lower()
     if case is CAPITALIZE:
-        return "".join(character if not index or not name[index - 1].isalnum() or character.islower() else character.lower()
-                       for index, character in enumerate(name))
+        return "".join(
+            character if not index or not name[index - 1].isalnum() or character.islower() else character.lower()
+            for index, character in enumerate(name)
+        )
     return name
 
 
@@ -200,7 +250,7 @@ def symbol_with_prefix(symbol):
     return ":" + token(name) if package is KEYWORD else qualified(token(name), name, package)
 
 
-# --------------------------------------------------------------------------------------------------- strings and characters
+# ----------------------------------------------------------------------------------------------- strings and characters
 
 
 def string_text(text):
@@ -209,15 +259,17 @@ def string_text(text):
 
 
 _CONTROL_NAMES = (
-    "Nul Soh Stx Etx Eot Enq Ack Bel Backspace Tab Newline Vt Page Return So Si Dle Dc1 Dc2 Dc3 Dc4 Nak Syn Etb Can Em Sub Esc "
-    "Fs Gs Rs Us Space").split()
+    "Nul Soh Stx Etx Eot Enq Ack Bel Backspace Tab Newline Vt Page Return So Si Dle Dc1 Dc2 Dc3 Dc4 Nak Syn Etb Can "
+    "Em Sub Esc Fs Gs Rs Us Space"
+).split()
 _C1_NAMES = (
     "Rubout C80 C81 Break-Permitted No-Break-Permitted C84 Next-Line Start-Selected-Area End-Selected-Area "
     "Character-Tabulation-Set Character-Tabulation-With-Justification Line-Tabulation-Set Partial-Line-Forward "
-    "Partial-Line-Backward Reverse-Linefeed Single-Shift-Two Single-Shift-Three Device-Control-String Private-Use-One "
-    "Private-Use-Two Set-Transmit-State Cancel-Character Message-Waiting Start-Guarded-Area End-Guarded-Area Start-String C99 "
-    "Single-Character-Introducer Control-Sequence-Introducer String-Terminator Operating-System-Command Privacy-Message "
-    "Application-Program-Command").split()
+    "Partial-Line-Backward Reverse-Linefeed Single-Shift-Two Single-Shift-Three Device-Control-String "
+    "Private-Use-One Private-Use-Two Set-Transmit-State Cancel-Character Message-Waiting Start-Guarded-Area "
+    "End-Guarded-Area Start-String C99 Single-Character-Introducer Control-Sequence-Introducer String-Terminator "
+    "Operating-System-Command Privacy-Message Application-Program-Command"
+).split()
 
 
 def character_name(char):

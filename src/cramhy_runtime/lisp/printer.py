@@ -1,12 +1,13 @@
 """The printer: any object as text, under the control variables of Common Lisp.
 
-`output_object` is the way everything goes. Atoms of the common kinds are turned into text at once. Other objects are first
-looked up in the pretty printer's dispatch table, if ``*print-pretty*`` is on, and else printed plainly: by the user's
-``print-object`` method (`print_object_hook`), by the printer that a room of the runtime has registered for the class
-(`define_printer`), or as a structure, condition, function, class. What nobody knows is foreign: ``#<PYTHON repr>``.
+`output_object` is the way everything goes. Atoms of the common kinds are turned into text at once. Other objects are
+first looked up in the pretty printer's dispatch table, if ``*print-pretty*`` is on, and else printed plainly: by the
+user's ``print-object`` method (`print_object_hook`), by the printer that a room of the runtime has registered for the
+class (`define_printer`), or as a structure, condition, function, class. What nobody knows is foreign: ``#<PYTHON
+repr>``.
 
-Printed forms, addresses included, are SBCL's. An address tells objects apart and means nothing; it is counted up when an object
-is first printed, so that the same run prints the same bytes (law 5). Source: ANSI chapter 22.
+Printed forms, addresses included, are SBCL's. An address tells objects apart and means nothing; it is counted up when
+an object is first printed, so that the same run prints the same bytes (law 5). Source: ANSI chapter 22.
 """
 
 from __future__ import annotations
@@ -15,22 +16,37 @@ import weakref
 from fractions import Fraction
 
 from . import print_controls as controls
-from .conditions import CaseFailure, Condition, PrintNotReadable, Restart, SimpleCondition, TypeError_, error
-from .data import Character, Cons, DoubleFloat, Keyword, LispString, MultipleValues, Symbol, UNSUPPLIED
+from .conditions import PrintNotReadable, error
+from .data import UNSUPPLIED, Character, Cons, DoubleFloat, Keyword, LispString, MultipleValues, Symbol
 from .float_printing import float_text
-from .packages import Package, all_packages, is_symbol, sym, symbol_name
+from .packages import is_symbol, sym
 from .pprint_dispatch import PRINT_PPRINT_DISPATCH
 from .pretty import NO_OBJECT, call_logical_block, on_pretty_stream
-from .print_arrays import print_array
-from .print_controls import CIRCULARITY, PRINT_CIRCLE, PRINT_ESCAPE, PRINT_PRETTY, PRINT_READABLY, bound, check_circularity, \
-    deeper, length_limit, too_deep
-from .print_names import character_text, integer_text, ratio_text, string_text, symbol_text, symbol_with_prefix
-from .streams import BroadcastStream, FileInput, FileOutput, Stream, StringOutputStream, SynonymStream, ConsoleInput, \
-    output_stream
+from .print_controls import (
+    CIRCULARITY,
+    PRINT_CIRCLE,
+    PRINT_ESCAPE,
+    PRINT_PRETTY,
+    PRINT_READABLY,
+    bound,
+    check_circularity,
+    deeper,
+    length_limit,
+    too_deep,
+)
+from .print_names import character_text, integer_text, ratio_text, string_text, symbol_text
+from .streams import (
+    BroadcastStream,
+    Stream,
+    StringOutputStream,
+    output_stream,
+)
 from .vectors import LispArray
 
 print_object_hook = None
-"""``None``, or a function (object, stream) that calls the user's ``print-object`` method, if there is one, and says so."""
+"""``None``, or a function (object, stream) that calls the user's ``print-object`` method, if there is one, and says
+so.
+"""
 
 _integer = int.__repr__
 
@@ -60,7 +76,8 @@ _ATOMS = {
 """The text of an atom (object, whether escaped), by class: what needs neither line breaks nor a stream."""
 
 
-def _escaping():
+def escaping():
+    """Whether objects are to be printed so that they can be read back."""
     return PRINT_ESCAPE.value is not None or PRINT_READABLY.value is not None
 
 
@@ -68,7 +85,7 @@ def output_object(obj, stream):
     """Print ``obj`` to the output stream ``stream`` under the control variables as they are."""
     text_of = _ATOMS.get(obj.__class__)
     if text_of is not None and PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries:
-        stream.write(text_of(obj, _escaping()))
+        stream.write(text_of(obj, escaping()))
     elif PRINT_CIRCLE.value is None or controls.identified_by_print(obj):
         _print(obj, stream)
     elif CIRCULARITY.value is not None or text_of is None:
@@ -106,7 +123,7 @@ def output_ugly(obj, stream):
         return
     text_of = _ATOMS.get(cls)
     if text_of is not None:
-        stream.write(text_of(obj, _escaping()))
+        stream.write(text_of(obj, escaping()))
         return
     if print_object_hook is None or not print_object_hook(obj, stream):
         printer_for(cls)(obj, stream)
@@ -118,7 +135,7 @@ def standard_print_object(obj, stream):
     if obj.__class__ is Cons:
         _print_list(obj, stream)
     elif text_of is not None:
-        stream.write(text_of(obj, _escaping()))
+        stream.write(text_of(obj, escaping()))
     else:
         printer_for(obj.__class__)(obj, stream)
 
@@ -146,7 +163,7 @@ def _print_list(lst, stream):
         stream.write(")")
 
 
-# -------------------------------------------------------------------------------------------------------- printers by class
+# ---------------------------------------------------------------------------------------------------- printers by class
 
 _printers: dict = {}
 _found: dict = {}
@@ -162,9 +179,7 @@ def printer_for(cls):
     """The function that prints instances of ``cls``: that of the nearest superclass that has one."""
     found = _found.get(cls)
     if found is None:
-        found = next((_printers[ancestor] for ancestor in cls.__mro__ if ancestor in _printers and ancestor is not object), None)
-        if found is None or (found is _print_condition and hasattr(cls, "lisp_structure")):
-            found = _print_structure if hasattr(cls, "lisp_structure") else _printers[object]
+        found = next(_printers[ancestor] for ancestor in cls.__mro__ if ancestor in _printers)
         _found[cls] = found
     return found
 
@@ -174,7 +189,7 @@ def forget_printers():
     _found.clear()
 
 
-# ---------------------------------------------------------------------------------------------------- unreadable objects
+# --------------------------------------------------------------------------------------------------- unreadable objects
 
 _addresses: dict = {}
 _next_address = 0x1001000000
@@ -182,14 +197,18 @@ _TAGS = {"list": 0x7, "function": 0xB, "instance": 0x3}
 
 
 def address(obj):
-    """The address that ``#<... {1001000003}>`` shows for ``obj``: hexadecimal digits, the same as long as ``obj`` lives."""
+    """The address that ``#<... {1001000003}>`` shows for ``obj``: hexadecimal digits, the same as long as ``obj``
+    lives.
+    """
     global _next_address
     key = id(obj)
     known = _addresses.get(key)
     if known is not None:
         return known[0]
     _next_address += 0x40
-    kind = "list" if isinstance(obj, Cons) else "function" if callable(obj) and not isinstance(obj, type) else "instance"
+    kind = (
+        "list" if isinstance(obj, Cons) else "function" if callable(obj) and not isinstance(obj, type) else "instance"
+    )
     text = f"{_next_address | _TAGS[kind]:010X}"
     try:
         keeper = weakref.ref(obj, lambda _: _addresses.pop(key, None))
@@ -202,12 +221,13 @@ def address(obj):
 def print_unreadable(obj, stream, text=None, type_=False, identity=False, body=None):
     """``print-unreadable-object``: ``#<TYPE text {address}>``.
 
-    text: what to print inside; or ``body``: a function of no arguments that prints it to ``stream`` (a pretty stream then has
-    a logical block open). type_: print the type of ``obj`` first. identity: print its address last.
+    text: what to print inside; or ``body``: a function of no arguments that prints it to ``stream`` (a pretty stream
+    then has a logical block open). type_: print the type of ``obj`` first. identity: print its address last.
     """
     if PRINT_READABLY.value is not None:
         return error(PrintNotReadable(object=obj))
     if text is not None:
+
         def body():
             stream.write(text)
 
@@ -249,264 +269,17 @@ def type_name(obj):
     return class_symbol(type(obj))
 
 
-# ------------------------------------------------------------------------------------------------------ the standard classes
-
-
-def _print_foreign(obj, stream):
-    cls = type(obj)
-    if isinstance(obj, int):
-        stream.write(integer_text(int(obj)))
-    elif isinstance(obj, (str, float)):
-        output_object(str(obj) if isinstance(obj, str) else float(obj), stream)
-    elif isinstance(obj, type):
-        _print_class(obj, stream)
-    elif getattr(cls, "lisp_name", None) is not None:
-        print_unreadable(obj, stream, type_=True, identity=True)
-    elif callable(obj):
-        _print_function(obj, stream)
-    else:
-        print_unreadable(obj, stream, "PYTHON " + repr(obj))
-
-
-def _print_structure(obj, stream):
-    from .structures import slots_of
-
-    name, slots = class_symbol(type(obj)), list(slots_of(obj))
-    if not slots:
-        stream.write("#S(")
-        output_object(name, stream)
-        stream.write(")")
-    elif PRINT_PRETTY.value is not None:
-        call_logical_block(stream, NO_OBJECT, lambda out, block: _structure_slots(out, block, name, slots), "#S(", ")")
-    elif not too_deep(stream):
-        limit = length_limit()
-        with deeper():
-            stream.write("#S(")
-            output_object(name, stream)
-            for index, (slot, value) in enumerate(slots):
-                if index >= limit:
-                    stream.write(" ...")
-                    break
-                stream.write(f" {_slot_keyword(slot)} ")
-                output_object(value, stream)
-            stream.write(")")
-
-
-def _structure_slots(out, block, name, slots):
-    output_object(name, out)
-    for slot, value in slots:
-        out.write(" ")
-        out.newline("linear")
-        block.pop()
-        out.write(f"{_slot_keyword(slot)} ")
-        out.newline("miser")
-        output_object(value, out)
-
-
-def _slot_keyword(slot):
-    return symbol_text(sym(":" + (symbol_name(slot) if is_symbol(slot) else str(slot))))
-
-
-def _print_condition(condition, stream):
-    if not _escaping():
-        report_to(condition, stream)
-    elif isinstance(condition, SimpleCondition) and isinstance(condition.format_control, (str, LispString)):
-        def control():
-            with bound(controls.PRINT_LINES, 1):
-                output_object(condition.format_control, stream)
-
-        print_unreadable(condition, stream, type_=True, identity=True, body=control)
-    elif isinstance(condition, TypeError_):
-        def datum():
-            stream.write("expected-type: ")
-            _write_type(condition.expected_type, stream)
-            stream.write(" datum: ")
-            output_object(condition.datum, stream)
-
-        print_unreadable(condition, stream, type_=True, body=datum)
-    else:
-        print_unreadable(condition, stream, type_=True, identity=True)
-
-
-def _write_type(expected, stream):
-    if isinstance(expected, str):
-        stream.write(expected)
-    else:
-        output_object(expected, stream)
-
-
-def report_to(condition, stream):
-    """Print the report of ``condition``. Where the report is a format control, it is formatted on ``stream`` itself, so that
-    a pretty stream indents what it prints.
-    """
-    report = type(condition).report
-    control = getattr(condition, "format_control", None)
-    if report is SimpleCondition.report and isinstance(control, (str, LispString)):
-        from .format import format_
-
-        format_(stream, control, *(condition.format_arguments or ()))
-    elif report in _REPORTS:
-        from .format import format_
-
-        with bound(PRINT_ESCAPE, True):
-            format_(stream, *_REPORTS[report](condition))
-    else:
-        stream.write(condition.report())
-
-
-class _Verbatim:
-    """Text that prints as it is, escaped or not."""
-
-    def __init__(self, text):
-        self.text = text
-
-
-def _type_error_report(condition):
-    expected = condition.expected_type
-    if isinstance(expected, str):
-        expected = _Verbatim(expected)
-    context = condition.context.lstrip("\n") if condition.context else None
-    return "~@<The value ~@:_~2@T~S ~@:_is not of type ~@:_~2@T~S~@[ ~@:_~A~]~:@>", condition.datum, expected, context
-
-
-_REPORTS = {
-    TypeError_.report: _type_error_report,
-    CaseFailure.report: lambda condition: ("~@<~S fell through ~S expression.~@[ ~:_Wanted one of (~{~S~^ ~:_~}).~]~:>",
-                                           condition.datum, _Verbatim(str(condition.operator)), condition.possibilities),
-}
-
-
-def _print_restart(restart, stream):
-    if _escaping():
-        print_unreadable(restart, stream, type_=True, identity=True, body=lambda: output_object(restart.name, stream))
-    else:
-        stream.write(restart.report())
-
-
-def _print_function(function, stream):
-    name = function_name(function)
-    proper = name is not None and (getattr(name, "function", None) is function or _setf_function(name) is function)
-
-    def named():
-        stream.write("FUNCTION")
-        if name is not None:
-            stream.write(" ")
-            with bound(PRINT_ESCAPE, True):
-                output_object(name, stream)
-
-    print_unreadable(function, stream, identity=not proper, body=named)
-
-
-def _setf_function(name):
-    is_setf = isinstance(name, Cons) and name.car is sym("SETF") and isinstance(name.cdr, Cons)
-    return getattr(name.cdr.car, "setf_function", None) if is_setf else None
-
-
-_function_names = weakref.WeakKeyDictionary()
-
-
-def function_name(function):
-    """The Lisp name of ``function``: a symbol, a list such as ``(lambda (x))``, or ``None`` when it has none."""
-    name = getattr(function, "__lisp_name__", None)
-    if name is not None:
-        return name
-    try:
-        if function in _function_names:
-            return _function_names[function]
-        # a function of the runtime: found by looking through all packages, once
-        for package in all_packages():
-            for table in (package.external, package.internal):
-                for symbol in table.values():
-                    if isinstance(symbol, Symbol) and symbol.function is function:
-                        _function_names[function] = symbol
-                        return symbol
-    except TypeError:
-        pass
-    return None
-
-
-def _print_class(cls, stream):
-    metaclass = type(cls)
-    kind = getattr(metaclass, "lisp_name", None)
-    if kind is None:
-        if getattr(cls, "lisp_name", None) is None and cls.__module__ != __name__:
-            print_unreadable(cls, stream, "PYTHON " + repr(cls))
-            return
-        kind = "CONDITION-CLASS" if issubclass(cls, Condition) else \
-            "STRUCTURE-CLASS" if hasattr(cls, "lisp_structure") else "STANDARD-CLASS"
-    kind = symbol_name(kind) if is_symbol(kind) else kind.rpartition(":")[2]
-    print_unreadable(cls, stream, f"{kind} {symbol_with_prefix(class_symbol(cls))}")
-
-
-def _print_path(path, stream):
-    stream.write("#P" + string_text(str(path)) if _escaping() else str(path))
-
-
-def _print_complex(number, stream):
-    double = DoubleFloat if getattr(number, "double", False) else float
-    stream.write("#C(")
-    output_object(double(number.real), stream)
-    stream.write(" ")
-    output_object(double(number.imag), stream)
-    stream.write(")")
-
-
-def print_hash_table(table, stream, test, count):
-    """``#<HASH-TABLE :TEST EQL :COUNT 0 {1001546603}>``; ``test`` is a symbol."""
-    def contents():
-        stream.write(":TEST ")
-        output_object(test, stream)
-        stream.write(f" :COUNT {count}")
-
-    print_unreadable(table, stream, type_=True, identity=True, body=contents)
-
-
 def write_string_text(text, stream):
-    stream.write(string_text(text) if _escaping() else text)
+    stream.write(string_text(text) if escaping() else text)
 
 
-def _print_synonym(stream_object, stream):
-    def contents():
-        stream.write(":SYMBOL ")
-        output_object(stream_object.symbol, stream)
-
-    print_unreadable(stream_object, stream, type_=True, identity=True, body=contents)
-
-
-def _print_comma(comma, stream):
-    stream.write(comma.kind)
-    inner = StringOutputStream() if comma.kind == "," else None
-    if inner is not None and is_symbol(comma.form) and symbol_text(comma.form, _escaping())[:1] in "@.":
-        stream.write(" ")
-    output_object(comma.form, stream)
-
-
-def _register():
-    import pathlib
-
-    from .backquote import Comma
-
-    for cls, function in (
-        (object, _print_foreign), (Condition, _print_condition), (Restart, _print_restart), (type, _print_class),
-        (list, print_array), (LispArray, print_array), (complex, _print_complex), (pathlib.PurePath, _print_path),
-        (_Verbatim, lambda obj, stream: stream.write(obj.text)), (Comma, _print_comma), (SynonymStream, _print_synonym),
-        (Package, lambda obj, stream: print_unreadable(obj, stream, "PACKAGE " + string_text(obj.name))),
-        (Stream, lambda obj, stream: print_unreadable(obj, stream, type_=True, identity=True)),
-        (bytes, lambda obj, stream: print_array(list(obj), stream)),
-    ):
-        define_printer(cls, function)
-    for cls in (FileOutput, FileInput, ConsoleInput):
-        define_printer(cls, lambda obj, stream: print_unreadable(obj, stream, "for " + string_text(obj.label), True, True))
-
-
-_register()
-
-
-# ------------------------------------------------------------------------------------------------------------ what users call
+# ------------------------------------------------------------------------------------------------------ what users call
 
 
 def write(obj, stream, escape=True):
-    """Print ``obj`` to ``stream`` (an output stream or a designator of one), as ``prin1`` or, without ``escape``, ``princ``."""
+    """Print ``obj`` to ``stream`` (an output stream or a designator of one), as ``prin1`` or, without ``escape``,
+    ``princ``.
+    """
     if stream.__class__ is None.__class__ or not isinstance(stream, Stream):
         stream = output_stream(stream)
     text_of = _ATOMS.get(obj.__class__)
@@ -575,10 +348,20 @@ def _to_string(obj, escape):
 
 
 _KEYWORDS = {
-    "array": controls.PRINT_ARRAY, "base": controls.PRINT_BASE, "case": controls.PRINT_CASE, "circle": PRINT_CIRCLE,
-    "escape": PRINT_ESCAPE, "gensym": controls.PRINT_GENSYM, "length": controls.PRINT_LENGTH, "level": controls.PRINT_LEVEL,
-    "lines": controls.PRINT_LINES, "miser_width": controls.PRINT_MISER_WIDTH, "pprint_dispatch": PRINT_PPRINT_DISPATCH,
-    "pretty": PRINT_PRETTY, "radix": controls.PRINT_RADIX, "readably": PRINT_READABLY,
+    "array": controls.PRINT_ARRAY,
+    "base": controls.PRINT_BASE,
+    "case": controls.PRINT_CASE,
+    "circle": PRINT_CIRCLE,
+    "escape": PRINT_ESCAPE,
+    "gensym": controls.PRINT_GENSYM,
+    "length": controls.PRINT_LENGTH,
+    "level": controls.PRINT_LEVEL,
+    "lines": controls.PRINT_LINES,
+    "miser_width": controls.PRINT_MISER_WIDTH,
+    "pprint_dispatch": PRINT_PPRINT_DISPATCH,
+    "pretty": PRINT_PRETTY,
+    "radix": controls.PRINT_RADIX,
+    "readably": PRINT_READABLY,
     "right_margin": controls.PRINT_RIGHT_MARGIN,
 }
 
@@ -587,9 +370,26 @@ def _bindings(given):
     return [item for name, value in given.items() if value is not UNSUPPLIED for item in (_KEYWORDS[name], value)]
 
 
-def lisp_write(obj, *, stream=None, array=UNSUPPLIED, base=UNSUPPLIED, case=UNSUPPLIED, circle=UNSUPPLIED, escape=UNSUPPLIED,
-               gensym=UNSUPPLIED, length=UNSUPPLIED, level=UNSUPPLIED, lines=UNSUPPLIED, miser_width=UNSUPPLIED,
-               pprint_dispatch=UNSUPPLIED, pretty=UNSUPPLIED, radix=UNSUPPLIED, readably=UNSUPPLIED, right_margin=UNSUPPLIED):
+def lisp_write(
+    obj,
+    *,
+    stream=None,
+    array=UNSUPPLIED,
+    base=UNSUPPLIED,
+    case=UNSUPPLIED,
+    circle=UNSUPPLIED,
+    escape=UNSUPPLIED,
+    gensym=UNSUPPLIED,
+    length=UNSUPPLIED,
+    level=UNSUPPLIED,
+    lines=UNSUPPLIED,
+    miser_width=UNSUPPLIED,
+    pprint_dispatch=UNSUPPLIED,
+    pretty=UNSUPPLIED,
+    radix=UNSUPPLIED,
+    readably=UNSUPPLIED,
+    right_margin=UNSUPPLIED,
+):
     """``cl:write``: print ``obj`` to ``stream`` with the given control variables bound. Returns ``obj``."""
     given = {name: value for name, value in locals().items() if name in _KEYWORDS}
     with bound(*_bindings(given)):
@@ -597,10 +397,25 @@ def lisp_write(obj, *, stream=None, array=UNSUPPLIED, base=UNSUPPLIED, case=UNSU
     return obj
 
 
-def write_to_string(obj, *, array=UNSUPPLIED, base=UNSUPPLIED, case=UNSUPPLIED, circle=UNSUPPLIED, escape=UNSUPPLIED,
-                    gensym=UNSUPPLIED, length=UNSUPPLIED, level=UNSUPPLIED, lines=UNSUPPLIED, miser_width=UNSUPPLIED,
-                    pprint_dispatch=UNSUPPLIED, pretty=UNSUPPLIED, radix=UNSUPPLIED, readably=UNSUPPLIED,
-                    right_margin=UNSUPPLIED):
+def write_to_string(
+    obj,
+    *,
+    array=UNSUPPLIED,
+    base=UNSUPPLIED,
+    case=UNSUPPLIED,
+    circle=UNSUPPLIED,
+    escape=UNSUPPLIED,
+    gensym=UNSUPPLIED,
+    length=UNSUPPLIED,
+    level=UNSUPPLIED,
+    lines=UNSUPPLIED,
+    miser_width=UNSUPPLIED,
+    pprint_dispatch=UNSUPPLIED,
+    pretty=UNSUPPLIED,
+    radix=UNSUPPLIED,
+    readably=UNSUPPLIED,
+    right_margin=UNSUPPLIED,
+):
     """``write-to-string``: the text that ``write`` with the same arguments prints."""
     given = {name: value for name, value in locals().items() if name in _KEYWORDS}
     stream = StringOutputStream()
@@ -611,3 +426,5 @@ def write_to_string(obj, *, array=UNSUPPLIED, base=UNSUPPLIED, case=UNSUPPLIED, 
 
 LISP_NAMES = "prin1 princ print pprint prin1-to-string princ-to-string write-to-string"
 LISP_FUNCTIONS = {"write": lisp_write}
+
+from .standard_printers import function_name, print_hash_table, print_structure, report_to  # noqa: E402, F401  it uses ours

@@ -1,7 +1,8 @@
-"""The stream functions of Common Lisp: ``write-string``, ``read-line``, ``make-string-output-stream`` and their relatives.
+"""The stream functions of Common Lisp: ``write-string``, ``read-line``, ``make-string-output-stream`` and their
+relatives.
 
-Streams themselves are in ``streams.py``. Lisp characters are `Character` objects, streams deal in Python strings; the border
-is here. Source: ANSI chapter 21; error texts are SBCL's.
+Streams themselves are in ``streams.py``. Lisp characters are `Character` objects, streams deal in Python strings; the
+border is here. Source: ANSI chapter 21; error texts are SBCL's.
 """
 
 from __future__ import annotations
@@ -9,10 +10,20 @@ from __future__ import annotations
 from . import streams
 from .conditions import EndOfFile, error, type_error
 from .data import Character, LispString, MultipleValues, boolean
-from .streams import (BroadcastStream, ConcatenatedStream, EchoStream, Stream, StringInputStream,
-                      StringOutputStream, SynonymStream, TwoWayStream, input_stream, output_stream)
+from .streams import (
+    BroadcastStream,
+    ConcatenatedStream,
+    EchoStream,
+    Stream,
+    StringInputStream,
+    StringOutputStream,
+    SynonymStream,
+    TwoWayStream,
+    input_stream,
+    output_stream,
+)
 
-# ------------------------------------------------------------------------------------------------------------------ output
+# --------------------------------------------------------------------------------------------------------------- output
 
 
 def _text(string):
@@ -82,7 +93,7 @@ def clear_output(stream=None):
     output_stream(stream)
 
 
-# ------------------------------------------------------------------------------------------------------------------- input
+# ---------------------------------------------------------------------------------------------------------------- input
 
 
 def _at_end(stream, eof_error_p, eof_value):
@@ -105,14 +116,17 @@ def read_char_no_hang(stream=None, eof_error_p=True, eof_value=None, recursive_p
 
 
 def peek_char(peek_type=None, stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
-    """``peek-char``: the next character, which stays; with T the next that is not white space, else the next like it."""
+    """``peek-char``: the next character, which stays; with T the next that is no white space, else the next like it."""
     stream = input_stream(stream)
     while True:
         character = stream.peek_char()
         if not character:
             return _at_end(stream, eof_error_p, eof_value)
-        if peek_type is None or (peek_type is True and not character.isspace()) or \
-                (isinstance(peek_type, Character) and peek_type.char == character):
+        if (
+            peek_type is None
+            or (peek_type is True and not character.isspace())
+            or (isinstance(peek_type, Character) and peek_type.char == character)
+        ):
             return Character(character)
         stream.read_char()
 
@@ -132,7 +146,9 @@ def read_line(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
 
 
 def read_sequence(sequence, stream, *, start=0, end=None):
-    """``read-sequence``: fill ``sequence`` (a vector or LispString) with characters; the index of the first not filled."""
+    """``read-sequence``: fill ``sequence`` (a vector or LispString) with characters; the index of the first not
+    filled.
+    """
     stream = input_stream(stream)
     is_string = isinstance(sequence, LispString)
     elements = sequence.chars if is_string else sequence
@@ -152,7 +168,7 @@ def clear_input(stream=None):
     input_stream(stream).clear()
 
 
-# -------------------------------------------------------------------------------------------------------- making streams
+# ------------------------------------------------------------------------------------------------------- making streams
 
 
 def make_string_output_stream(*, element_type=None):
@@ -217,8 +233,8 @@ def synonym_stream_symbol(stream):
 
 
 def call_with_output_to_string(function, target=None):
-    """What ``with-output-to-string`` becomes: call ``function(stream)``; the text written, or, when it went to ``target`` (a
-    string with a fill pointer), the values of the call.
+    """What ``with-output-to-string`` becomes: call ``function(stream)``; the text written, or, when it went to
+    ``target`` (a string with a fill pointer), the values of the call.
     """
     stream = StringOutputStream(target)
     result = function(stream)
@@ -240,7 +256,7 @@ def output_to_string(thunk):
     return stream.text()
 
 
-# ------------------------------------------------------------------------------------------------------- asking and closing
+# --------------------------------------------------------------------------------------------------- asking and closing
 
 
 def streamp(thing):
@@ -312,12 +328,11 @@ def yes_or_no_p(control=None, *args):
     return _ask_until(control, args, "(yes or no) ", ("yes",), ("no",), 'Please type "yes" for yes or "no" for no.\n')
 
 
-LISP_NAMES = """
-write-string write-line write-char write-sequence terpri fresh-line finish-output force-output clear-output
-read-char read-char-no-hang peek-char unread-char read-line read-sequence listen clear-input
-make-string-output-stream get-output-stream-string make-string-input-stream make-broadcast-stream broadcast-stream-streams
-make-concatenated-stream concatenated-stream-streams make-two-way-stream two-way-stream-input-stream
-two-way-stream-output-stream make-echo-stream echo-stream-input-stream echo-stream-output-stream make-synonym-stream
-synonym-stream-symbol streamp input-stream-p output-stream-p interactive-stream-p open-stream-p close stream-element-type
-y-or-n-p yes-or-no-p
+LISP_NAMES = """ write-string write-line write-char write-sequence terpri fresh-line finish-output force-output
+clear-output read-char read-char-no-hang peek-char unread-char read-line read-sequence listen clear-input
+make-string-output-stream get-output-stream-string make-string-input-stream make-broadcast-stream
+broadcast-stream-streams make-concatenated-stream concatenated-stream-streams make-two-way-stream
+two-way-stream-input-stream two-way-stream-output-stream make-echo-stream echo-stream-input-stream
+echo-stream-output-stream make-synonym-stream synonym-stream-symbol streamp input-stream-p output-stream-p
+interactive-stream-p open-stream-p close stream-element-type y-or-n-p yes-or-no-p
 """

@@ -1,12 +1,12 @@
 """Streams: where text comes from and where it goes.
 
-A Lisp program prints to a stream, and ``*standard-output*`` may be bound to another one for the extent of a form. So the
-runtime's own printing never touches ``sys.stdout``; it writes to an `OutputStream`, which knows the column it is in:
-``fresh-line`` needs it, and so does the pretty printer. `ConsoleOutput` looks its Python file up at every write, because
-pytest and REPLs replace ``sys.stdout``. Source: ANSI chapter 21.
+A Lisp program prints to a stream, and ``*standard-output*`` may be bound to another one for the extent of a form. So
+the runtime's own printing never touches ``sys.stdout``; it writes to an `OutputStream`, which knows the column it is
+in: ``fresh-line`` needs it, and so does the pretty printer. `ConsoleOutput` looks its Python file up at every write,
+because pytest and REPLs replace ``sys.stdout``. Source: ANSI chapter 21.
 
-Input streams deliver Python strings of one character, and ``""`` at the end. The functions that Lisp programs call are in
-``stream_functions.py``.
+Input streams deliver Python strings of one character, and ``""`` at the end. The functions that Lisp programs call
+are in ``stream_functions.py``.
 """
 
 from __future__ import annotations
@@ -15,7 +15,14 @@ import sys
 import weakref
 
 from .data import UNBOUND
-from .packages import sym
+from .packages import Package, find_package, register, sym
+
+for _package, _external in (("SB-SYS", "FD-STREAM"), ("SB-IMPL", ""), ("SB-PRETTY", ""), ("SB-FORMAT", "FORMAT-ERROR")):
+    _home = find_package(_package) or register(
+        Package(_package)
+    )  # SBCL's names of classes, which users see in error messages
+    for _name in _external.split():
+        _home.export(_home.intern(_name))
 
 
 class Stream:
@@ -67,7 +74,9 @@ class OutputStream(Stream):
 
 
 class StringOutputStream(OutputStream):
-    """Collects what is written; `take` gives it and starts anew. With ``target``, a string with a fill pointer, it goes there."""
+    """Collects what is written; `take` gives it and starts anew. With ``target``, a string with a fill pointer, it
+    goes there.
+    """
 
     lisp_name = "SB-IMPL::STRING-OUTPUT-STREAM"
 
@@ -84,7 +93,7 @@ class StringOutputStream(OutputStream):
             return
         target = self.target
         if target.fill_pointer is not None:
-            del target.chars[target.fill_pointer:]
+            del target.chars[target.fill_pointer :]
             target.fill_pointer += len(text)
         target.chars.extend(text)
 
@@ -212,10 +221,10 @@ class InputStream(Stream):
         while self._available():
             end = self._text.find("\n", self._position)
             if end >= 0:
-                parts.append(self._text[self._position:end])
+                parts.append(self._text[self._position : end])
                 self._position = end + 1
                 return "".join(parts), False
-            parts.append(self._text[self._position:])
+            parts.append(self._text[self._position :])
             self._position = len(self._text)
         return "".join(parts), True
 

@@ -136,7 +136,9 @@ def _compare(first, name, arguments, second, other, others):
         return _all(_subtype(a, b) for a, b in zip(_cons_parts(arguments), _cons_parts(others)))
     if other == "ATOM":
         return _disjoint(first, sym("CONS"))
-    if other == "NOT" or name == "NOT":
+    if name == "NOT":  # the complement of a type lies in a named type only if that is nearly everything
+        return None if isinstance(second, Cons) else other == "CONS" and _parts(arguments[0])[0] == "ATOM"
+    if other == "NOT":
         return None
     for specifier, its_name, its_arguments in ((first, name, arguments),):
         definition = _definition(its_name, its_arguments)

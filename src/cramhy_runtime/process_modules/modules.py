@@ -24,7 +24,7 @@ from ..cpl.hooks import Hook
 from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_variables import inherit
 from ..cpl.tasks import EVAPORATED, FAILED as TASK_FAILED, Task, current_task, pause
-from ..designators.equating import youngest
+from ..designators.equating import current_desig
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import Error, error, handler_bind, invoke_debugger, restart_case, warn
 from ..lisp.conditions import DEBUGGER_HOOK
@@ -254,7 +254,7 @@ def define_process_module(name, body):
     from ..lisp.data import lisp_list
 
     cls = define_class(name, lisp_list(sym("CPM::PROCESS-MODULE")), None)
-    pm_run.method(cls)(lambda module, module_name=None: body(youngest(module.input.stored)))
+    pm_run.method(cls)(lambda module, module_name=None: body(current_desig(module.input.stored)))
     return register_process_module(name)
 
 

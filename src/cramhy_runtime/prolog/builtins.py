@@ -6,8 +6,7 @@ prolog.md section 7.
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import SimpleError, SimpleWarning, error, handler_case, warn
-from cramhy_runtime.lisp.conditions import Error
+from cramhy_runtime.lisp.conditions import Error, SimpleError, SimpleWarning, error, handler_case, warn
 from cramhy_runtime.lisp.data import Cons, Symbol, UndefinedFunction, list_from, truth
 from cramhy_runtime.lisp.packages import is_symbol, sym
 

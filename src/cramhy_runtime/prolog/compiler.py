@@ -20,7 +20,7 @@ from .lazy_lists import LazyTail
 from .machine import fail
 from .patterns import ANONYMOUS, same_atom, variable
 from .relations import compile_relation
-from .terms import TermTail, UNSET, Var, unify
+from .terms import UNSET, TermTail, Var, unify
 
 LOOP = range(100)
 _INLINE_LIMIT = 6
@@ -391,7 +391,7 @@ class _Code:
     def _inline(self, goal, names):
         """Code for a goal that needs no call; false if it needs one."""
         functor = goal.car if isinstance(goal, Cons) else None
-        if functor not in INLINED or extended(functor):
+        if functor not in INLINED or extended(functor) or not _proper(goal):
             return False
         arguments = arguments_of(goal)
         if functor is _CUT and not arguments:
@@ -470,16 +470,18 @@ class _Code:
 
 
 def _uses_barrier(goal):
-    return goal.car is _CUT if isinstance(goal, Cons) and goal.car in INLINED else not _direct(goal)
+    return not isinstance(goal, Cons) or goal.car in control.CONTROL or not _proper(goal) or not valid_functor(goal.car)
+
+
+def _proper(goal):
+    while isinstance(goal, Cons):
+        goal = goal.cdr
+    return goal is None
 
 
 def _direct(goal):
     """Whether a goal is a call of a predicate that is known now, with a known number of arguments."""
-    if not isinstance(goal, Cons) or not valid_functor(goal.car) or goal.car in control.CONTROL:
-        return False
-    while isinstance(goal, Cons):
-        goal = goal.cdr
-    return goal is None
+    return isinstance(goal, Cons) and valid_functor(goal.car) and goal.car not in control.CONTROL and _proper(goal)
 
 
 def _occurs(name, pattern):

@@ -13,7 +13,7 @@ from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_fr
 from cramhy_runtime.lisp.packages import sym
 
 from .database import arguments_of, find_predicate, undefined_step, valid_functor, warn_undefined
-from .machine import FAIL, Machine, SOLVED, fail
+from .machine import FAIL, SOLVED, Machine, fail
 from .terms import Restore, TermTail, Var, copy_term, deref, raw, unify, unset_variables
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.conditions import error
-from cramhy_runtime.lisp.data import Cons, Symbol, UNSUPPLIED, all_values, list_from, one, truth
+from cramhy_runtime.lisp.data import UNSUPPLIED, Cons, Symbol, all_values, list_from, one, truth
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import symbol_name
 

@@ -26,7 +26,7 @@ from .database import changed, functor_entry
 from .facts import built_in_group
 from .lazy_lists import elements as lazy_elements
 from .machine import fail, retry_iterator
-from .terms import Var, UNSET, deref, import_term, raw, resolve, unify
+from .terms import UNSET, Var, deref, import_term, raw, resolve, unify
 
 __all__ = ["define_handler", "deref", "predicate", "resolve", "step_predicate", "test"]
 

@@ -30,6 +30,8 @@ def same_atom(a, b):
     if a is b:
         return True
     kind = a.__class__
+    if kind is Symbol or kind is Cons:
+        return False
     if kind is not b.__class__:
         if kind is LispString or b.__class__ is LispString:
             return isinstance(a, (str, LispString)) and isinstance(b, (str, LispString)) and str(a) == str(b)

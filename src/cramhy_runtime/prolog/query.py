@@ -15,13 +15,15 @@ from __future__ import annotations
 from cramhy_runtime.lisp.conditions import type_error
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
 
-from . import control
+from . import (
+    builtins,  # noqa: F401  the predicates that every query may use
+    control,
+)
 from .database import find_predicate
 from .lazy_lists import tail
-from .machine import Machine, SOLVED
+from .machine import SOLVED, Machine
 from .patterns import ANONYMOUS, entry, var_value, variables_of
 from .terms import UNSET, Var, import_term, resolve
-
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 

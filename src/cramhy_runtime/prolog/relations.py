@@ -10,7 +10,7 @@ from cramhy_runtime.lisp.data import DoubleFloat, Keyword, Symbol
 
 from .lazy_lists import LazyTail
 from .machine import fail
-from .terms import TermTail, UNSET, Var, undo, unify
+from .terms import UNSET, TermTail, Var, undo, unify
 
 _BY_VALUE = frozenset([int, str, float, DoubleFloat])
 

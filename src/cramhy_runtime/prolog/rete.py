@@ -16,7 +16,7 @@ from cramhy_runtime.lisp.packages import keyword
 from .lazy_lists import from_iterator
 from .lisp_calls import PROLOG
 from .natives import predicate
-from .patterns import ANONYMOUS, eql, substitute_vars, variable, variables_of
+from .patterns import ANONYMOUS, eql, substitute_vars, variable, variables_of, vars_in
 from .terms import import_term, raw
 
 _object_ids: list = []
@@ -235,6 +235,10 @@ def _pairs(bindings, tail=None):
 def rete_holds(fact_pattern, test=None, processed=None, node=None):
     """The lazy list of bindings under which ``fact_pattern`` is a fact, the newest fact first."""
 
+    if vars_in(fact_pattern) is None:
+        leaf = _leaf(fact_pattern, False)
+        return Cons(None) if leaf is not None and leaf.occurrences else None
+
     def matches():
         for leaf in list((node or _memory.root).leaves()):
             bindings = match_fact(fact_pattern, leaf.fact, {})
@@ -257,7 +261,7 @@ def rete_prove(expr, bdgs=None):
             if found is not None:
                 yield from join(patterns.cdr, _pairs(found, bindings))
 
-    return from_iterator(join(expr, bdgs))
+    return from_iterator(join(expr, bdgs)) if expr is not None else Cons(bdgs)
 
 
 @predicate("CRAM-PROLOG::RETE-HOLDS")

@@ -298,12 +298,42 @@ def unify(a, b, trail):
             elif b.__class__ is Var:
                 b.ref = a
                 trail.append(b)
+            elif kind is Symbol or b.__class__ is Symbol:
+                return False
             elif kind is Cons and b.__class__ is Cons:
-                if pending is None:
-                    pending = []
-                pending.append(a.cdr)
-                pending.append(b.cdr)
-                a, b = a.car, b.car
+                while True:  # along both lists as long as their elements are simple
+                    x, y = a.car, b.car
+                    a, b = a.cdr, b.cdr
+                    if x is not y:
+                        while x.__class__ is Var:
+                            value = x.ref
+                            if value is UNSET:
+                                break
+                            x = value
+                        while y.__class__ is Var:
+                            value = y.ref
+                            if value is UNSET:
+                                break
+                            y = value
+                        if x is not y:
+                            kind = x.__class__
+                            if kind is Var:
+                                x.ref = y
+                                trail.append(x)
+                            elif y.__class__ is Var:
+                                y.ref = x
+                                trail.append(y)
+                            elif kind is Symbol or y.__class__ is Symbol:
+                                return False
+                            else:
+                                if pending is None:
+                                    pending = []
+                                pending.append(a)
+                                pending.append(b)
+                                a, b = x, y
+                                break
+                    if a.__class__ is not Cons or b.__class__ is not Cons:
+                        break
                 continue
             elif kind is LazyTail or kind is TermTail:
                 a = a.force()

@@ -29,9 +29,9 @@ def condition_type(condition):
 
 def explanation(condition):
     """What, where, why and what to try: the lines that describe ``condition``."""
-    from .advice import hint_for
+    from .advice import hint_for, report_text
 
-    lines = [f"  {line}" for line in str(condition).splitlines() or [""]]
+    lines = [f"  {line}" for line in report_text(condition).splitlines() or [""]]
     position = getattr(condition, "position", None)
     if position:
         lines.append(f"  at {describe(position)}")

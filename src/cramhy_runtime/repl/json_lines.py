@@ -15,7 +15,7 @@ from cramhy_runtime.lisp.classes import class_name
 from cramhy_runtime.lisp.packages import COMMON_LISP, symbol_name, symbol_package
 from cramhy_runtime.lisp.places_in_source import describe
 
-from .advice import hint_for
+from .advice import hint_for, report_text
 from .session import Interruption, condition_of, signalled_here
 
 
@@ -74,14 +74,17 @@ def _condition(output, condition):
     package = symbol_package(name)
     prefix = "" if package is COMMON_LISP or package is None else f"{package.name}::"
     restarts = [symbol_name(restart.name) for restart in condition.restarts or ()]
-    return _failure(output, prefix + symbol_name(name), str(condition), restarts or ["ABORT"], describe(condition.position)
+    return _failure(output, prefix + symbol_name(name), report_text(condition), restarts or ["ABORT"], describe(condition.position)
                     if getattr(condition, "position", None) else None, hint_for(condition))
 
 
 def _failure(output, kind, message, restarts=("ABORT",), where=None, hint=None):
+    # what a form printed before it failed is not its answer; it is kept with the error, so that nothing is lost
     error = {"type": kind, "message": message, "restarts": list(restarts)}
+    if output:
+        error["output"] = output
     if where:
         error["where"] = where
     if hint:
         error["hint"] = hint
-    return {"output": output, "values": [], "error": error}
+    return {"output": "", "values": [], "error": error}

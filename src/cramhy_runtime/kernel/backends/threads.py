@@ -20,11 +20,13 @@ from collections import deque
 
 from ..clocks import LONGEST_WAIT
 from . import NoStack
+from .nearness import nearness
 
 STACK_SIZE = 16 << 20 if sys.maxsize > 2**32 else 1 << 20  # bytes
 KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
 
 _idle = deque()
+_near = None  # see `nearness`; asked for when the first kernel starts
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_idle.clear)  # threads do not come along into a forked child
 
@@ -32,13 +34,14 @@ if hasattr(os, "register_at_fork"):
 class ThreadCarrier:
     """A thread with its lock."""
 
-    __slots__ = ("lock", "job", "ident")
+    __slots__ = ("lock", "job", "ident", "tid")
 
     def __init__(self):
         self.lock = _thread.allocate_lock()
         self.lock.acquire()
         self.job = None
         self.ident = None
+        self.tid = None  # the system's name for it, known as soon as it runs
 
 
 def borrow(job):
@@ -68,9 +71,12 @@ def _carry_on(carrier):
     trace = threading.gettrace()
     if trace is not None:
         sys.settrace(trace)  # debuggers and coverage ask `threading` for this; we don't come by there
+    carrier.tid = _thread.get_native_id()
     lock = carrier.lock
     lock.acquire()
     while True:
+        if _near is not None:
+            _near.let_go()
         job, carrier.job = carrier.job, None
         successor = job(carrier)
         job = None
@@ -78,11 +84,18 @@ def _carry_on(carrier):
         if keep:
             _idle.append(carrier)
         if successor is not None:
-            successor.lock.release()
+            _wake(successor)
             successor = None
         if not keep:
             return
         lock.acquire()
+
+
+def _wake(carrier):
+    """Give the baton to CARRIER, as the last thing before going to sleep."""
+    if _near is not None and carrier.tid is not None:
+        _near.bring(carrier.tid)
+    carrier.lock.release()
 
 
 class ThreadBackend:
@@ -96,16 +109,22 @@ class ThreadBackend:
 
     def adopt(self, kernel):
         self._kernel = kernel
+        global _near
+        if _near is None:
+            _near = nearness()
         self._root = carrier = ThreadCarrier()
         carrier.ident = _thread.get_ident()
+        carrier.tid = _thread.get_native_id()
         return carrier
 
     def carrier(self, job):
         return borrow(job)
 
     def transfer(self, mine, other):
-        other.lock.release()
+        _wake(other)
         self._wait(mine)
+        if _near is not None:
+            _near.let_go()
 
     def _wait(self, mine):
         """Wait for the baton. In the main thread Python runs signal handlers meanwhile, and one may raise."""
@@ -116,11 +135,13 @@ class ThreadBackend:
             try:
                 if mine.lock.acquire(timeout=LONGEST_WAIT):
                     return
-            except KeyboardInterrupt:
+            except KeyboardInterrupt:  # nobody installed a handler that interrupts the kernel
                 kernel = self._kernel
                 kernel.interrupt()
-                if kernel.current.carrier is mine:  # the baton came at the same moment
-                    mine.lock.acquire(False)
+                if kernel.current.carrier is mine:
+                    # The baton came at the same moment. Either the lock is ours already, and this times out, or it is
+                    # about to be released, and this takes it.
+                    mine.lock.acquire(timeout=LONGEST_WAIT)
                     return
 
     def run_blocking(self, kernel, task, call):
@@ -145,6 +166,8 @@ class ThreadBackend:
         finally:
             kernel.post(lambda: kernel.comes_back(task))
             self._wait(task.carrier)
+            if _near is not None:
+                _near.let_go()
 
     def frame(self, carrier):
         return sys._current_frames().get(carrier.ident)

@@ -34,6 +34,7 @@ class Constants:
         self.names = {}
         self.alive = []  # ids are keys: the objects must live as long
         self.fresh = []
+        self.made = set()
         self.count = 0
 
     def name(self, kind, obj):
@@ -61,6 +62,7 @@ class Constants:
             if kind == "function":
                 value = expression(symbol_model("."), value, symbol_model("function"))
             statements.append(expression(symbol_model("setv"), symbol_model(name), value))
+            self.made.add(name)
         return statements
 
     def builder(self, obj, top=False):
@@ -69,7 +71,7 @@ class Constants:
             return symbol_model("None" if obj is None else "True")
         if not top:
             known = self.names.get(("object", id(obj)))
-            if known is not None and not any(entry[0] == known for entry in self.fresh):
+            if known in self.made:
                 return symbol_model(known)
         kind = type(obj)
         if isinstance(obj, Symbol):

@@ -126,6 +126,15 @@ def setf_function(symbol):
     return function
 
 
+def called_function(designator):
+    """The function that ``funcall`` calls."""
+    if isinstance(designator, Symbol):
+        return designator.function
+    if callable(designator) and designator is not True:
+        return designator
+    return function_of(designator, "\nwhen binding FUNCTION")
+
+
 def undefined(symbol, *arguments):
     return UndefinedFunction(symbol)(*arguments)
 
@@ -178,7 +187,7 @@ def not_(value):
 
 NAMESPACE = {
     "Lone": one, "Ltruth": truth, "Lnot": not_, "Lvalue": value_of, "Lfdefinition": fdefinition, "Lsetf_function": setf_function,
-    "Lundefined": undefined, "Lcallable": function_of, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
+    "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
     "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield, "Lkeywords": keywords,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,

@@ -1,0 +1,30 @@
+"""What the macros of the designators call, as functions of the package CRAMHY."""
+
+from __future__ import annotations
+
+from ..cpl.symbols import ensure_package
+from ..lisp.faces import define_face
+from . import classes, language_support, locations, properties_package
+
+
+def register_designator_class(type_, class_name):
+    """``(register-designator-class type class-name)``, both unevaluated."""
+    from ..lisp.classes import find_class_or_error
+    from ..lisp.packages import keyword
+
+    return classes.register_designator_class(keyword(type_.name), find_class_or_error(class_name))
+
+
+def define():
+    """Enter the functions into CRAMHY."""
+    ensure_package("CRAMHY")
+    define_face("CRAMHY", functions={
+        "register-designator-class": register_designator_class,
+        "register-location-generator": locations.register_location_generator,
+        "register-location-validation-function": locations.register_location_validation_function,
+        "with-designator-solution-filter": locations.with_designator_solution_filter,
+        "define-designator-package": properties_package.define_designator_package,
+        "create-designator": language_support.create_designator,
+        "with-designators-node": lambda names, body: language_support.with_designators(body, names),
+        "with-equate-fluent": language_support.with_equate_fluent,
+    })

@@ -1,0 +1,25 @@
+"""``def-desig-package``: a package whose property names are shared (designators.md section 5). Legacy; keywords make it unnecessary."""
+
+from __future__ import annotations
+
+from ..lisp.data import python_list
+from ..lisp.packages import symbol_name
+from .symbols import DESIG_PROPS
+
+
+def define_designator_package(name, options):
+    """Define the package ``name`` with the options of ``defpackage`` and ``(:desig-properties symbol...)``; returns it."""
+    from ..lisp.expansion_support import define_package
+
+    properties, rest = [], []
+    for option in python_list(options):
+        if option.car.name == "DESIG-PROPERTIES":
+            properties += [symbol_name(symbol) for symbol in python_list(option.cdr)]
+        else:
+            rest.append(option)
+    package = define_package(name, rest)
+    for property_name in properties:
+        symbol = DESIG_PROPS.intern(property_name)
+        DESIG_PROPS.export(symbol)
+        package.shadowing_import(symbol)
+    return package

@@ -1,0 +1,90 @@
+"""What runs inside the loops that LOOP makes: collecting at the tail of a list, walking tables, packages and vectors.
+
+The expansion calls these functions through symbols of the package CRAMHY. Collecting adds a cell behind the last one, so a loop
+that collects is linear; the list under construction hangs behind a header cell.
+"""
+
+from __future__ import annotations
+
+from .conditions import type_error
+from .data import Cons, LispString, list_from
+from .packages import Package, find_package, find_package_or_error, intern, register
+
+if find_package("CRAMHY") is None:
+    register(Package("CRAMHY"))
+NEXT_LOOP, END_LOOP = intern("NEXT-LOOP", "CRAMHY"), intern("END-LOOP", "CRAMHY")
+"""The tags of a loop. ``(go cramhy::end-loop)`` is what ``loop-finish`` does."""
+
+
+def collect(tail, item):
+    """Add a cell with ``item`` behind the cell ``tail``; the new last cell."""
+    cell = tail.cdr = Cons(item)
+    return cell
+
+
+def collect_append(tail, items):
+    """Add a copy of the list ``items`` behind the cell ``tail``; the new last cell."""
+    while isinstance(items, Cons):
+        cell = tail.cdr = Cons(items.car)
+        tail, items = cell, items.cdr
+    if items is not None:
+        tail.cdr = items
+    return tail
+
+
+def collect_nconc(tail, items):
+    """Add the list ``items`` itself behind the cell ``tail``; the new last cell."""
+    if items is not None:
+        tail.cdr = items
+    while isinstance(tail.cdr, Cons):
+        tail = tail.cdr
+    return tail
+
+
+def loop_vector(vector):
+    """``vector``, which must be one."""
+    if isinstance(vector, (list, str, LispString)) or _is_vector(vector):
+        return vector
+    return type_error(vector, "VECTOR")
+
+
+def _is_vector(obj):
+    from .vectors import Vector
+
+    return isinstance(obj, Vector)
+
+
+def table_entries(table):
+    """The pairs (key . value) of a hash table as they are now: the loop may change and remove what it visits."""
+    from .hash_tables import maphash
+
+    pairs = []
+    maphash(lambda key, value: pairs.append(Cons(key, value)), table)
+    return list_from(pairs)
+
+
+def package_symbols(kind, package):
+    """The symbols of a package: ``kind`` is ``SYMBOLS`` (accessible), ``PRESENT-SYMBOLS`` or ``EXTERNAL-SYMBOLS``."""
+    found = []
+    for each in list(package) if isinstance(package, Cons) else [package]:
+        source = find_package_or_error(each)
+        tables = [source.external] if kind == "EXTERNAL-SYMBOLS" else [source.external, source.internal]
+        if kind == "SYMBOLS":
+            tables += [other.external for other in source.use]
+        for table in tables:
+            found += [symbol for name, symbol in table.items() if source.lookup(name)[0] is symbol]
+    return list_from(list(dict.fromkeys(found)))
+
+
+def _define(name, function):
+    symbol = intern(name, "CRAMHY")
+    symbol.function = function
+    return symbol
+
+
+COLLECT = _define("COLLECT", collect)
+COLLECT_APPEND = _define("COLLECT-APPEND", collect_append)
+COLLECT_NCONC = _define("COLLECT-NCONC", collect_nconc)
+LOOP_VECTOR = _define("LOOP-VECTOR", loop_vector)
+TABLE_ENTRIES = _define("TABLE-ENTRIES", table_entries)
+LOOP_SYMBOLS = _define("LOOP-SYMBOLS", package_symbols)

@@ -1,0 +1,12 @@
+"""Each test has its own virtual time, on both back ends."""
+
+import pytest
+
+from cramhy_runtime import image, kernel
+
+
+@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+def fresh_kernel(request):
+    image.boot()
+    yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
+    kernel.stop()

@@ -1,0 +1,145 @@
+"""Making, printing, reading and equating designators: designators.md section 13, invariants 1 to 12 and 36 to 45."""
+
+import pytest
+
+from cramhy_runtime import designators as desig
+from cramhy_runtime.designators import classes, equating, syntax
+from cramhy_runtime.lisp.conditions import Error
+from cramhy_runtime.lisp.data import lisp_list
+from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.packages import keyword, sym
+from cramhy_runtime.lisp.printer import prin1_to_string, princ_to_string
+
+from .support import lisp, make, python, user
+
+
+def form(*pairs):
+    return syntax.description_form(lisp(list(pairs)))
+
+
+def test_constants_become_keywords_and_stay_otherwise():
+    assert python(form(["type", "driving"], ["speed", 5], ["name", "'x"])) == [
+        "QUOTE", [["TYPE", "DRIVING"], ["SPEED", 5], ["NAME", "x"]]]
+
+
+def test_a_variable_is_evaluated_where_the_form_stands():
+    assert python(form(["speed", "?speed"], ["goal", ["?x", 1, "left"]])) == [
+        "LIST", ["LIST", "SPEED", "?SPEED"], ["LIST", "GOAL", ["LIST", "?X", 1, "LEFT"]]]
+
+
+def test_a_nested_designator_is_a_form_whatever_package_its_operator_is_from():
+    (entry,) = form(["at", ["a", "location", ["name", 1]]]).cdr
+    assert entry.cdr.cdr.car.car is sym("DESIG::A")
+
+
+def test_when_decides_at_run_time_and_what_is_left_out_vanishes_only_at_the_top():
+    found = form(["when", "?v", ["key", "?v"]], None, ["off", None])
+    assert python(found)[0] == "PRESENT"
+    assert python(found)[1][1] == ["WHEN", "?V", ["LIST", "KEY", "?V"]]
+    assert python(syntax.present(lisp([None, [":a", None]]))) == [["A", None]]
+
+
+def test_all_takes_the_plural_and_sets_the_quantifier():
+    expanded = syntax.expand(lisp(["desig::all", "objects", ["type", "cup"]]))
+    assert python(expanded) == ["MAKE-ALL-DESIGNATOR", "OBJECT", ["QUOTE", [["TYPE", "CUP"]]]]
+    assert classes.make_all_designator(keyword("OBJECT")).quantifier is keyword("ALL")
+
+
+def test_a_dotted_list_is_an_error():
+    from cramhy_runtime.lisp.data import Cons
+
+    with pytest.raises(Error) as problem:
+        syntax.description_form(lisp_list(Cons(user("A-KEY"), 5)))
+    assert "dotted list" in problem.value.format_control
+
+
+def test_an_unknown_type_is_an_error():
+    with pytest.raises(Error) as problem:
+        desig.make_designator(keyword("PLACE"), None)
+    assert problem.value.report() == "Designator type `PLACE' undefined"
+
+
+def test_a_designator_is_printed_over_several_lines():
+    inner = make("location", [":name", "'x"])
+    outer = desig.make_designator(keyword("OBJECT"), lisp_list(lisp([":type", ":bottle"]), lisp_list(keyword("AT"), inner)))
+    assert prin1_to_string(outer) == '#<A OBJECT\n    (TYPE BOTTLE)\n    (AT #<A LOCATION\n    (NAME "x")>)>'
+    assert princ_to_string(outer) == "#<A OBJECT\n    (TYPE BOTTLE)\n    (AT #<A LOCATION\n    (NAME x)>)>"
+    assert prin1_to_string(make("motion")) == "#<A MOTION>"
+    assert prin1_to_string(make("motion", [":l", [1, [2, ":three"]]], [":none", None])) == (
+        "#<A MOTION\n    (L (1 (2 :THREE)))\n    (NONE NIL)>")
+
+
+def test_in_a_list_it_begins_a_line():
+    assert prin1_to_string(lisp_list(1, make("motion", [":type", ":driving"]), 2)) == "(1\n #<A MOTION\n    (TYPE DRIVING)>\n 2)"
+
+
+def test_printing_can_leave_the_description_out():
+    with binding(sym("DESIG::*DESIGNATOR-PPRINT-DESCRIPTION*"), None):
+        assert prin1_to_string(make("motion", [":type", ":driving"])) == "#<>"
+
+
+def test_properties_are_found_by_key_in_order():
+    motion = make("motion", [":a", 1], [":b", 2], [":a", 3])
+    assert desig.desig_prop_value(motion, keyword("A")) == 1
+    assert python(desig.desig_prop_values(motion, keyword("A"))) == [1, 3]
+    assert desig.desig_prop_value(motion, keyword("NOPE")) is None and desig.desig_prop_value(None, keyword("A")) is None
+
+
+def test_merging_puts_the_old_keys_in_front_reversed():
+    old = make("motion", [":a", 1], [":b", 2], [":c", 3])
+    copy = classes.copy_designator(old, new_description=lisp([[":b", 9], [":d", 4]]))
+    assert python(copy.description) == [["C", 3], ["A", 1], ["B", 9], ["D", 4]]
+    assert python(old.description) == [["A", 1], ["B", 2], ["C", 3]]
+
+
+def test_updating_properties():
+    new, old = lisp([[":a", 9], [":n", 1]]), lisp([[":b", 2], [":a", 1], [":a", 3]])
+    assert python(classes.update_designator_properties(new, old)) == [["N", 1], ["A", 9], ["B", 2]]
+
+
+def test_an_effective_designator_has_data_and_is_equated_to_nothing():
+    made = classes.make_effective_designator(make("object", [":a", 1]), data_object="data", timestamp=7.0)
+    assert (made.data, made.timestamp, made.effective, made.parent) == ("data", 7.0, True, None)
+    assert python(made.description) == [["A", 1]]
+
+
+def test_equating_makes_a_chain():
+    first, second, third = make("object"), make("object"), make("object")
+    assert desig.equate(first, second) is second
+    desig.equate(first, third)
+    assert desig.current_desig(first) is third and desig.first_desig(third) is first
+    assert desig.desig_equal(first, third) is True and desig.desig_equal(first, 5) is None
+    assert first.object_id is third.object_id
+    assert desig.current_desig(None) is None
+    with pytest.raises(Error) as problem:
+        desig.equate(first, first)
+    assert problem.value.format_control == "Cannot equate designators that are already equal."
+
+
+def test_equating_two_chains_puts_the_successors_ancestors_first():
+    a1, a2, b1, b2, b3 = (make("object", [":name", name]) for name in (":a1", ":a2", ":b1", ":b2", ":b3"))
+    desig.equate(a1, a2)
+    desig.equate(b1, b2)
+    desig.equate(b2, b3)
+    desig.equate(a1, b2)
+    assert equating.chain(a1) == [b1, a1, a2, b2, b3]
+    assert list(equating.get_equal_designators(a2)) == [b1, a1, b3, b2]
+
+
+def test_callbacks_of_all_members_are_called_with_the_successor():
+    told = []
+    first, second, third = make("object"), make("object"), make("object")
+    equating.register_equate_callback(first, lambda successor: told.append(("first", successor)))
+    desig.equate(first, second)
+    equating.with_equate_callback(second, lambda successor: told.append(("second", successor)), lambda: desig.equate(second, third))
+    desig.equate(first, make("object"))
+    assert [name for name, _ in told] == ["first", "first", "second", "first"]
+    assert told[1][1] is third
+
+
+def test_the_newest_effective_designator():
+    first, second = make("object"), make("object")
+    desig.equate(first, second)
+    assert equating.newest_effective_designator(second) is None
+    first.effective = True
+    assert equating.newest_effective_designator(second) is first

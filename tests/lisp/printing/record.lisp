@@ -1,0 +1,10 @@
+(defun sb-posix-getenv-x () (sb-ext:posix-getenv "ORACLE"))
+(setf *random-state* (sb-ext:seed-random-state 1))
+(defstruct foo a (b 2)) (defstruct bar) (defstruct (very-long-structure-name (:conc-name v-)) first-slot-name second-slot third)
+(defclass thing () ())
+(defun json (s) (with-output-to-string (o) (write-char #\" o) (loop for c across s do (case c (#\" (write-string "\\\"" o)) (#\\ (write-string "\\\\" o)) (#\Newline (write-string "\\n" o)) (t (if (or (< (char-code c) 32) (> (char-code c) 126)) (format o "\\u~4,'0x" (char-code c)) (write-char c o))))) (write-char #\" o)))
+(sb-ext:disable-debugger)
+(with-open-file (in (sb-posix-getenv-x))
+ (loop for start = (file-position in) for form = (read in nil in) until (eq form in) do
+  (let ((r (handler-case (let ((v (eval form))) (if (stringp v) v (prin1-to-string v))) (error (e) (format nil "ERROR ~a" e)))))
+   (format t "[~a, ~a]~%" (json (string-trim '(#\Newline #\Space) (let ((end (file-position in)) (str (make-string 5000))) (file-position in start) (let ((n (read-sequence str in :end (- end start)))) (file-position in end) (subseq str 0 n))))) (json r)))))
