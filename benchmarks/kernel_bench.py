@@ -167,6 +167,24 @@ def blocking(count):
         kernel.run_blocking(nothing)
 
 
+def interrupts(count):
+    """From Ctrl-C, while another task is busy, until the main task has it."""
+
+    def busy():
+        kernel.interrupt()
+        while True:
+            kernel.checkpoint()
+
+    for _ in range(count):
+        task = kernel.spawn(busy)
+        try:
+            task.join()
+        except kernel.Interrupted:
+            kernel.interrupt_over()
+        task.cancel()
+        task.join()
+
+
 def main():
     print("raw Python")
     measure("start a thread and wait for its end", "us", raw_thread_start, 2000)
@@ -191,6 +209,7 @@ def main():
         measure("virtual sleeps of ten tasks", "/s", sleeps_of_ten, 20000)
         measure("firings of a periodic timer", "/s", timers, 50000)
         measure("a blocking call that does nothing", "us", blocking, 1000)
+        measure("interrupt in a busy task, cancel and join it", "us", interrupts, 1000)
         with_checkpoint = measure("a loop with a checkpoint, each turn", "ns", checkpoints, 1000000)
         print(f"  {'so a checkpoint costs':<52}{(with_checkpoint - loop) * 1e9:>12,.2f} ns"
               f"  (an empty call {(call - loop) * 1e9:,.2f})")  # fmt: skip

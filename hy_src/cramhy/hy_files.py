@@ -85,7 +85,7 @@ def take_over():
     unit_for(filename).positions = lisp_reader.positions
     reader.try_parse_one_form = lambda: _next_form(lisp_reader)
     reader.slurp_space = lambda: None
-    reader.peekc = lambda: "" if _at_end(lisp_reader) else " "
+    reader.peek_and_getc = lambda closer: _at_end(lisp_reader)
 
 
 def _at_end(lisp_reader):

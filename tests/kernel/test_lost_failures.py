@@ -34,6 +34,15 @@ def test_a_joiner_that_comes_later_in_the_same_instant_is_in_time(k, reported):
     assert reported == []
 
 
+def test_a_joiner_that_left_before_the_end_takes_no_care(k, reported):
+    failing = kernel.spawn(lambda: (kernel.sleep(2), fail()), name="drive")
+    joiner = kernel.spawn(failing.join)
+    kernel.sleep(1)
+    joiner.cancel()
+    kernel.sleep(5)
+    assert names(reported) == ["drive"]
+
+
 def test_whoever_reads_the_exception_takes_care_of_it(k, reported):
     task = kernel.spawn(fail)
     kernel.yield_()

@@ -114,6 +114,13 @@ def test_only_the_main_task_can_stop(k):
     assert str(task.exception) == "Only the main task can stop the kernel, or start another one in its place."
 
 
+def test_a_kernel_that_could_not_start_leaves_none_active(start):
+    start()
+    with pytest.raises(ValueError):
+        kernel.start(clock="sundial")
+    assert kernel.active() is None
+
+
 def test_stop_twice_is_stop_once(k):
     k.stop()
     k.stop()

@@ -50,7 +50,7 @@ class Task:
     ``ended``, if set, is called with the task when it is dead.
     """
 
-    __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "code", "kernel_task",
+    __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
                  "constraints", "ended", "observers", "held", "unschedulable", "suspension_handlers", "retry_level", "__weakref__",
                  "__dict__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
@@ -65,6 +65,7 @@ class Task:
         self.result = NO_VALUES
         self.path = path
         self.tree = None
+        self.node = None
         self.code = None
         self.kernel_task = None
         self.constraints = None
@@ -129,7 +130,7 @@ class Task:
             if self.tree is None:
                 self.tree = parent.tree
             if self.path is None:
-                self.path = parent.path
+                self.path, self.node = parent.path, parent.node
         bindings = inherited_bindings(self, parent)
         self.kernel_task = kernel.spawn(self._live, bindings, name=self.name if self._name is None else "task")
         self.kernel_task.name = _KernelName(self)

@@ -32,13 +32,14 @@ class Code:
 class TaskTreeNode:
     """A node: its ``path``, ``code``, ``replacements`` (newest first), ``parent`` and ``children`` (path part to node, in order)."""
 
-    __slots__ = ("path", "code", "replacements", "parent", "children", "__weakref__")
+    __slots__ = ("path", "code", "replacements", "parent", "children", "calls", "__weakref__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK-TREE-NODE"
 
     def __init__(self, path=None, parent=None, code=None):
         self.path, self.parent, self.code = path, parent, code
         self.replacements = []
         self.children = {}
+        self.calls = 1  # repetitions of this part known to be taken
 
     @property
     def effective_code(self):
@@ -98,15 +99,29 @@ def _tree_or_error():
     return tree
 
 
-def _next_free(path, tree):
-    """The node for ``path``, or for its next repetition if the task there was executed already."""
-    part, above = path.car, path.cdr
-    node = ensure_node(path, tree)
-    number = 1
-    while (code := node.effective_code) is not None and code.task is not None and code.task.status is not CREATED:
-        number += 1
-        node = ensure_node(Cons(list_from(part, lisp_list(CALL, number)), above), tree)
+def _current_node():
+    """The node that the current task belongs to."""
+    task = current_task()
+    if task.node is None:
+        task.node = ensure_node(task.path, _tree_or_error())
+    return task.node
+
+
+def _next_free(part, above):
+    """The node for ``part`` below the node ``above``, or for its next repetition if the task there was executed already."""
+    first = node = above.child(part)
+    if _taken(node):
+        number = first.calls
+        while _taken(node):
+            number += 1
+            node = above.child(list_from(part, lisp_list(CALL, number)))
+        first.calls = number
     return node
+
+
+def _taken(node):
+    code = node.effective_code
+    return code is not None and code.task is not None and code.task.status is not CREATED
 
 
 def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None):
@@ -114,7 +129,11 @@ def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None
 
     When the node's task has run already, that of the next iteration path. A replacement of the node's code takes its place.
     """
-    node = _next_free(path or current_path(), _tree_or_error())
+    path = path or current_path()
+    return _task_of(_next_free(path.car, ensure_node(path.cdr, _tree_or_error())), name, sexp, function, parameters)
+
+
+def _task_of(node, name=None, sexp=None, function=None, parameters=None):
     code = node.effective_code
     if code is None:
         code = node.code = Code()
@@ -128,6 +147,7 @@ def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None
     if task is None:
         task = code.task = Task(None, name or (lambda: "[TASK]"), node.path)
         task.tree = current_tree()
+        task.node = node
     elif name is not None:
         task._name = name
     task.code = code
@@ -157,7 +177,7 @@ def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp
     observed = on_preparing_task_execution or on_finishing_task_execution
     run_id = on_preparing_task_execution.first(name, log_parameters, log_pattern, lambda_list, parameters) if observed else None
     label = name if callable(name) else (lambda: f"[{name}]")
-    task = make_task(name=label, sexp=sexp, function=function, path=Cons(path_part, current_path()), parameters=parameters)
+    task = _task_of(_next_free(path_part, _current_node()), label, sexp, function, parameters)
     from .branches import run_one
 
     if not observed:
@@ -212,6 +232,7 @@ def remove_top_level_task_tree(name):
 
 def clear_tasks(node):
     """Forget what ran: code, tasks and parameters. Structure and replacements stay."""
+    node.calls = 1
     if node.code is not None:
         node.code = Code()
     for replacement in node.replacements:

@@ -24,15 +24,22 @@ def start(clock="virtual", backend="threads", seed=None, time_limit=None):
     global _active
     if _active is not None and _active.main.carrier.ident == get_ident():
         _active.stop()
-    _active = Kernel(clock, backend, seed, time_limit)
-    return _active
+    _active = None
+    kernel = Kernel(clock, backend, seed, time_limit)
+    kernel.when_stopped = lambda: _forget(kernel)
+    _active = kernel
+    return kernel
 
 
 def stop():
     """Stop the active kernel (see `Kernel.stop`); afterwards none is active."""
-    global _active
     if _active is not None:
         _active.stop()
+
+
+def _forget(kernel):
+    global _active
+    if _active is kernel:
         _active = None
 
 
@@ -45,7 +52,7 @@ def _stop_at_exit():
 
 def active():
     """The active kernel, or None."""
-    return None if _active is None or _active.stopped else _active
+    return _active
 
 
 def _none():
@@ -56,7 +63,7 @@ def checkpoint():
     """Named in every loop's back edge: counts, and now and then lets others run or raises a request to end."""
     budget.left -= 1
     if budget.left < 0:
-        if _active is None or _active.stopped:
+        if _active is None:
             budget.left = SLICE
         else:
             _active.end_slice()

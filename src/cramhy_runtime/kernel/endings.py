@@ -138,6 +138,7 @@ class Endings:
         self._report_unclaimed()
         self.stopped = True
         self.backend.close()
+        self.when_stopped()
 
     def _let_unwind(self):
         until = self.now() + GRACE

@@ -68,6 +68,7 @@ class Kernel(Endings):
         self._stopping = False
         self._patience = PATIENCE
         self.stopped = False
+        self.when_stopped = lambda: None  # for `active`, which keeps track of the kernels
         self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
         self._scheduler = SchedulerTask(self)
         self.main = main = self._new_task(None, (), "main", None)
@@ -304,7 +305,7 @@ class Kernel(Endings):
             for joiner in task.joiners:
                 self.unpark(joiner)
             task.joiners = None
-        elif not task.ended_as_asked():
+        if not task.ended_as_asked():
             self._unclaimed.append(task)
         if self._unclaimed:
             self._report_unclaimed(task)

@@ -108,7 +108,6 @@ class Task:
         me = kernel.current
         if me is self:
             raise KernelError(f"Task {self.name} would wait for its own end. Join it from another task.")
-        self.claimed = True
         while self.state is not DEAD:
             if self.joiners is None:
                 self.joiners = []
@@ -118,6 +117,7 @@ class Task:
             finally:
                 if self.state is not DEAD:
                     self.joiners.remove(me)
+        self.claimed = True
         return self.result
 
     def _why_joined(self):

@@ -20,8 +20,8 @@ from .classes import (
     symbol_class,
 )
 from .condition_types import Condition
-from .conditions import SimpleError, SimpleTypeError, error
-from .data import UNBOUND, Cons, Symbol, list_from, one, python_list
+from .conditions import SimpleError, error
+from .data import UNBOUND, Symbol, list_from, one, python_list
 from .faces import python_name
 from .packages import is_symbol, sym, symbol_name
 
@@ -235,17 +235,6 @@ def _report_method(report):
     return text
 
 
-def make_condition(type, *initargs):
-    """``cl:make-condition``"""
-    from .instances import make_instance
-
-    cls = symbol_class(type) if is_symbol(type) else type
-    if isinstance(cls, Cons) or cls is None or not issubclass(cls, Condition):
-        return error(SimpleTypeError("~S does not designate a condition class.", type,
-                                     datum=type, expected_type=sym("CONDITION")))
-    return make_instance(cls, *initargs)
-
-
 def default_initargs(cls):
     """The default initargs of ``cls``: a dict from keyword to thunk, superclasses included."""
     result = {}
@@ -253,7 +242,3 @@ def default_initargs(cls):
         for key, thunk in vars(base).get("lisp_default_initargs", ()):
             result.setdefault(key, thunk)
     return result
-
-
-LISP_NAMES = "make-condition"
-"""`define_class`, `define_condition` and `slot_spec` are called by the expansions of the macros."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 
 from .data import UNBOUND
-from .packages import is_symbol, printed, string_designator, symbol_name
+from .packages import is_symbol, printed, symbol_name
 
 __all__ = []
 
@@ -367,28 +367,32 @@ _ARITY = re.compile(r"^(?P<name>.*)\(\) (?:takes (?:from )?\d+(?: to \d+)? posit
                     r"|missing (?P<missing>\d+) required positional arguments?: .*)$")
 
 
-def _argument_count(exception):
-    """How many arguments the failed call gave, if ``exception`` is Python's complaint about their number; else ``None``."""
+def _wrong_argument_count(exception):
+    """The program-error for Python's complaint about the number of arguments of a call, or ``None`` if it is another one.
+
+    Python says what is missing, not what was given, so the called function is looked up by its name.
+    """
     match = _ARITY.match(str(exception))
-    if not match or (exception.__traceback__ and exception.__traceback__.tb_next and _deeper_call(exception)):
+    if not match:
         return None
+    from .packages import all_packages
+
+    found = next((symbol for package in all_packages() for table in (package.external, package.internal) for symbol in table.values()
+                  if getattr(getattr(symbol, "function", None), "__qualname__", None) == match["name"]), None)
+    code = getattr(getattr(found, "function", None), "__code__", None)
     if match["given"]:
-        return int(match["given"])
-    return _required(match["name"], exception) - int(match["missing"])
-
-
-def _deeper_call(exception):
-    return False
-
-
-def _required(qualified_name, exception):
-    # Python's message tells what is missing, not what was given; the called function is found by its name.
-    import gc
-
-    for function in gc.get_objects():
-        if getattr(function, "__qualname__", None) == qualified_name and hasattr(function, "__code__"):
-            return function.__code__.co_argcount - len(function.__defaults__ or ())
-    return int(_ARITY.match(str(exception))["missing"])
+        given = int(match["given"])
+    elif code is None:
+        return None
+    else:
+        given = code.co_argcount - len(found.function.__defaults__ or ()) - int(match["missing"])
+    condition = SimpleProgramError("invalid number of arguments: ~S", given)
+    if code is not None:
+        wanted = code.co_argcount
+        optional = len(found.function.__defaults__ or ())
+        count = f"{wanted - optional} to {wanted}" if optional else str(wanted)
+        condition.hint = f"{shown(found)} takes {count} argument{'s' if count != '1' else ''}."
+    return condition
 
 
 def condition_for(exception):
@@ -400,11 +404,7 @@ def condition_for(exception):
     if isinstance(exception, RecursionError):
         return StorageCondition("Control stack exhausted: a function calls itself too deeply, perhaps without end.")
     if isinstance(exception, TypeError):
-        given = _argument_count(exception)
-        if given is not None:
-            return SimpleProgramError("invalid number of arguments: ~S", given)
+        wrong = _wrong_argument_count(exception)
+        if wrong is not None:
+            return wrong
     return PythonError(exception)
-
-
-def string_of(designator):
-    return string_designator(designator)

@@ -352,8 +352,6 @@ def type_error(datum, expected, context=""):
 
 def unbound_variable(symbol):
     """Signal that ``symbol`` has no value. Restarts: CONTINUE (look again), USE-VALUE, STORE-VALUE; returns the value."""
-    name = printed(symbol)
-
     def again():
         return symbol.value if symbol.value is not UNBOUND else unbound_variable(symbol)
 
@@ -361,7 +359,7 @@ def unbound_variable(symbol):
         symbol.value = value
         return value
 
-    return restart_case([(sym("CONTINUE"), again, f"Retry using {name}."),
+    return restart_case([(sym("CONTINUE"), again, lambda: f"Retry using {types.shown(symbol)}."),
                          (sym("USE-VALUE"), lambda value: value, "Use specified value.", _ask_value),
                          (sym("STORE-VALUE"), store, "Set specified value and use it.", _ask_value)],
                         lambda: error(types.UnboundVariable(symbol)))
@@ -378,7 +376,7 @@ def undefined_function(symbol, arguments, keywords):
     def use(function):
         return (function.function if isinstance(function, Symbol) else function)(*arguments, **keywords)
 
-    return restart_case([(sym("CONTINUE"), again, f"Retry calling {printed(symbol)}."),
+    return restart_case([(sym("CONTINUE"), again, lambda: f"Retry calling {types.shown(symbol)}."),
                          (sym("USE-VALUE"), use, "Call specified function.", _ask_value),
                          (sym("RETURN-VALUE"), lambda *values: _values(values), "Return specified values.", _ask_value),
                          (sym("RETURN-NOTHING"), lambda: _values(()), "Return zero values.")],

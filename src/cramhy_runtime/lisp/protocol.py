@@ -322,3 +322,6 @@ def ensure_class(name, *, direct_superclasses=None, direct_slots=None, **others)
     from .class_definition import define_class
 
     return define_class(name, direct_superclasses, direct_slots)
+
+
+from . import clos_printing  # noqa: E402, F401  registers how classes, generic functions and methods print

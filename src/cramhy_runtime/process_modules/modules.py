@@ -190,7 +190,7 @@ class ProcessModule(AbstractProcessModule):
 
     def _call_body(self, body, request):
         task = current_task()
-        task.path = None
+        task.path = task.node = None
         if on_process_module_started:
             on_process_module_started(self, request.input)
         if PM_DEBUGGER_HOOK.value is None:

@@ -1,11 +1,11 @@
-"""What the macros of ``hy_src/cramhy/prolog.hy`` and ``cut.hy`` expand into."""
+"""What the macros of ``hy_src/cramhy/prolog.hy`` and ``cut.hy`` call, as functions of the package CRAMHY."""
 
 from __future__ import annotations
 
 from cramhy_runtime.lisp.data import list_from, python_list
 from cramhy_runtime.lisp.faces import define_face
 
-from . import facts, lazy_lists, patterns
+from . import facts, lazy_lists, natives, patterns, rete
 
 
 class FactCollector:
@@ -56,7 +56,18 @@ def values_of_pattern(pattern, sequence, variables):
     return patterns.with_pat_vars_bound(pattern, sequence, lambda value: list_from([value(each) for each in python_list(variables)]))
 
 
+def with_productions(productions, body):
+    """``productions``: a list of lists (name pattern...)."""
+    return rete.with_productions([(production.car, production.cdr) for production in python_list(productions)], body)
+
+
+def with_production_handlers(handlers, body):
+    return rete.with_production_handlers([tuple(python_list(handler)) for handler in python_list(handlers)], body)
+
+
 define_face("CRAMHY", functions={
+    "define-prolog-handler": natives.define_handler, "with-productions": with_productions,
+    "with-production-handlers": with_production_handlers,
     "fact-collector": fact_collector, "collect-fact": collect_fact, "finish-fact-group": finish_fact_group,
     "fact-outside-group": fact_outside_group, "lazy-list-of": lazy_list_of, "lazy-environment": lazy_environment,
     "delay-thunk": lazy_lists.delay, "lazy-dolist": lazy_lists.lazy_dolist, "values-of-variables": values_of_variables,

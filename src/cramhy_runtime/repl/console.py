@@ -101,6 +101,7 @@ class Console:
             return 1
         handle_interrupts()
         conditions.install_debugger(self.debug)
+        streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT  # warnings belong to the transcript
         try:
             while True:
                 text = self.read_text(self.session.prompt())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..lisp.data import Symbol, list_from, python_list, truth
+from ..lisp.data import Symbol, python_list, truth
 from ..lisp.faces import define_face
 from ..lisp.packages import symbol_name
 from . import logging, message_building, node, services, time, topics, utilities
@@ -104,5 +104,3 @@ define_face(
         "call-named-service": call_named_service,
     },
 )
-
-__all__ = ["list_from"]
