@@ -41,3 +41,17 @@ def boot():
     importer.install()
     kernel.describe_frame = places_in_source.describe_frame
     evaluator.PACKAGE.value = COMMON_LISP_USER
+
+
+def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, turtlesim=True):
+    """Start a kernel with an image: nothing runs, the random numbers begin anew, the simulator waits for the first node."""
+    from cramhy_runtime import kernel
+
+    kernel.start(clock=clock, backend=backend, seed=seed, time_limit=time_limit)
+    boot()
+    from cramhy_runtime.lisp.random_state import seed_random
+    from cramhy_runtime.turtlesim.node import start_with_first_node
+
+    seed_random(0 if seed is None else seed)
+    if turtlesim:
+        start_with_first_node()

@@ -4,9 +4,10 @@ import pytest
 
 from cramhy_runtime import image, kernel
 
+image.boot()
+
 
 @pytest.fixture(params=["threads", "greenlet"], autouse=True)
 def fresh_kernel(request):
-    image.boot()
     yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
     kernel.stop()

@@ -20,7 +20,8 @@ timer, so the virtual clock jumps there. The wall clock is the same with a pace-
 
 Where the parts are:
 
-* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at
+* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `outside`
+  other threads and calls that block
 * `tasks`      a task, its end, the request to end
 * `timers`, `clocks`, `budget` (what checkpoints count), `reports` (what people read), `errors`
 * `backends`   stacks: threads of the operating system, or greenlets

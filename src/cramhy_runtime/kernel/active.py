@@ -61,8 +61,8 @@ def _none():
 
 def checkpoint():
     """Named in every loop's back edge: counts, and now and then lets others run or raises a request to end."""
-    budget.left -= 1
-    if budget.left < 0:
+    budget.left = left = budget.left - 1
+    if left < 0:
         if _active is None:
             budget.left = SLICE
         else:

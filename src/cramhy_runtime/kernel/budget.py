@@ -1,4 +1,4 @@
-"""The slice: how many checkpoints a task may pass before others get a turn.
+"""What is left to the task that runs: checkpoints until others get a turn, and room on its stack.
 
 Erlang counts reductions, we count checkpoints. The count, and never the wall clock, decides when a busy task is
 preempted, so the order of a run depends on the program alone (law 5). There is one counter for the process, because
@@ -20,3 +20,10 @@ class Budget:
 
 
 budget = Budget()
+
+# A task that is out of stack must learn of it before it touches the queue, for a half-done hand-over is a lost task.
+# `isinstance` goes down one level of Python's recursion limit for each level of its tuple, in a few nanoseconds.
+HEADROOM = 100  # levels that a hand-over and modest callbacks need
+STAIRS = int
+for _ in range(HEADROOM):
+    STAIRS = (STAIRS,)

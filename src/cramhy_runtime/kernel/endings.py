@@ -174,20 +174,3 @@ class Endings:
     def frame_of(self, task):
         """The innermost Python frame of a task that waits, or None."""
         return None if task.carrier is None else self.backend.frame(task.carrier)
-
-
-class OutsideSource:
-    """See `Kernel.outside_source`. Counts by messages, since it may be opened and closed in any thread."""
-
-    __slots__ = ("_kernel",)
-
-    def __init__(self, kernel):
-        self._kernel = kernel
-
-    def __enter__(self):
-        self._kernel.post(lambda: self._kernel.count_outside(1))
-        return self
-
-    def __exit__(self, *_):
-        self._kernel.post(lambda: self._kernel.count_outside(-1))
-        return False

@@ -22,26 +22,20 @@ from collections import deque
 
 from . import reports
 from .backends import NoStack, make_backend
-from .budget import SLICE, budget
+from .budget import SLICE, STAIRS, budget
 from .clocks import Bell, make_clock
-from .endings import PATIENCE, Endings, OutsideSource
+from .endings import PATIENCE, Endings
 from .errors import Deadlock, Interrupted, KernelError, TimeLimit
-from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
+from .outside import Outside
+from .tasks import DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
 from .timers import CALLBACK, TimerHeap
 
 ROUND = 0.005  # s of virtual time that pass when every runnable task used up its slice
 STEPS_PER_INSTANT = 100_000  # hand-overs at one instant, after which time passes all the same
 INFINITY = float("inf")
 
-# A task that is out of stack must learn of it before it touches the queue, for a half-done hand-over is a lost task.
-# `isinstance` goes down one level of Python's recursion limit for each level of its tuple, in a few nanoseconds.
-HEADROOM = 100  # levels that a hand-over and modest callbacks need
-_stairs = int
-for _ in range(HEADROOM):
-    _stairs = (_stairs,)
 
-
-class Kernel(Endings):
+class Kernel(Endings, Outside):
     """A set of tasks with their clock. Made by `kernel.start`; the module's functions act on the one that is active."""
 
     def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
@@ -122,7 +116,7 @@ class Kernel(Endings):
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, _stairs)
+        isinstance(None, STAIRS)
         if me.carrier.ident != get_ident():
             self._refuse("wait")
         me.why = why
@@ -184,7 +178,7 @@ class Kernel(Endings):
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, _stairs)
+        isinstance(None, STAIRS)
         if me.carrier.ident != get_ident():
             self._refuse("yield")
         self._enqueue(me)
@@ -206,7 +200,7 @@ class Kernel(Endings):
             return
         if me.attention:
             me.deliver()
-        isinstance(None, _stairs)
+        isinstance(None, STAIRS)
         me.state = RUNNABLE
         me.preempted = True
         self._queue.append(me)
@@ -224,7 +218,7 @@ class Kernel(Endings):
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, _stairs)
+        isinstance(None, STAIRS)
         if me.carrier.ident != get_ident():
             self._refuse("settle")
         me.state = SETTLING
@@ -400,7 +394,7 @@ class Kernel(Endings):
         self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
         self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
 
-    # ------------------------------------------------------------------ timers and messages
+    # ------------------------------------------------------------------ timers
 
     def call_at(self, time, fn):
         """Call FN in the scheduler when the clock reaches TIME (s). FN must not park. Returns the Timer."""
@@ -445,73 +439,3 @@ class Kernel(Endings):
             pass  # meant for the main task, which gets its own
         except BaseException as exception:
             self._report(self._scheduler, exception)
-
-    def post(self, fn):
-        """Have FN called in the scheduler, soon. Safe from any thread and from signal handlers. FN must not park."""
-        self._inbox.append(fn)
-        self._bell.ring()
-
-    def _read_inbox(self):
-        inbox = self._inbox
-        for _ in range(len(inbox)):
-            self._call(inbox.popleft())
-
-    def outside_source(self):
-        """A context manager: while it is open, messages may still come from outside, and waiting is no deadlock.
-
-        May be entered and left in any thread.
-        """
-        return OutsideSource(self)
-
-    def count_outside(self, difference):
-        self._outside += difference
-
-    # ------------------------------------------------------------------ calls that block
-
-    def run_blocking(self, fn, *args):
-        """Run FN(*ARGS) outside of the kernel and return what it returns. The baton goes round meanwhile.
-
-        In virtual time the clock stands still as long as such a call is out. A request to end the task is delivered
-        when FN has returned; an interrupt of the main task breaks FN off, if it comes from a signal handler or if FN
-        runs in a helper thread (which then goes on for nothing).
-        """
-        me = self.current
-        if me.attention:
-            me.deliver()
-        isinstance(None, _stairs)
-        if me.carrier.ident != get_ident():
-            self._refuse("start a blocking call")
-        me.why = lambda: f"the call {getattr(fn, '__name__', fn)!s} outside of the kernel"
-        dynamic = me.dynamic
-        if dynamic is not None:
-            dynamic.leave()
-        try:
-            return self.backend.run_blocking(self, me, lambda: fn(*args))
-        finally:
-            me.state = RUNNING
-            self.current = me
-            budget.left = SLICE
-            if dynamic is not None:
-                dynamic.enter()
-            if me.attention:
-                me.deliver()
-
-    def leave(self, task):
-        """TASK goes outside. Returns the number of this visit, which `comes_back` takes."""
-        self.current = self._scheduler
-        task.state = BLOCKED
-        self._blocking += 1
-        return task.ticket
-
-    def comes_back(self, task, visit=None):
-        """TASK is back from outside, unless it was called back before (then VISIT is an old one)."""
-        if task.state is BLOCKED and (visit is None or visit == task.ticket):
-            task.ticket += 1
-            self._blocking -= 1
-            self._enqueue(task)
-
-    def nothing_can_happen(self):
-        """True if no task could run and no time could pass while the current task is outside."""
-        entries = self._timers.entries
-        due = entries and entries[0][0] <= self.clock.now()
-        return self.clock.virtual and not (self._queue or self._inbox or self._outside or self._blocking or due)

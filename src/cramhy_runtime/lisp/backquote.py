@@ -16,6 +16,7 @@ for _name in ("SB-INT", "CRAMHY"):
     if find_package(_name) is None:
         register(Package(_name))
 QUASIQUOTE = intern("QUASIQUOTE", "SB-INT")
+find_package("SB-INT").export(QUASIQUOTE)
 MAKE_COMMA, MAKE_COMMAS, LIST_VECTOR = [intern(name, "CRAMHY") for name in ("MAKE-COMMA", "MAKE-COMMAS", "LIST-VECTOR")]
 
 QUOTE, LIST, LIST_STAR, APPEND, NCONC = sym("QUOTE"), sym("LIST"), sym("LIST*"), sym("APPEND"), sym("NCONC")

@@ -94,12 +94,11 @@ def _compute_mro(cls):
         result.append(base)
     result.pop()  # object, which is T, comes last
     if not issubclass(cls, type):
-        if issubclass(cls, Condition):
-            pass
-        elif _standard_object not in result and any("lisp_name" in vars(base) for base in result) and not _is_structure(cls):
-            result.append(_standard_object)
         if "__call__" in _attributes_of(cls):
             result += [CLASSES["COMPILED-FUNCTION"], CLASSES["FUNCTION"]]
+        named = any("lisp_name" in vars(base) for base in result)
+        if named and _standard_object not in result and not issubclass(cls, Condition) and not _is_structure(cls):
+            result.append(_standard_object)
     return [*result, object]
 
 

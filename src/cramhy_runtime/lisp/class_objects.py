@@ -147,7 +147,7 @@ class StandardObject(metaclass=StandardClass):
 builtin_classes.set_standard_object(StandardObject)
 
 
-# ------------------------------------------------------------------------------------------------------------ slots of a class
+# ------------------------------------------------------------------------------------------------------ slots of a class
 
 _slots: dict = {}
 _watchers = []

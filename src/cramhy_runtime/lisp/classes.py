@@ -159,6 +159,8 @@ def class_name(cls):
     """``cl:class-name``: the Symbol that names ``cls``; for a Python class without a Lisp name that of its nearest superclass."""
     if cls is object:
         return True
+    if cls is type:
+        return sym("CLASS")
     for base in lisp_mro(cls):
         own = vars(base)
         if "lisp_symbol" in own:
@@ -176,7 +178,7 @@ def named(lisp_name):
     if package.startswith("SB-"):
         home = find_package(package) or register_package(Package(package))
         symbol = home.intern(name)
-        if package in _EXPORTING or name == "CLASS-NOT-FOUND-ERROR":
+        if package in _EXPORTING or name in ("CLASS-NOT-FOUND-ERROR", "SYSTEM-CLASS"):
             home.export(symbol)
         return symbol
     if package and find_package(package) is None:
@@ -199,9 +201,17 @@ class StructureClass(type):
     """The metaclass of classes made by ``defstruct``. Python code makes instances with keywords: ``TurtleMotion(speed=5)``."""
 
     lisp_name = "STRUCTURE-CLASS"
+    names = ("HASH-TABLE", "PACKAGE", "RANDOM-STATE", "READTABLE", "RESTART")  # system classes that are structures in SBCL
 
     def __call__(cls, *initargs, **keywords):
         return cls.lisp_structure.construct(*initargs, **keywords)
+
+
+class SystemClass(type):
+    """The metaclass that SBCL shows for the system classes users may add to."""
+
+    lisp_name = "SB-PCL::SYSTEM-CLASS"
+    names = ("T", "FUNCTION", "SEQUENCE", "STREAM")
 
 
 class ForwardReferencedClass(StandardClass):
@@ -215,7 +225,10 @@ def metaclass_of(cls):
     if vars(cls).get("lisp_forward_reference"):
         return ForwardReferencedClass
     if isinstance(cls, BuiltInClass) or cls is object:
-        return BuiltInClass
+        name = "T" if cls is object else vars(cls)["lisp_name"]
+        return SystemClass if name in SystemClass.names else StructureClass if name in StructureClass.names else BuiltInClass
+    if cls is type:
+        return StandardClass
     if issubclass(cls, Condition):
         return ConditionClass
     if isinstance(cls, StructureClass):

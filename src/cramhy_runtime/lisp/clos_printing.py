@@ -26,7 +26,7 @@ def name_text(name):
 def print_class(cls, stream):
     """``#<STANDARD-CLASS TUT::TURTLE>``; a Python class without a Lisp name prints as Python shows it."""
     kind = metaclass_of(cls)
-    if cls is not object and not _is_lisp(cls):
+    if cls not in (object, type) and not _is_lisp(cls):
         return print_unreadable(cls, stream, "PYTHON " + repr(cls))
 
     def contents():

@@ -11,11 +11,11 @@ import re
 
 from . import tokens
 from .backquote import Comma
-from .conditions import Condition, error, style_warn
-from .data import Character, Cons, Keyword, MultipleValues, NO_VALUES, Symbol, list_from, lisp_list, one, truth
+from .conditions import Condition, style_warn
+from .data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
 from .packages import KEYWORD, is_symbol, keyword, sym, symbol_name
-from .reader import FUNCTION, NOTHING, PACKAGE, SUPPRESS, as_reader
-from .reader_errors import SimpleReaderError, fail, place
+from .reader import FUNCTION, PACKAGE, SUPPRESS, as_reader
+from .reader_errors import fail, place
 from .readtables import READTABLE, call
 
 READ_EVAL = sym("*READ-EVAL*")
@@ -40,6 +40,9 @@ def dispatch(table, stream, character):
         return reader.ended("inside dispatch character")
     function = table.functions.get(char.upper())
     if function is None:
+        if _suppressed() and char not in "<)":
+            _constituents(reader)
+            return None
         if char in "<) \t\n\f\r":
             hint = "What prints as #<...> cannot be read back." if char == "<" else None
             return fail(reader, start, "illegal sharp macro character: ~S", Character(char), hint=hint)

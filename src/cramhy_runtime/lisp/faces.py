@@ -15,7 +15,7 @@ import keyword as python_keywords
 import sys
 
 from .data import Keyword, Symbol, UNBOUND
-from .packages import KEYWORD, Package, find_package, find_package_or_error, intern, keyword, register
+from .packages import Package, find_package, find_package_or_error, intern, keyword, register
 
 
 def python_name(name):
@@ -153,24 +153,19 @@ def lisp_function(designator):
     return define
 
 
-def attribute_symbol(package, attribute):
-    """The symbol of ``package`` that Python code means by ``attribute``, or ``None``.
+def attribute_symbols(package, attribute):
+    """The symbols visible in ``package`` that Python code may mean by ``attribute``, its own before inherited ones.
 
-    ``drive`` is DRIVE; ``turtle_pose`` is TURTLE-POSE or, when only that exists, the special *TURTLE-POSE*.
+    ``drive`` is DRIVE; ``turtle_pose`` is TURTLE-POSE or the special *TURTLE-POSE*.
     """
     package = find_package(package)
+    tables = [package.internal, package.external, *(other.external for other in package.use)]
+    size = sum(map(len, tables))
     index = package.__dict__.get("_attributes")
-    if index is None or index[0] != len(package.internal) + len(package.external):
-        table = {}
-        for source in (package.internal, package.external):
-            for name in source:
-                table.setdefault(python_name(name), []).append(name)
-        index = package._attributes = (len(package.internal) + len(package.external), table)
-    names = index[1].get(attribute)
-    if not names:
-        return None
-    return [package.intern(name) for name in names]
-
-
-def package_for_keyword(name):
-    return KEYWORD.intern(name)
+    if index is None or index[0] != size:
+        names = {}
+        for table in tables:
+            for name, symbol in table.items():
+                names.setdefault(python_name(name), []).append(symbol)
+        index = package._attributes = (size, names)
+    return index[1].get(attribute, ())

@@ -107,7 +107,13 @@ def _key_name(item):
     return item if isinstance(item, Keyword) else keyword(symbol_name(item))
 
 
-class Method:
+class MethodObject:
+    """METHOD: the root of the classes of methods."""
+
+    lisp_name = "METHOD"
+
+
+class Method(MethodObject):
     """One method. ``specializers`` are classes and `EqlSpecializer`; ``per_class``: ``function`` makes the function per classes."""
 
     lisp_name = "STANDARD-METHOD"
@@ -137,7 +143,13 @@ class Method:
         return self.function(classes) if self.per_class else self.function
 
 
-class GenericFunction:
+class FunctionObject:
+    """GENERIC-FUNCTION: the root of the classes of generic functions."""
+
+    lisp_name = "GENERIC-FUNCTION"
+
+
+class GenericFunction(FunctionObject):
     """A generic function. Calls are in the subclasses; an instance changes its class when its way of dispatching changes."""
 
     lisp_name = "STANDARD-GENERIC-FUNCTION"
@@ -201,15 +213,35 @@ class GenericFunction:
                    if method.specializers[index].__class__ is EqlSpecializer)
 
     def _by_value(self, positions):
-        table: dict = {}
-        known = [self.eql_keys[index] for index in positions]
+        """The dispatch on the values at ``positions``, where (eql x) methods exist. The classes there are fixed already."""
+        if len(positions) > 1:
+            return self._by_values(positions)
+        index, = positions
+        known, table = self.eql_keys[index], {}
 
         def dispatch(*arguments, **keywords):
-            key = []
-            for index, keys in zip(positions, known):
-                value = eql_key(arguments[index])
-                key.append((value.__class__, value) if value in keys else None)
-            key = tuple(key)
+            key = eql_key(arguments[index])
+            effective = table.get(key)
+            if effective is None:
+                key = key if key in known else known_as_other
+                effective = table.get(key)
+                if effective is None:
+                    effective = self.effective_function(arguments)
+                    if effective is None:
+                        return no_applicable_method(self, arguments)
+                    table[key] = effective
+            return effective(*arguments, **keywords)
+
+        known_as_other = ("any other value",)
+        return dispatch
+
+    def _by_values(self, positions):
+        table: dict = {}
+        known = [(index, self.eql_keys[index]) for index in positions]
+
+        def dispatch(*arguments, **keywords):
+            key = tuple([value if value in keys else None for value, keys in
+                         [(eql_key(arguments[index]), keys) for index, keys in known]])
             effective = table.get(key)
             if effective is None:
                 effective = self.effective_function(arguments)
@@ -476,7 +508,7 @@ def specializer_of(designator):
     return find_class_or_error(designator)
 
 
-def define_method(name, qualifiers, specializers, lambda_list, function, uses_next=True, *, documentation=None):
+def define_method(name, qualifiers, specializers, lambda_list, function, *, uses_next=True, documentation=None):
     """``defmethod``: add a method to the generic function ``name``, which is made if there is none; returns the method.
 
     name: a Symbol or ``(setf symbol)``. qualifiers: a list. specializers: a list with one entry per required parameter: a

@@ -14,8 +14,8 @@ import types
 
 from . import systems
 from .data import Symbol, UNBOUND, UndefinedFunction
-from .faces import attribute_symbol, python_name
-from .packages import Package, all_packages, find_package
+from .faces import attribute_symbols, python_name
+from .packages import all_packages, find_package
 
 
 class PackageModule(types.ModuleType):
@@ -25,7 +25,7 @@ class PackageModule(types.ModuleType):
         package = self.__dict__.get("lisp_package")
         if package is None or name.startswith("__"):
             raise AttributeError(name)
-        for symbol in attribute_symbol(package, name) or ():
+        for symbol in attribute_symbols(package, name):
             if isinstance(symbol, Symbol):
                 if not isinstance(symbol.function, UndefinedFunction):
                     return symbol.function
@@ -35,7 +35,7 @@ class PackageModule(types.ModuleType):
 
     def __setattr__(self, name, value):
         package = self.__dict__.get("lisp_package")
-        for symbol in (attribute_symbol(package, name) if package is not None else None) or ():
+        for symbol in attribute_symbols(package, name) if package is not None else ():
             if isinstance(symbol, Symbol) and symbol.special:
                 symbol.value = value
                 return
@@ -90,5 +90,3 @@ def install():
     if not any(isinstance(finder, SystemFinder) for finder in sys.meta_path):
         sys.meta_path.append(SystemFinder())
 
-
-__all__ = ["Package", "PackageModule", "install"]

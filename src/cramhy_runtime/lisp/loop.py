@@ -169,14 +169,7 @@ def _initially(loop, keyword):
 
 def _finally(loop, keyword):
     _top_level_only(loop, keyword)
-    tokens = loop.tokens
-    if tokens and tokens.next_is("RETURN"):
-        tokens.take()
-        loop.epilogue.append(loop.leave(tokens.form()))
-        return
-    if tokens and tokens.next_is("DO", "DOING"):
-        tokens.take()
-    loop.epilogue.extend(tokens.compound_forms())
+    loop.epilogue.extend(loop.tokens.compound_forms())
 
 
 def _named(loop, keyword):

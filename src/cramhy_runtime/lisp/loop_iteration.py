@@ -139,17 +139,18 @@ def for_clause(loop, keyword):
         reader = _READERS.get(word)
         if reader is None:
             tokens.fail("~A is an unknown keyword in FOR or AS clause in LOOP.", word,
-                        hint="After the variable comes IN, ON, ACROSS, =, FROM or BEING.")
+                        hint="After AND the next variable follows directly, without FOR." if _is_for(pattern) and iterations else
+                        "After the variable comes IN, ON, ACROSS, =, FROM or BEING.")
         iterations.append((variables, reader(loop, pattern, declared, word)))
         if not tokens.next_is("AND"):
             break
         tokens.take()
-    if loop.body_begun:
-        from .conditions import style_warn
-
-        style_warn("iteration in LOOP follows body code")
     _bind(loop, iterations)
     add_turns(loop, [iteration for _, iteration in iterations])
+
+
+def _is_for(pattern):
+    return is_symbol(pattern) and symbol_name(pattern) in ("FOR", "AS")
 
 
 def _bind(loop, iterations):

@@ -24,6 +24,8 @@ def collect(tail, item):
 
 def collect_append(tail, items):
     """Add a copy of the list ``items`` behind the cell ``tail``; the new last cell."""
+    if items is not None and not isinstance(items, Cons):
+        return type_error(items, "LIST", "\nwhen binding LIST")
     while isinstance(items, Cons):
         cell = tail.cdr = Cons(items.car)
         tail, items = cell, items.cdr

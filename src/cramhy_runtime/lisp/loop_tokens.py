@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from .condition_types import SimpleProgramError
 from .conditions import error
-from .data import Cons, DoubleFloat
+from .data import Cons, DoubleFloat, list_from
 from .packages import is_symbol, near_names, symbol_name
 
 NOTHING = object()
@@ -73,7 +73,9 @@ class Tokens:
         """The compound forms up to the next keyword; at least one."""
         forms = [self.form()]
         if not isinstance(forms[0], Cons):
-            self.fail("A compound form was expected, but ~S found.", forms[0])
+            hint = "A value is returned with FINALLY (RETURN value)." if is_symbol(forms[0]) and symbol_name(forms[0]) == "RETURN" \
+                else "Forms are lists here: (print x)."
+            self.fail("A compound form was expected, but ~S found.", forms[0], hint=hint)
         while self and isinstance(self.peek(), Cons):
             forms.append(self.take())
         return forms
@@ -92,7 +94,7 @@ class Tokens:
     def fail(self, control, *arguments, hint=None):
         """Signal that the loop is malformed."""
         context = self.items[self.start:self.index]
-        condition = SimpleProgramError(control + "~%current LOOP context:~{ ~S~}.", *arguments, _context_list(context))
+        condition = SimpleProgramError(control + "~%current LOOP context:~{ ~S~}.", *arguments, list_from(context))
         condition.hint = hint
         error(condition)
 
@@ -102,12 +104,6 @@ class Tokens:
         if self:
             self.index += 1
         self.fail("unknown LOOP keyword: ~A", keyword, hint=f"Did you mean {' or '.join(near)}?" if near else None)
-
-
-def _context_list(items):
-    from .data import list_from
-
-    return list_from(items)
 
 
 def zero(type_specifier):

@@ -69,6 +69,7 @@ def _step(method, classes, following):
 class Combination:
     """The standard method combination, and the interface of all others."""
 
+    lisp_name = "METHOD-COMBINATION"
     accepts_none = False
 
     def __init__(self, name):
@@ -237,8 +238,6 @@ class HookCombination(Combination):
 
 class LongCombination(Combination):
     """The long form: ``groups`` sort the methods, ``expand`` computes the form that runs them."""
-
-    accepts_none = True
 
     def __init__(self, name, groups, expand):
         super().__init__(name)

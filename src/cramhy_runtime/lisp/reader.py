@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from . import reader_errors, tokens
 from .backquote import QUASIQUOTE, Comma
-from .data import Character, Cons, MultipleValues, NO_VALUES, UNBOUND, one
+from .data import NO_VALUES, UNBOUND, Character, Cons, MultipleValues, one
 from .packages import COMMON_LISP_USER, KEYWORD, find_package, sym
 from .reader_errors import LineIndex, QuietEnd, QuietFailure, fail
 from .readtables import READTABLE, STANDARD, UPCASE, DispatchTable, call
@@ -260,10 +260,14 @@ class Reader(InputStream):
         elif tail is _DOT:
             return fail(self, close, "Nothing appears after . in list.", hint="A dotted pair is (a . b).")
         elif isinstance(tail, Comma) and tail.splicing:
-            return fail(self, start, "~A contains a splicing comma after a dot", self.text[start:close + 1],
+            for item in reversed(items):
+                tail = Cons(item, tail)
+            return fail(self, start, "~S contains a splicing comma after a dot", tail,
                         hint="After a dot write , instead of ,@.")
         for item in reversed(items):
             tail = Cons(item, tail)
+        if SUPPRESS.value is not None:
+            return None
         if tail is not None:
             self.remember(tail, start)
         return tail
@@ -296,7 +300,7 @@ class Reader(InputStream):
         if symbol is QUASIQUOTE:
             self.backquotes -= 1
             if isinstance(found, Comma) and found.splicing:
-                return fail(self, start, "~A is not a well-formed backquote expression", self.text[start:self.offset],
+                return fail(self, start, "~S is not a well-formed backquote expression", Cons(symbol, Cons(found)),
                             hint=f"{found.kind} splices into a list, so it must stand in one: `({found.kind}x).")
         form = Cons(symbol, Cons(found))
         self.remember(form, start)

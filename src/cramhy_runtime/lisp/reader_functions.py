@@ -10,19 +10,12 @@ from .dispatch_macros import FEATURES, READ_EVAL
 from .reader import NOTHING, PACKAGE, SUPPRESS, Reader, StreamReader, as_reader
 from .readtables import (  # noqa: F401  functions of this room
     LISP_NAMES as READTABLE_NAMES,
-    READTABLE,
-    SETTERS,
-    copy_readtable,
-    get_dispatch_macro_character,
-    get_macro_character,
-    make_dispatch_macro_character,
-    readtable_case,
-    readtablep,
-    set_dispatch_macro_character,
-    set_macro_character,
-    set_syntax_from_char,
 )
-from .tokens import FLOAT_FORMAT, LISP_NAMES as TOKEN_NAMES, READ_BASE, bounds, parse_integer  # noqa: F401
+from .readtables import (
+    READTABLE,
+)
+from .tokens import FLOAT_FORMAT, READ_BASE, bounds, parse_integer  # noqa: F401
+from .tokens import LISP_NAMES as TOKEN_NAMES
 
 
 class StringReader(Reader):

@@ -14,7 +14,7 @@ from .class_objects import effective_slots, find_slot, when_classes_change
 from .classes import class_of
 from .condition_types import shown
 from .conditions import CellError, Condition, SimpleError, UnboundSlot, error, restart_case, type_error
-from .data import UNBOUND, Symbol, boolean, list_from
+from .data import UNBOUND, Symbol, boolean, list_from, one, truth
 from .packages import sym, symbol_name
 
 LISP_NAMES = "slot-value slot-boundp slot-makunbound slot-exists-p"
@@ -109,7 +109,7 @@ def slot_boundp(object, slot_name):
     """``cl:slot-boundp``"""
     attribute = _attribute(object, slot_name)
     if attribute is None:
-        return missing_slot(object, slot_name, "SLOT-BOUNDP", "test to see whether slot is bound (SLOT-BOUNDP)")
+        return boolean(truth(one(missing_slot(object, slot_name, "SLOT-BOUNDP", "test to see whether slot is bound (SLOT-BOUNDP)"))))
     return boolean(_bound(object, attribute))
 
 

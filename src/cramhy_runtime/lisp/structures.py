@@ -66,7 +66,7 @@ class Structure:
         self.name, self.slots, self.include = name, slots, include
         self.representation, self.named, self.offset = representation, named, offset
         self.cls = None
-        self.fields = ()
+        self.fields = self.recipe = ()
 
     def slot(self, name):
         """The slot named by the symbol ``name`` or by an equally named one; ``None`` when there is none."""
@@ -83,6 +83,7 @@ class Structure:
             slot.predicate = None if slot.type is True else type_predicate(slot.type)
         if self.cls is not None:
             self.fields = tuple((getattr(self.cls, slot.attribute).__set__, slot) for slot in self.slots)
+            self.recipe = tuple((set_slot, slot.keyword, slot.initform, slot.predicate, slot) for set_slot, slot in self.fields)
 
     def construct(self, *initargs, **keywords):
         """The keyword constructor. Python callers may use keywords."""
@@ -94,11 +95,26 @@ class Structure:
         for name, value in keywords.items():
             slot = next((slot for slot in self.slots if slot.attribute == name), None)
             given[slot.keyword if slot else keyword(name.upper())] = value
-        values = [slot.value_or_initform(given.pop(slot.keyword, UNSUPPLIED)) for slot in self.slots]
-        allowed = given.pop(ALLOW_OTHER_KEYS, None)
-        if given and allowed is None:
-            return program_error("Unknown &KEY argument: ~S", next(iter(given)))
-        return self.make(values)
+        if self.cls is None:
+            values = [slot.value_or_initform(given.pop(slot.keyword, UNSUPPLIED)) for slot in self.slots]
+            self._check_rest(given)
+            return self.make(values)
+        obj = object.__new__(self.cls)
+        for set_slot, key, initform, predicate, slot in self.recipe:
+            if key in given:
+                value = given.pop(key)
+            else:
+                value = one(initform()) if initform is not None else None
+            if predicate is not None and not predicate(value):
+                self.wrong_type(slot, value)
+            set_slot(obj, value)
+        if given:
+            self._check_rest(given)
+        return obj
+
+    def _check_rest(self, given):
+        if given.pop(ALLOW_OTHER_KEYS, None) is None and given:
+            program_error("Unknown &KEY argument: ~S", next(iter(given)))
 
     def make(self, values):
         """An instance with these slot values."""

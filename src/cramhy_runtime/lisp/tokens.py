@@ -203,15 +203,15 @@ def _ascii_digit(character):
 
 
 def _junk(text):
-    from .conditions import error
     from .condition_types import SimpleParseError
+    from .conditions import error
 
     return error(SimpleParseError("junk in string ~S", text))
 
 
 def _no_digits(text):
-    from .conditions import error
     from .condition_types import SimpleParseError
+    from .conditions import error
 
     return error(SimpleParseError("no digits in string ~S" if text.strip(WHITESPACE) else "no non-whitespace characters in string ~S.",
                                   text))

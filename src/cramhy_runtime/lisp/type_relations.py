@@ -29,7 +29,7 @@ _ARRAYS = {"ARRAY": (False, False, None), "SIMPLE-ARRAY": (True, False, None), "
            "SIMPLE-VECTOR": (True, True, True), "STRING": (False, True, "CHARACTER"), "SIMPLE-STRING": (True, True, "CHARACTER"),
            "BIT-VECTOR": (False, True, "BIT"), "SIMPLE-BIT-VECTOR": (True, True, "BIT")}
 _PARENTS = {"KEYWORD": "SYMBOL", "BASE-CHAR": "CHARACTER", "STANDARD-CHAR": "BASE-CHAR", "EXTENDED-CHAR": "CHARACTER",
-            "COMPILED-FUNCTION": "FUNCTION", "STANDARD-GENERIC-FUNCTION": "FUNCTION", "GENERIC-FUNCTION": "FUNCTION"}
+            "COMPILED-FUNCTION": "FUNCTION", "STANDARD-GENERIC-FUNCTION": "GENERIC-FUNCTION", "GENERIC-FUNCTION": "FUNCTION"}
 
 
 def subtypep(type_1, type_2, environment=None):
@@ -79,11 +79,14 @@ def _subtype(first, second):
     if isinstance(first, Cons) and isinstance(second, Cons) and same_specifier(first, second):
         return True
     if second is None:
-        return False if _inhabited(first) else None
+        inhabited = _inhabited(first)
+        return None if inhabited is None else not inhabited
     if not is_known_type(first) or not is_known_type(second):
         return None
     name, arguments = _parts(first)
     other, others = _parts(second)
+    if name == "AND" and not arguments:
+        return _subtype(True, second)
     if name == "OR":
         return _all(_subtype(argument, second) for argument in arguments)
     if other == "AND":
@@ -284,10 +287,11 @@ def _disjoint(first, second):
 
 
 def _inhabited(specifier):
+    """Whether there are objects of the type; ``None`` when that cannot be told."""
     name, arguments = _parts(expand_type(specifier))
     numeric = _numeric(name, arguments)
     if numeric is not None and numeric[1] is not None and numeric[3] is not None:
         return numeric[1] <= numeric[3]
-    return name not in ("SATISFIES", "AND")
-
-
+    if name == "OR":
+        return _any(_inhabited(argument) for argument in arguments)
+    return None if name in ("SATISFIES", "AND", "NOT") else specifier is not None

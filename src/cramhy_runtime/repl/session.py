@@ -11,10 +11,9 @@ import linecache
 import signal
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp import conditions, evaluator, random_state, systems
+from cramhy_runtime.lisp import conditions, evaluator, systems
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values
-from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
 from cramhy_runtime.lisp.places_in_source import exception_position, user_position
 
@@ -36,20 +35,13 @@ class Session:
     """
 
     def __init__(self, time="wall", seed=None, backend="threads", time_limit=None, turtlesim=True):
-        kernel.start(clock=time, backend=backend, seed=seed, time_limit=time_limit)
-        image.boot()
-        random_state.seed_random(0 if seed is None else seed)
+        image.fresh_start(time, backend, seed, time_limit, turtlesim)
         evaluator.PACKAGE.value = COMMON_LISP_USER
         for variables in (HISTORY, LAST_VALUES, LAST_FORMS):
             for variable in variables:
                 variable.value = None
         self.virtual = time == "virtual"
         self.texts = 0
-        if turtlesim:
-            from cramhy_runtime.ros import graph
-            from cramhy_runtime.turtlesim.node import start_turtlesim
-
-            graph.active().before_first_node.append(start_turtlesim)
 
     @property
     def package(self):
@@ -146,5 +138,3 @@ def handle_interrupts():
     """Make Ctrl-C end the running form, through its cleanup, instead of raising KeyboardInterrupt anywhere."""
     signal.signal(signal.SIGINT, lambda number, frame: kernel.interrupt())
 
-
-__all__ = ["Interruption", "Session", "binding", "condition_of", "handle_interrupts", "signalled_here"]

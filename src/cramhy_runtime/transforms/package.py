@@ -28,6 +28,7 @@ CL_TRANSFORMS = define_face(
                   "transpose-rot-matrix transpose-2d-matrix column-vectors->quaternion",
     },
     export="3d-vector quaternion pose twist wrench point gen-quaternion quaternion-coefficient",
+    internal="norm",
 )
 for _name in ("TRANSLATION", "ROTATION", "ORIGIN", "ORIENTATION"):
     CL_TRANSFORMS.intern(_name).setf_function = getattr(poses, f"set_{_name.lower()}")

@@ -1,10 +1,31 @@
-(defun sb-posix-getenv-x () (sb-ext:posix-getenv "ORACLE"))
-(setf *random-state* (sb-ext:seed-random-state 1))
-(defstruct foo a (b 2)) (defstruct bar) (defstruct (very-long-structure-name (:conc-name v-)) first-slot-name second-slot third)
-(defclass thing () ())
-(defun json (s) (with-output-to-string (o) (write-char #\" o) (loop for c across s do (case c (#\" (write-string "\\\"" o)) (#\\ (write-string "\\\\" o)) (#\Newline (write-string "\\n" o)) (t (if (or (< (char-code c) 32) (> (char-code c) 126)) (format o "\\u~4,'0x" (char-code c)) (write-char c o))))) (write-char #\" o)))
-(sb-ext:disable-debugger)
-(with-open-file (in (sb-posix-getenv-x))
- (loop for start = (file-position in) for form = (read in nil in) until (eq form in) do
-  (let ((r (handler-case (let ((v (eval form))) (if (stringp v) v (prin1-to-string v))) (error (e) (format nil "ERROR ~a" e)))))
-   (format t "[~a, ~a]~%" (json (string-trim '(#\Newline #\Space) (let ((end (file-position in)) (str (make-string 5000))) (file-position in start) (let ((n (read-sequence str in :end (- end start)))) (file-position in end) (subseq str 0 n))))) (json r)))))
+;;; Records what SBCL answers to the forms of a file, one JSON array [form, answer] per line:
+;;;     FORMS=forms.lisp sbcl --script record.lisp > answers.jsonl
+;;; The answer is the string that the form returns, or its printed value, or "ERROR " and the report of the error.
+(defun json (text)
+  (with-output-to-string (out)
+    (write-char #\" out)
+    (loop for char across text
+          do (case char
+               (#\" (write-string "\\\"" out))
+               (#\\ (write-string "\\\\" out))
+               (#\Newline (write-string "\\n" out))
+               (t (if (<= 32 (char-code char) 126)
+                      (write-char char out)
+                      (format out "\\u~4,'0x" (char-code char))))))
+    (write-char #\" out)))
+
+(defun answer (form)
+  (handler-case (let ((value (eval form)))
+                  (if (stringp value) value (prin1-to-string value)))
+    (error (condition) (format nil "ERROR ~a" condition))))
+
+(with-open-file (in (sb-ext:posix-getenv "FORMS"))
+  (loop for start = (file-position in)
+        for form = (read in nil in)
+        for end = (file-position in)
+        until (eq form in)
+        do (let ((text (make-string (- end start))))
+             (file-position in start)
+             (read-sequence text in)
+             (file-position in end)
+             (format t "[~a, ~a]~%" (json (string-trim '(#\Newline #\Space) text)) (json (answer form))))))

@@ -1,0 +1,107 @@
+"""The world outside of the kernel: messages that come in, and calls that block.
+
+Outside threads (bridges, servers, a helper that waits for a socket) never touch tasks. They put a function into the inbox,
+and whoever looks for the next task calls it, with the baton. A task that has to block goes outside itself: it gives the
+baton away, blocks, and comes back by a message.
+
+In virtual time the clock stands still as long as a task is outside, for nobody can say how much virtual time its call
+takes. A source that only may send messages (`outside_source`) does not hold the clock, but waiting for it is no deadlock.
+"""
+
+from _thread import get_ident
+
+from .budget import SLICE, STAIRS, budget
+from .tasks import BLOCKED, RUNNING
+
+
+class Outside:
+    """The part of the kernel that deals with other threads."""
+
+    # ------------------------------------------------------------------ messages
+
+    def post(self, fn):
+        """Have FN called in the scheduler, soon. Safe from any thread and from signal handlers. FN must not park."""
+        self._inbox.append(fn)
+        self._bell.ring()
+
+    def _read_inbox(self):
+        inbox = self._inbox
+        for _ in range(len(inbox)):
+            self._call(inbox.popleft())
+
+    def outside_source(self):
+        """A context manager: while it is open, messages may still come from outside, and waiting is no deadlock.
+
+        May be entered and left in any thread.
+        """
+        return OutsideSource(self)
+
+    def count_outside(self, difference):
+        self._outside += difference
+
+    # ------------------------------------------------------------------ calls that block
+
+    def run_blocking(self, fn, *args):
+        """Run FN(*ARGS) outside of the kernel and return what it returns. The baton goes round meanwhile.
+
+        In virtual time the clock stands still as long as such a call is out. A request to end the task is delivered
+        when FN has returned; an interrupt of the main task breaks FN off, if it comes from a signal handler or if FN
+        runs in a helper thread (which then goes on for nothing).
+        """
+        me = self.current
+        if me.attention:
+            me.deliver()
+        isinstance(None, STAIRS)
+        if me.carrier.ident != get_ident():
+            self._refuse("start a blocking call")
+        me.why = lambda: f"the call {getattr(fn, '__name__', fn)!s} outside of the kernel"
+        dynamic = me.dynamic
+        if dynamic is not None:
+            dynamic.leave()
+        try:
+            return self.backend.run_blocking(self, me, lambda: fn(*args))
+        finally:
+            me.state = RUNNING
+            self.current = me
+            budget.left = SLICE
+            if dynamic is not None:
+                dynamic.enter()
+            if me.attention:
+                me.deliver()
+
+    def leave(self, task):
+        """TASK goes outside. Returns the number of this visit, which `comes_back` takes."""
+        self.current = self._scheduler
+        task.state = BLOCKED
+        self._blocking += 1
+        return task.ticket
+
+    def comes_back(self, task, visit=None):
+        """TASK is back from outside, unless it was called back before (then VISIT is an old one)."""
+        if task.state is BLOCKED and (visit is None or visit == task.ticket):
+            task.ticket += 1
+            self._blocking -= 1
+            self._enqueue(task)
+
+    def nothing_can_happen(self):
+        """True if no task could run and no time could pass while the current task is outside."""
+        entries = self._timers.entries
+        due = entries and entries[0][0] <= self.clock.now()
+        return self.clock.virtual and not (self._queue or self._inbox or self._outside or self._blocking or due)
+
+
+class OutsideSource:
+    """See `Kernel.outside_source`. Counts by messages, since it may be opened and closed in any thread."""
+
+    __slots__ = ("_kernel",)
+
+    def __init__(self, kernel):
+        self._kernel = kernel
+
+    def __enter__(self):
+        self._kernel.post(lambda: self._kernel.count_outside(1))
+        return self
+
+    def __exit__(self, *_):
+        self._kernel.post(lambda: self._kernel.count_outside(-1))
+        return False
