@@ -17,8 +17,8 @@ ALLOWED_UPWARDS = {("repl", "image"), ("pytest_plugin", "image"), ("cli", "image
 """``image`` puts all rooms together, so that a session can begin with it; nothing below the surfaces may import it."""
 
 FILES = sorted(SOURCE.rglob("*.py"))
-TEXTS = [*FILES, *sorted((ROOT / "hy_src").rglob("*.hy")), *sorted((ROOT / "hy_src").rglob("*.py")), *sorted((ROOT / "tests").rglob("*.py")),
-         *sorted((ROOT / "tutorials").rglob("*.py")), *sorted((ROOT / "benchmarks").rglob("*.py"))]
+TEXTS = sorted({*FILES, *(path for folder in ("hy_src", "tests", "tutorials", "benchmarks") for ending in ("*.py", "*.hy", "*.lisp")
+                          for path in (ROOT / folder).rglob(ending))})
 
 
 def room_of(path):

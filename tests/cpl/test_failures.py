@@ -4,8 +4,7 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import hooks
-from cramhy_runtime.lisp.conditions import Error, error, handler_bind, ignore_errors, restart_case
-from cramhy_runtime.lisp.conditions import SimpleError
+from cramhy_runtime.lisp.conditions import Error, SimpleError, error, handler_bind, ignore_errors, restart_case
 from cramhy_runtime.lisp.packages import sym
 
 

@@ -7,7 +7,7 @@ from cramhy_runtime import designators as desig
 from cramhy_runtime.designators import equating, language_support, locations
 from cramhy_runtime.designators.classes import DesignatorError
 from cramhy_runtime.lisp.conditions import Error, handler_bind, invoke_restart
-from cramhy_runtime.lisp.data import list_from, lisp_list
+from cramhy_runtime.lisp.data import lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import keyword, sym
 from cramhy_runtime.prolog import query

@@ -33,11 +33,13 @@ def complaint(text):
     ("(loop for x)", "LOOP source code ran out when another token was expected.\ncurrent LOOP context: FOR X.", None),
     ("(loop for x over l do (print x))", "OVER is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X OVER.",
      "After the variable comes IN, ON, ACROSS, =, FROM or BEING."),
-    ("(loop for x in a and for y in b)", "Y is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X IN A AND FOR Y.",
+    ("(loop for x in a and for y in b)",
+     "Y is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X IN A AND FOR Y.",
      "After AND the next variable follows directly, without FOR."),
     ("(loop for x in a for x in b)", "Duplicated variable X\ncurrent LOOP context: FOR X IN B.", None),
     ("(loop for x in a finally return x)",
-     "A compound form was expected, but RETURN found.\ncurrent LOOP context: FINALLY RETURN.", "A value is returned with FINALLY (RETURN value)."),
+     "A compound form was expected, but RETURN found.\ncurrent LOOP context: FINALLY RETURN.",
+     "A value is returned with FINALLY (RETURN value)."),
     ("(loop for x in a do print x)", "A compound form was expected, but PRINT found.\ncurrent LOOP context: DO PRINT.",
      "Forms are lists here: (print x)."),
     ("(loop for x in a collect x sum x)", "incompatible kinds of LOOP value accumulation specified for collecting\n"
@@ -55,9 +57,10 @@ def test_a_malformed_loop_is_explained(text, report, hint):
     assert (problem.report(), problem.hint) == (report, hint)
 
 
-@pytest.mark.parametrize("clauses", ["for", "for x in", "for x = ", "with", "repeat", "collect", "when", "if t", "named", "initially", "finally",
-                                     "do", "return", "while", "always", "thereis", "for x in a by", "for x being", "for x being the", "sum 1 into",
-                                     "for (a . 3) in b", "for x in a using", "with x =", "for x being the hash-keys", "and", "end", "it", "\"a\" b"])
+@pytest.mark.parametrize("clauses", [
+    "for", "for x in", "for x = ", "with", "repeat", "collect", "when", "if t", "named", "initially", "finally", "do", "return", "while",
+    "always", "thereis", "for x in a by", "for x being", "for x being the", "sum 1 into", "for (a . 3) in b", "for x in a using",
+    "with x =", "for x being the hash-keys", "and", "end", "it", '"a" b'])
 def test_no_malformed_loop_raises_anything_but_a_condition(clauses):
     complaint(f"(loop {clauses})")
 

@@ -4,7 +4,7 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import pprint_dispatch
+from cramhy_runtime.lisp import pprint_dispatch, printing_support
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, lisp_list
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, sym
 from cramhy_runtime.lisp.pretty import logical_block, pprint_indent, pprint_newline
@@ -17,7 +17,7 @@ from cramhy_runtime.lisp.print_controls import (
     PRINT_RIGHT_MARGIN,
     bound,
 )
-from cramhy_runtime.lisp.printer import define_printer, output_object, prin1_to_string, print_unreadable, write
+from cramhy_runtime.lisp.printer import define_printer, output_object, prin1, prin1_to_string, print_unreadable, write
 from cramhy_runtime.lisp.reader import read_from_string
 from cramhy_runtime.lisp.streams import StringOutputStream
 
@@ -163,3 +163,27 @@ def test_a_user_may_say_how_atoms_print():
         assert prin1_to_string(read("(1 a)")) == "(<1> A)"
         with bound(PRINT_PRETTY, None):
             assert prin1_to_string(read("(1 a)")) == "(1 A)"
+
+
+def test_the_macro_of_logical_blocks_hands_out_the_elements():
+    stream = StringOutputStream()
+
+    def body(out):
+        while not printing_support.pprint_list_exhausted(out):
+            out.write(f"{printing_support.pprint_pop(out)},")
+
+    printing_support.pprint_logical_block(body, stream, lisp_list(1, 2), prefix="<", suffix=">")
+    printing_support.pprint_logical_block(body, stream, Cons(1, 2), prefix="<", suffix=">")
+    printing_support.pprint_logical_block(body, stream, 5, prefix="<", suffix=">")
+    assert stream.text() == "<1,2,><1,. 2>5"
+
+
+def test_a_block_on_standard_output_binds_it_to_the_pretty_stream():
+    stream = StringOutputStream()
+    with bound(sym("*STANDARD-OUTPUT*"), stream):
+        printing_support.pprint_logical_block(lambda out: prin1(1), None, None, per_line_prefix="; ")
+    assert stream.text() == "; 1"
+
+
+def test_standard_syntax_turns_the_pretty_printer_off():
+    assert printing_support.with_standard_io_syntax(lambda: prin1_to_string(read("'x"))) == "(QUOTE X)"

@@ -6,9 +6,10 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions, streams
+from cramhy_runtime.lisp import conditions, file_streams, streams
 from cramhy_runtime.lisp import stream_functions as functions
 from cramhy_runtime.lisp.data import Character, LispString
+from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.lisp.print_controls import bound
 from cramhy_runtime.lisp.streams import StringInputStream, StringOutputStream
 
@@ -148,3 +149,48 @@ def test_questions_are_asked_until_they_are_answered(monkeypatch):
 def test_the_console_reads_whatever_sys_stdin_is(monkeypatch):
     monkeypatch.setattr(sys, "stdin", io.StringIO("typed\nmore\n"))
     assert functions.read_line(streams.ConsoleInput()) == ("typed", None)
+
+
+def test_files_are_written_and_read(tmp_path):
+    path = tmp_path / "a~b.txt"
+    output = sym(":OUTPUT")
+    file_streams.with_open_file(lambda stream: functions.write_line("one", stream), str(path), direction=output)
+    file_streams.with_open_file(
+        lambda stream: functions.write_line("two", stream), path, direction=output, if_exists=sym(":APPEND")
+    )
+    lines = file_streams.with_open_file(lambda stream: [functions.read_line(stream)[0] for _ in range(2)], path)
+    assert lines == ["one", "two"]
+    assert file_streams.probe_file(str(path)) == path.resolve()
+    assert file_streams.delete_file(path) is True
+    assert file_streams.probe_file(path) is None
+    assert file_streams.open_(path, if_does_not_exist=None) is None
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    path = tmp_path / "none"
+    for attempt, text in [
+        (file_streams.open_, f'The file #P"{path}" does not exist: No such file or directory'),
+        (file_streams.delete_file, f'Could not delete the file "{path}": No such file or directory'),
+    ]:
+        with pytest.raises(conditions.FileError) as caught:
+            attempt(path)
+        assert caught.value.report() == text
+
+
+def test_an_existing_file_is_not_overwritten_unasked(tmp_path):
+    path = tmp_path / "there"
+    path.write_text("kept")
+    with pytest.raises(conditions.FileError) as caught:
+        file_streams.open_(path, direction=sym(":OUTPUT"))
+    assert caught.value.report() == f'The file #P"{path}" already exists: File exists'
+    assert path.read_text() == "kept"
+
+
+def test_a_closed_file_says_so(tmp_path):
+    path = tmp_path / "there"
+    path.write_text("text")
+    stream = file_streams.open_(path)
+    functions.close(stream)
+    with pytest.raises(conditions.StreamError) as caught:
+        functions.read_char(stream)
+    assert caught.value.report().endswith("}> is closed")

@@ -1,6 +1,7 @@
 """Performing designators: process-modules.md section 11, invariants 32 to 40."""
 
 import pytest
+from designators.support import facts, lisp, make, python, user
 
 from cramhy_runtime import cpl
 from cramhy_runtime import process_modules as pm
@@ -9,7 +10,6 @@ from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import MultipleValues, UndefinedFunction
 from cramhy_runtime.process_modules.executive import DesignatorReferenceFailure
 
-from designators.support import facts, lisp, make, python, user
 from .test_modules import NAVIGATION, define, with_modules
 
 MATCHING = [[["cpm::matching-process-module", "?d", "test-navigation"]], [["cpm::available-process-module", "test-navigation"]]]

@@ -1,6 +1,7 @@
 """Process modules: process-modules.md section 11, invariants 1 to 31."""
 
 import pytest
+from designators.support import lisp, make, user
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime import designators as desig
@@ -9,12 +10,9 @@ from cramhy_runtime.cpl.failures import attempt
 from cramhy_runtime.lisp.conditions import Error, SimpleError, error, handler_bind, invoke_restart
 from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, lisp_list
 from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import intern, keyword
+from cramhy_runtime.lisp.packages import intern, keyword, sym
 from cramhy_runtime.process_modules import asynchronous, modules, registry
 from cramhy_runtime.prolog.facts import define_fact_group, remove_fact_group
-from cramhy_runtime.lisp.packages import sym
-
-from designators.support import lisp, make, user
 
 NAVIGATION, ARM = intern("TEST-NAVIGATION", "CRAM-USER"), intern("TEST-ARM", "CRAM-USER")
 

@@ -72,6 +72,6 @@ def test_the_turtle_drives(capsys):
     assert tut.value(tut.turtle_pose).angular_velocity == 0
     assert "(SPEED 5)" in capsys.readouterr().out
 """)
-    done = subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "cramhy_runtime.pytest_plugin", str(script)], capture_output=True, text=True,
-                          env=environment(), cwd=tmp_path)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "cramhy_runtime.pytest_plugin", str(script)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment(), cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr

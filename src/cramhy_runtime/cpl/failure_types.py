@@ -83,8 +83,3 @@ def envelope(condition):
 def opened(condition):
     """What an envelope holds; any other condition is itself."""
     return condition.error if isinstance(condition, CommonLispErrorEnvelope) else condition
-
-
-ALL = (PlanFailure, SimplePlanFailure, CompositeFailure, CommonLispErrorEnvelope, PolicyCondition, PolicyNotFound, PolicyFailure,
-       PolicyInitFailed, PolicyCheckConditionMet)
-__all__ = [cls.__name__ for cls in ALL] + ["ALL", "envelope", "opened"]

@@ -17,11 +17,16 @@ from ..lisp import conditions
 from ..lisp.conditions import error, handler_bind, handler_case, make_condition, matches, signal_condition
 from ..lisp.data import one, truth
 from ..lisp.dynamic import binding
-from .symbols import sym
 from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure
-from .hooks import (on_fail, on_with_failure_handling_begin, on_with_failure_handling_end, on_with_failure_handling_handled,
-                    on_with_failure_handling_rethrown)
+from .hooks import (
+    on_fail,
+    on_with_failure_handling_begin,
+    on_with_failure_handling_end,
+    on_with_failure_handling_handled,
+    on_with_failure_handling_rethrown,
+)
 from .logging import log_event
+from .symbols import sym
 from .task_variables import inherit
 
 BREAK_ON_PLAN_FAILURES = inherit(sym("CPL-IMPL::*BREAK-ON-PLAN-FAILURES*"), None)

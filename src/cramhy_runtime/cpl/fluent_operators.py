@@ -13,9 +13,23 @@ from __future__ import annotations
 from ..lisp.conditions import error
 from ..lisp.data import list_from, truth
 from ..lisp.packages import keyword
+from .fluents import (
+    ALWAYS,
+    NEVER,
+    ONCE,
+    CachedNet,
+    ChangeFluent,
+    Fluent,
+    Net,
+    PulseFluent,
+    ValueFluent,
+    check_fluent,
+    function_of,
+    is_cacheable,
+    unchanged,
+    value,
+)
 from .symbols import sym
-from .fluents import (ALWAYS, NEVER, ONCE, CachedNet, ChangeFluent, Fluent, Net, PulseFluent, ValueFluent, check_fluent, function_of,
-                      is_cacheable, unchanged, value)
 
 _QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other
 

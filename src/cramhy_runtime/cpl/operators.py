@@ -20,7 +20,7 @@ from .failure_types import CompositeFailure, opened
 from .failures import attempt, composite_failure
 from .fluent_operators import fl_pulsed
 from .fluents import ValueFluent
-from .hooks import (on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook)
+from .hooks import on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook
 from .tasks import DEAD, DONE, FAILED, Task, ToplevelTask, end_tasks, inside_plan
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
 

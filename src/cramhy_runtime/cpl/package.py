@@ -8,9 +8,25 @@ defined in ``hy_src/cramhy/cpl.hy``.
 from __future__ import annotations
 
 from ..lisp.faces import define_face
-from . import (failures, fluent_operators, fluents, hooks, logging, macro_support, operators, plans, policies, printing, readers, suspension,
-               task_variables, tasks, tree, waiting)  # fmt: skip
-from .symbols import CPL_IMPL, sym
+from . import (
+    failures,
+    fluent_operators,
+    fluents,
+    hooks,
+    logging,
+    macro_support,
+    operators,
+    plans,
+    policies,
+    readers,
+    suspension,
+    task_variables,
+    tasks,
+    tree,
+    waiting,
+)
+from . import printing as _printing  # noqa: F401
+from .symbols import CPL_IMPL
 
 OPERATORS = {
     "FL<": fluent_operators.fl_lt, "FL>": fluent_operators.fl_gt, "FL=": fluent_operators.fl_equals,

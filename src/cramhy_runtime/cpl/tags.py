@@ -10,9 +10,9 @@ The macro collects the tag names, binds each by `make_tag_task`, and compiles ``
 from __future__ import annotations
 
 from ..lisp.data import Cons, lisp_list
-from .symbols import sym
 from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
+from .symbols import sym
 from .tasks import CREATED, inside_plan
 from .tree import current_path, make_task
 

@@ -21,9 +21,9 @@ from ..lisp import condition_types as types
 from ..lisp.conditions import error, from_python
 from ..lisp.data import NO_VALUES, Symbol, list_from, truth
 from ..lisp.packages import keyword
-from .symbols import sym
 from .fluent_operators import fl_and, fl_funcall
 from .fluents import ValueFluent
+from .symbols import sym
 from .task_variables import inherit, inherited_bindings
 
 CREATED, RUNNING, WAITING, SUSPENDED = map(keyword, ("CREATED", "RUNNING", "WAITING", "SUSPENDED"))

@@ -10,8 +10,8 @@ from __future__ import annotations
 from ..lisp.conditions import error
 from ..lisp.data import Cons, lisp_list, list_from, truth
 from ..lisp.packages import keyword
-from .symbols import sym
 from .hooks import on_finishing_task_execution, on_preparing_task_execution
+from .symbols import sym
 from .tasks import CREATED, Task, current_task
 
 CALL = keyword("CALL")

@@ -12,11 +12,26 @@ description to thing · ``hints`` why not · ``predicates`` for Prolog · ``synt
 ``language_support`` with-designators · ``package`` the Lisp faces. Reference: designators.md.
 """
 
-from . import symbols as _symbols  # noqa: F401  the packages come first
-from . import predicates as _predicates  # noqa: F401, I001
-from .classes import (ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator,
-                      ObjectDesignator, desig_prop_value, desig_prop_values, make_all_designator, make_designator)
+from .. import cpl as _cpl  # noqa: F401  the floor below comes first
+from . import predicates as _predicates  # noqa: F401
+from .classes import (
+                      ActionDesignator,
+                      Designator,
+                      DesignatorError,
+                      HumanDesignator,
+                      LocationDesignator,
+                      MotionDesignator,
+                      ObjectDesignator,
+                      desig_prop_value,
+                      desig_prop_values,
+                      make_all_designator,
+                      make_designator,
+)
 from .equating import current_desig, desig_equal, equate, first_desig
 from .resolution import next_solution, reference, resolve_designator
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "ActionDesignator", "current_desig", "desig_equal", "desig_prop_value", "desig_prop_values", "Designator",
+    "DesignatorError", "equate", "first_desig", "HumanDesignator", "LocationDesignator", "make_all_designator",
+    "make_designator", "MotionDesignator", "next_solution", "ObjectDesignator", "reference", "resolve_designator",
+]  # fmt: skip

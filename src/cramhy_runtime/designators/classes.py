@@ -12,8 +12,8 @@ from __future__ import annotations
 import itertools
 import weakref
 
-from ..lisp.conditions import error, warn
 from ..lisp.condition_types import SimpleError, SimpleWarning
+from ..lisp.conditions import error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
 from ..lisp.generic import generic
 from ..lisp.packages import keyword

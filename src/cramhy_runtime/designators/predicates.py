@@ -11,8 +11,18 @@ from ..lisp.data import Cons, Symbol
 from ..prolog.facts import built_in_group
 from ..prolog.natives import deref, predicate, resolve, test
 from ..prolog.terms import Var
-from .classes import (ActionDesignator, Designator, DesignatorError, LocationDesignator, MotionDesignator, ObjectDesignator, check_key,
-                      living, make_designator, type_keyword)
+from .classes import (
+    ActionDesignator,
+    Designator,
+    DesignatorError,
+    LocationDesignator,
+    MotionDesignator,
+    ObjectDesignator,
+    check_key,
+    living,
+    make_designator,
+    type_keyword,
+)
 from .equating import chain, desig_equal, designator_solutions, get_equal_designators, newest_effective_designator, youngest
 from .resolution import reference
 from .symbols import sym

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..lisp.data import Cons, Symbol, UNBOUND
 from ..lisp.conditions import type_error
+from ..lisp.data import UNBOUND, Cons, Symbol
 from ..lisp.packages import find_package, symbol_name
 from ..lisp.print_controls import PRINT_ESCAPE
 from ..lisp.printer import define_printer, print_unreadable, write

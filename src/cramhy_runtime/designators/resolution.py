@@ -20,8 +20,7 @@ from ..prolog.patterns import is_var
 from ..prolog.query import ask
 from ..prolog.terms import Var
 from ..prolog.utilities import current_timestamp
-from .classes import (ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator,
-                      ObjectDesignator)
+from .classes import ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator
 from .equating import equate, youngest
 from .locations import location_solutions
 from .symbols import sym

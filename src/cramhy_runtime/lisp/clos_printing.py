@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from .classes import class_name, metaclass_of
 from .data import Cons, lisp_list, list_from
-from .generic import EqlSpecializer, GenericFunction, Method
+from .generic import GenericFunction
 from .method_combination import Combination
+from .methods import EqlSpecializer, Method
 from .packages import is_symbol, sym
 from .print_names import symbol_with_prefix
 from .printer import define_printer, output_object, print_unreadable

@@ -11,7 +11,6 @@ from .conditions import error, type_error
 from .data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, list_from, one
 from .definitions import data
 from .evaluator import compile_lambda
-from .evaluator import evaluate as eval_
 from .functions import functionp
 from .macros import macroexpand as expand_macros
 from .macros import macroexpand_1 as expand_macro

@@ -14,15 +14,15 @@ from .backquote import Comma
 from .conditions import Condition, style_warn
 from .data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
 from .packages import KEYWORD, is_symbol, keyword, sym, symbol_name
-from .reader import FUNCTION, PACKAGE, SUPPRESS, as_reader
 from .reader_errors import fail, place
 from .readtables import READTABLE, call
+from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
 
 READ_EVAL = sym("*READ-EVAL*")
 READ_EVAL.value, READ_EVAL.special = True, True
 FEATURES = sym("*FEATURES*")
-FEATURES.value = list_from([keyword(name) for name in
-                            ("CRAMHY", "ANSI-CL", "COMMON-LISP", "IEEE-FLOATING-POINT", "UNICODE", *(("UNIX",) if os.name == "posix" else ()))])
+FEATURES.value = list_from([keyword(name) for name in ("CRAMHY", "ANSI-CL", "COMMON-LISP", "IEEE-FLOATING-POINT", "UNICODE",
+                                                       *(["UNIX"] if os.name == "posix" else []))])
 FEATURES.special = True
 
 _MAX_ARGUMENT = 1 << 24
@@ -69,13 +69,6 @@ def _ignore_argument(sub, argument):
 
 
 # ------------------------------------------------------------------------------------------------- functions, data, comments
-
-
-def sharp_quote(stream, sub, argument):
-    """``#'f`` is ``(function f)``."""
-    reader = as_reader(stream)
-    _ignore_argument(sub, argument)
-    return reader.next_object([None, _start(reader), FUNCTION, "#'"])
 
 
 def sharp_backslash(stream, sub, argument):
@@ -149,8 +142,6 @@ def sharp_left_paren(stream, sub, argument):
 
 
 def _list_after(reader):
-    from .reader import read_list
-
     return read_list(reader, Character("("))
 
 
@@ -471,14 +462,14 @@ def sharp_s(stream, sub, argument):
         return fail(reader, start, "Structure type is not a symbol: ~S", items[0] if items else None)
     if len(items) % 2 == 0:
         return fail(reader, start, "Odd number of arguments following #S: ~S", body, hint="Each slot name needs a value.")
-    from .structures import read_structure
+    from .structures import find_structure
+
+    def make():
+        return find_structure(items[0]).construct(*arguments)
 
     arguments = [KEYWORD.intern(symbol_name(item)) if index % 2 == 0 and is_symbol(item) else item
                  for index, item in enumerate(items[1:])]
-    found = _guarded(reader, start, read_structure, items[0], arguments)
-    if found is NotImplemented:
-        return fail(reader, start, "~S is not a defined structure type.", items[0], hint="defstruct defines one.")
-    return found
+    return _guarded(reader, start, make)
 
 
 def sharp_p(stream, sub, argument):

@@ -78,8 +78,8 @@ def check_type_failed(value, place, kind, name):
     text = name if name is not None else None
     condition = SimpleTypeError("The value of ~S is ~S, which is not ~:[of type ~S~;~:*~A~].", place, value, text, kind,
                                 datum=value, expected_type=kind)
-    return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, f"Supply a new value for {symbol_name(place) if is_symbol(place) else 'the place'}.")],
-                                   lambda: error(condition))
+    where = symbol_name(place) if is_symbol(place) else "the place"
+    return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, f"Supply a new value for {where}.")], lambda: error(condition))
 
 
 # ---------------------------------------------------------------------------------------------------------------- conditions

@@ -1,9 +1,10 @@
 """Macros: expanders by symbol, and the bridge from macros written in Hy.
 
 An expander is a Python function ``(form, environment) -> form`` kept in ``symbol.macro``. The standard macros and those of the
-plan language are written in Hy, in ``hy_src/cramhy``, with Hy's quasiquote; `define_operator` enters them here. What they
-return is made of Hy models and of the forms that they were given; `from_hy` turns it into Lisp data: an unqualified symbol is
-that of Common Lisp if there is one, else one of the macro file's package. So a macro is written once and serves ``.lisp`` files, the REPL and ``.hy`` files.
+plan language are written in Hy, in ``hy_src/cramhy``, with Hy's quasiquote; `define_operator` enters them here. What they return
+is made of Hy models and of the forms that they were given; `from_hy` turns it into Lisp data: an unqualified symbol is that of
+Common Lisp if there is one, else one of the macro file's package. So a macro is written once and serves ``.lisp`` files, the
+REPL and ``.hy`` files.
 """
 
 from __future__ import annotations

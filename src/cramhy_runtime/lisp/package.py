@@ -12,10 +12,10 @@ from . import cl_names, expansion_support
 from .faces import define_face, lispify
 from .packages import Package, find_package, register, sym
 
-MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort strings
-    characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes class_definition slots
-    protocol generic structures streams stream_functions printer pretty pprint_dispatch format reader tokens readtables reader_functions symbols
-    control""".split())
+MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
+    strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
+    class_definition slots protocol generic structures streams stream_functions printer pretty pprint_dispatch format reader tokens
+    readtables reader_functions symbols control""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
 HELPERS = {

@@ -170,11 +170,14 @@ def _run_block(stream, obj, body, prefix, suffix, per_line):
     with deeper():
         stream.start_block(prefix or "", suffix or "", per_line)
         block = Block(stream, obj)
+        stream.open_blocks.append(block)
         try:
             body(stream, block)
         except BlockExit as exit_:
             if exit_.block is not block:
                 raise
+        finally:
+            stream.open_blocks.pop()
         stream.end_block()
 
 

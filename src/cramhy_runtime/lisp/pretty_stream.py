@@ -85,6 +85,7 @@ class PrettyStream(OutputStream):
         self.suffix = ""
         self.queue = []
         self.pending = []
+        self.open_blocks = []  # the `pretty.Block` of each logical block whose body is running
         self.tabs = 0
 
     # text

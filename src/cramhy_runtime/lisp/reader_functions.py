@@ -7,15 +7,9 @@ from __future__ import annotations
 
 from .data import Character, LispString, MultipleValues, list_from, truth
 from .dispatch_macros import FEATURES, READ_EVAL
-from .reader import NOTHING, PACKAGE, SUPPRESS, Reader, StreamReader, as_reader
-from .readtables import (  # noqa: F401  functions of this room
-    LISP_NAMES as READTABLE_NAMES,
-)
-from .readtables import (
-    READTABLE,
-)
-from .tokens import FLOAT_FORMAT, READ_BASE, bounds, parse_integer  # noqa: F401
-from .tokens import LISP_NAMES as TOKEN_NAMES
+from .readtables import READTABLE
+from .text_reader import NOTHING, PACKAGE, SUPPRESS, Reader, StreamReader, as_reader
+from .tokens import FLOAT_FORMAT, READ_BASE, bounds
 
 
 class StringReader(Reader):
@@ -82,7 +76,7 @@ def read_delimited_list(char, stream=None, recursive_p=None):
             reader.release()
 
 
-LISP_NAMES = f"read read-preserving-whitespace read-delimited-list read-from-string {READTABLE_NAMES} {TOKEN_NAMES}"
+LISP_NAMES = "read read-preserving-whitespace read-delimited-list read-from-string"
 VARIABLES = {"*read-base*": READ_BASE.value, "*read-default-float-format*": FLOAT_FORMAT.value, "*read-eval*": READ_EVAL.value,
              "*read-suppress*": SUPPRESS.value, "*readtable*": READTABLE.value, "*features*": FEATURES.value,
              "*package*": PACKAGE.value}

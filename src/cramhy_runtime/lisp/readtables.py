@@ -68,7 +68,7 @@ class Readtable:
         return self._scanner or self._compile()
 
     def _compile(self):
-        from .reader import read_comment
+        from .standard_syntax import read_comment
 
         white = _set(self.whitespace)
         escapes = _set(self.single_escapes | self.multiple_escapes)

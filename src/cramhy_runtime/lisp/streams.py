@@ -73,6 +73,15 @@ class OutputStream(Stream):
         """Deliver what was written."""
 
 
+def _complain_closed(stream):
+    from .conditions import StreamError, error
+    from .printer import prin1_to_string
+
+    condition = StreamError(stream)
+    condition.report = lambda: f"{prin1_to_string(stream)} is closed"
+    error(condition)
+
+
 class StringOutputStream(OutputStream):
     """Collects what is written; `take` gives it and starts anew. With ``target``, a string with a fill pointer, it
     goes there.
@@ -122,6 +131,8 @@ class FileOutput(OutputStream):
         return self._file
 
     def emit(self, text):
+        if self.closed:
+            _complain_closed(self)
         file = self.file
         if file is not None:
             file.write(text)
@@ -262,6 +273,8 @@ class FileInput(InputStream):
         self.label = label or f"file {getattr(file, 'name', '')}"
 
     def more(self):
+        if self.closed:
+            _complain_closed(self)
         return self._file.readline()
 
     def close(self):

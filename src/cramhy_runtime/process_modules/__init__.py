@@ -15,9 +15,21 @@ Reference: process-modules.md.
 from .asynchronous import AsynchronousProcessModule, fail_process_module, finish_process_module
 from .executive import generic_perform, perform, try_reference_designator
 from .matching import matching_available_process_modules, matching_process_module_names, pm_execute_matching
-from .modules import (ProcessModule, define_process_module, make_module, monitor_process_module, pm_cancel, pm_execute, pm_run, pm_status)
-from .registry import (get_running_process_module, process_module_alias, wait_for_process_module_running, with_process_module_aliases,
-                       with_process_module_registered_running)
+from .modules import ProcessModule, define_process_module, make_module, monitor_process_module, pm_cancel, pm_execute, pm_run, pm_status
+from .registry import (
+                       get_running_process_module,
+                       process_module_alias,
+                       wait_for_process_module_running,
+                       with_process_module_aliases,
+                       with_process_module_registered_running,
+)
 from .running import with_process_modules_running
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "AsynchronousProcessModule", "define_process_module", "fail_process_module", "finish_process_module",
+    "generic_perform", "get_running_process_module", "make_module", "matching_available_process_modules",
+    "matching_process_module_names", "monitor_process_module", "perform", "pm_cancel", "pm_execute",
+    "pm_execute_matching", "pm_run", "pm_status", "process_module_alias", "ProcessModule", "try_reference_designator",
+    "wait_for_process_module_running", "with_process_module_aliases", "with_process_module_registered_running",
+    "with_process_modules_running",
+]  # fmt: skip

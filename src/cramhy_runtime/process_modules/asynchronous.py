@@ -19,8 +19,20 @@ from ..lisp.conditions import error
 from ..lisp.data import Cons
 from ..lisp.generic import generic
 from ..lisp.packages import keyword
-from .modules import (OFFLINE, RUNNING, WAITING, AbstractProcessModule, await_online, monitor_process_module,
-                      on_process_module_failed, on_process_module_finished, on_process_module_started, pm_execute, pm_run, sym_of_class)
+from .modules import (
+    OFFLINE,
+    RUNNING,
+    WAITING,
+    AbstractProcessModule,
+    await_online,
+    monitor_process_module,
+    on_process_module_failed,
+    on_process_module_finished,
+    on_process_module_started,
+    pm_execute,
+    pm_run,
+    sym_of_class,
+)
 from .registry import running
 
 on_input = generic("CPM::ON-INPUT", "(process-module input-designator)")

@@ -23,17 +23,16 @@ from ..cpl.fluents import ValueFluent
 from ..cpl.hooks import Hook
 from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_variables import inherit
-from ..cpl.tasks import EVAPORATED, FAILED as TASK_FAILED, Task, current_task, pause
+from ..cpl.tasks import EVAPORATED, Task, current_task, pause
+from ..cpl.tasks import FAILED as TASK_FAILED
 from ..designators.equating import current_desig
 from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import Error, error, handler_bind, invoke_debugger, restart_case, warn
-from ..lisp.conditions import DEBUGGER_HOOK
+from ..lisp.conditions import DEBUGGER_HOOK, Error, error, handler_bind, invoke_debugger, restart_case, warn
 from ..lisp.data import MultipleValues, Symbol, all_values, list_from, python_list, truth, values
 from ..lisp.dynamic import binding
 from ..lisp.generic import generic
 from ..lisp.packages import keyword
-from .registry import (ProcessModuleNotRunning, ProcessModuleRunning, is_defined, module_called, register_process_module, running,
-                       unknown)
+from .registry import ProcessModuleNotRunning, ProcessModuleRunning, is_defined, module_called, register_process_module, running, unknown
 from .symbols import sym
 
 OFFLINE, WAITING, RUNNING, FAILED = map(keyword, ("OFFLINE", "WAITING", "RUNNING", "FAILED"))
@@ -59,11 +58,11 @@ Wait until the module has finished and return a stored result, that of a listed 
 class Request:
     """One call of `pm_execute`: the designator, who asked, and what came of it."""
 
-    __slots__ = ("input", "caller", "finished", "values", "failure", "branches", "cancelled", "waiter")
+    __slots__ = ("input", "caller", "started", "finished", "values", "failure", "branches", "cancelled", "waiter")
 
     def __init__(self, input_, caller):
         self.input, self.caller = input_, caller
-        self.finished = self.cancelled = False
+        self.started = self.finished = self.cancelled = False
         self.values = ()
         self.failure = None
         self.branches = None  # the body, while it runs
@@ -191,6 +190,9 @@ class ProcessModule(AbstractProcessModule):
     def _call_body(self, body, request):
         task = current_task()
         task.path = task.node = None
+        request.started = True
+        for later in self.queue:  # they announce that they wait, once it has begun
+            later.waiter.kernel.unpark(later.waiter)
         if on_process_module_started:
             on_process_module_started(self, request.input)
         if PM_DEBUGGER_HOOK.value is None:
@@ -302,12 +304,15 @@ def _execute(module, input_, *, task=None):
         return values(*python_list(module.result_fluent.stored)) if not isinstance(module.result_fluent.stored, BaseException) else None
 
     def attempt():
-        if module.busy:
-            warn(SimpleWarning("Process module ~a already processing input. Waiting for it to become free.", module))
+        before = module.request or (module.queue[0] if module.queue else None)
         request = Request(input_, task or current_task())
         module.submit(request)
         try:
             while not request.finished:
+                if before is not None and before.started:
+                    warn(SimpleWarning("Process module ~a already processing input. Waiting for it to become free.", module))
+                    before = None
+                    continue
                 pause(lambda: f"process module {module.name.name}")
         finally:
             if not request.finished:

@@ -12,7 +12,7 @@ from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list
 from ..faces import python_name
 from ..lambda_lists import parse
 from ..macros import ensure_loaded, macroexpand_1
-from ..packages import is_symbol, sym, symbol_name
+from ..packages import is_symbol, sym
 from . import nodes
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable
 from .nodes import (Call, CallLocal, CallSetf, CallValue, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,

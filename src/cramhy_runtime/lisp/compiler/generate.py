@@ -4,54 +4,27 @@ Every node is generated for a *destination*: its value is wanted as an expressio
 its effect is wanted. Lisp is made of expressions and Python partly of statements, so an expression may need statements before
 it; where an argument does, the arguments before it are first saved in variables, because Lisp evaluates from left to right.
 
-``block``, ``go`` and ``return`` inside one Python function become ``break``, ``continue`` and ``return``; only an exit from an
-inner function raises an exception. A Python loop that is left for an outer one sets ``Lexit`` and breaks, and the code after
-the loop goes on from there.
+Exits are in ``generate_exits.py``, function definitions in ``generate_functions.py``.
 """
 
 from __future__ import annotations
 
 from hy import models
 
-from ..data import Cons, Symbol, UndefinedFunction
-from ..faces import python_name
-from ..packages import COMMON_LISP, is_symbol, sym, symbol_name
+from ..data import Symbol, UndefinedFunction
+from ..packages import COMMON_LISP, is_symbol, sym
 from . import nodes
 from .constants import Constants, expression, float_model, symbol_model
-
-NONE = symbol_model("None")
-TRUE = symbol_model("True")
-
-
-class Destination:
-    """Where a value goes. ``multiple``: all values are wanted, not only the first."""
-
-    __slots__ = ("kind", "name", "multiple")
-
-    def __init__(self, kind, name=None, multiple=False):
-        self.kind, self.name, self.multiple = kind, name, multiple
-
-
-EFFECT = Destination("effect")
-VALUE = Destination("value")
-VALUES = Destination("value", multiple=True)
-RETURN = Destination("return", multiple=True)
-
-
-class Frame:
-    """A Python loop around the code being generated; ``exits`` are outer targets that it is left for."""
-
-    def __init__(self, target, segment=0):
-        self.target = target
-        self.segment = segment
-        self.exits = {}
+from .destinations import EFFECT, NONE, TRUE, VALUE, VALUES, Destination
+from .generate_exits import ExitGenerator
+from .generate_functions import FunctionGenerator
 
 
 ARITHMETIC = {sym(name): f"L{function}" for name, function in (
     ("+", "add2"), ("-", "sub2"), ("*", "mul2"), ("/", "div2"), ("<", "lt2"), (">", "gt2"), ("<=", "le2"), (">=", "ge2"), ("=", "num_eq2"))}
 
 
-class Generator:
+class Generator(ExitGenerator, FunctionGenerator):
     """Generates one Python function at a time; `toplevel` is the entry."""
 
     def __init__(self, constants=None):
@@ -389,201 +362,6 @@ class Generator:
             else:
                 self.function(function, variable.name)
         return self.gen(node.body, destination)
-
-    # --------------------------------------------------------------------------------------------------------------- exits
-
-    def BlockNode(self, node, destination):
-        return self.by_statements(node, destination, lambda inner: self.block(node, inner))
-
-    def block(self, node, destination):
-        block = node.block
-        self.destinations[block] = destination
-        if block.escapes:
-            self.assign(block.variable.name, self.call("block"))
-        statements, _ = self.captured(lambda: self.block_body(node, destination))
-        if not block.escapes:
-            self.out.extend(statements)
-            self.effects += 1
-            return
-        exit_name = self.temporary("Le")
-        handler, _ = self.captured(lambda: self.finish(
-            self.call("block_value", symbol_model(exit_name), self.reference(block.variable)), nodes.Call(None, []), destination))
-        self.emit(symbol_model("try"), *(statements or [NONE]),
-                  expression(symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), *handler),
-                  expression(symbol_model("finally"), self.call("end_block", self.reference(block.variable))))
-
-    def block_body(self, node, destination):
-        if destination.kind == "return":
-            self.gen(node.body, destination)
-            return
-        frame = Frame(node.block)
-        self.frames.append(frame)
-        statements, _ = self.captured(lambda: self.gen(node.body, destination))
-        self.frames.pop()
-        self.emit(symbol_model("while"), TRUE, *statements, expression(symbol_model("break")))
-        self.continue_exits(frame)
-
-    def ReturnFrom(self, node, destination):
-        block = node.block
-        if block.owner is not self.scope:
-            value = self.gen(node.value, VALUES)
-            return self.finish(self.call("return_from", self.reference(block.variable), value), nodes.Constant(None), destination)
-        target = self.destinations[block]
-        self.gen(node.value, target)
-        if target.kind != "return":
-            self.jump(block)
-        return NONE if destination.kind == "value" else None
-
-    def jump(self, target):
-        """Leave the Python loops between here and the frame of ``target``, then break it or, for a tagbody, go on in it."""
-        inner = self.frames[-1]
-        again = target.__class__.__name__ == "Tagbody"
-        if inner.target is target:
-            self.emit(symbol_model("continue" if again else "break"))
-            return
-        code = self.jump_codes.setdefault(target, len(self.jump_codes) + 1)
-        self.scope.uses_exit = True
-        self.assign("Lexit", models.Integer(code))
-        inner.exits[target] = code
-        self.emit(symbol_model("break"))
-
-    def continue_exits(self, frame):
-        """After a loop: go on with the exits for which it was left."""
-        for target, code in frame.exits.items():
-            def onward(target=target):
-                if self.frames[-1].target is target:
-                    self.assign("Lexit", models.Integer(0))
-                self.jump(target)
-
-            statements, _ = self.captured(onward)
-            self.emit(symbol_model("when"), expression(symbol_model("="), symbol_model("Lexit"), models.Integer(code)), *statements)
-
-    def TagbodyNode(self, node, destination):
-        tagbody = node.tagbody
-        tagbody.counter = self.temporary("Lpc")
-        frame = Frame(tagbody)
-        self.assign(tagbody.counter, models.Integer(0))
-        if tagbody.escapes:
-            self.assign(tagbody.variable.name, self.call("block"))
-        self.frames.append(frame)
-        parts = []
-        for index, segment in enumerate(node.segments):
-            frame.segment = index
-            statements, _ = self.captured(lambda segment=segment: [self.gen(item, EFFECT) for item in segment])
-            if statements:
-                test = expression(symbol_model("<="), symbol_model(tagbody.counter), models.Integer(index))
-                last = index == len(node.segments) - 1
-                parts.extend(statements if last else [expression(symbol_model("when"), test, *statements)])
-        self.frames.pop()
-        parts.append(expression(symbol_model("break")))
-        if tagbody.escapes:
-            exit_name = self.temporary("Le")
-            target = expression(symbol_model("setv"), symbol_model(tagbody.counter),
-                                self.call("block_value", symbol_model(exit_name), self.reference(tagbody.variable)))
-            parts = [expression(symbol_model("try"), *parts, expression(
-                symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), target))]
-        self.emit(symbol_model("while"), TRUE, *parts)
-        self.continue_exits(frame)
-        return self.finish(NONE, node, destination, pure=True)
-
-    def Go(self, node, destination):
-        tagbody = node.tagbody
-        if tagbody.owner is not self.scope:
-            return self.finish(self.call("return_from", self.reference(tagbody.variable), models.Integer(node.index)),
-                               nodes.Constant(None), destination)
-        frame = next(frame for frame in self.frames if frame.target is tagbody)
-        if node.index <= frame.segment:
-            self.emit(symbol_model("Lcheckpoint"))
-        self.assign(tagbody.counter, models.Integer(node.index))
-        self.jump(tagbody)
-        return NONE if destination.kind == "value" else None
-
-    def UnwindProtect(self, node, destination):
-        def produce(inner):
-            statements, _ = self.captured(lambda: self.gen(node.body, inner))
-            cleanup, _ = self.captured(lambda: self.gen(node.cleanup, EFFECT))
-            shielded = expression(symbol_model("with"), models.List([symbol_model("_"), self.call("shield")]), *(cleanup or [NONE]))
-            self.emit(symbol_model("try"), *(statements or [NONE]), expression(symbol_model("finally"), shielded))
-
-        return self.by_statements(node, destination, produce)
-
-    # ----------------------------------------------------------------------------------------------------------- functions
-
-    def Lambda(self, node, destination):
-        return self.finish(self.function(node), node, destination, pure=True)
-
-    def function(self, node, name=None):
-        """Emit the definition of a function and return the expression for it."""
-        given = name
-        if name is None:
-            base = node.name.cdr.car if isinstance(node.name, Cons) else node.name
-            name = self.scope.unique(python_name(symbol_name(base)) if base is not None else "Lfunction")
-        saved = self.out, self.frames, self.scope
-        self.out, self.frames, self.scope = [], [], node.scope
-        node.scope.uses_exit = False
-        parameters = self.parameters(node)
-        self.gen(node.body, RETURN)
-        statements = self.out
-        scope = node.scope
-        self.out, self.frames, self.scope = saved
-        header = []
-        names = [symbol_model(variable.name) for variable in scope.nonlocals if not variable.boxed]
-        if names:
-            header.append(expression(symbol_model("nonlocal"), *names))
-        if scope.uses_exit:
-            header.append(self.setting("Lexit", models.Integer(0)))
-        simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == symbol_model("return")
-        if simple:
-            return self.positioned(expression(symbol_model("fn"), models.List(parameters), statements[0][1]), node)
-        definition = expression(symbol_model("defn"), symbol_model(name), models.List(parameters), *header, *statements)
-        self.out.append(self.positioned(definition, node))
-        return symbol_model(name)
-
-    def parameters(self, node):
-        """The Python parameters of ``node``; what they need done on entry is emitted."""
-        spec = node.parameters
-        parameters = [symbol_model(variable.name) for variable in spec.required]
-        for variable, default, supplied in spec.optional:
-            plain = default is None and supplied is None
-            parameters.append(models.List([symbol_model(variable.name), NONE if plain else symbol_model("Lunsupplied")]))
-        if spec.rest is not None or spec.has_keys:
-            rest = spec.rest.name if spec.rest is not None else self.temporary("Lkeys")
-            parameters.append(expression(symbol_model("unpack-iterable"), symbol_model(rest)))
-        frozen = [variable for variable in node.scope.frozen if variable.fresh]
-        if frozen and not (spec.rest is not None or spec.has_keys):
-            parameters.append(symbol_model("*"))
-        parameters += [models.List([symbol_model(variable.name), symbol_model(variable.name)]) for variable in frozen]
-        if spec.has_keys:
-            keywords = self.temporary("Lpython")
-            parameters.append(expression(symbol_model("unpack-mapping"), symbol_model(keywords)))
-        for variable, default, supplied in spec.optional:
-            self.default(variable, default, supplied)
-        if spec.has_keys:
-            table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
-            values = self.call("keywords", symbol_model(rest), symbol_model(keywords), self.constant_keys(table),
-                               TRUE if spec.allow_other_keys else NONE)
-            if spec.keys:
-                self.emit(symbol_model("setv"), models.List([symbol_model(variable.name) for variable, *_ in spec.keys]), values)
-            else:
-                self.out.append(values)
-        if spec.rest is not None:
-            self.assign(spec.rest.name, self.call("list_from", symbol_model(spec.rest.name)))
-        for variable, default, supplied, _ in spec.keys:
-            self.default(variable, default, supplied)
-        return parameters
-
-    def constant_keys(self, table):
-        return models.Tuple([models.Tuple([self.constant(key), NONE if plain else symbol_model("Lunsupplied")]) for key, plain in table])
-
-    def default(self, variable, default, supplied):
-        missing = expression(symbol_model("is"), symbol_model(variable.name), symbol_model("Lunsupplied"))
-        if supplied is not None:
-            self.assign(supplied.name, expression(symbol_model("if"), missing, NONE, TRUE))
-        elif default is None:
-            return
-        value = default if default is not None else nodes.Constant(None)
-        statements, _ = self.captured(lambda: self.gen(value, Destination("assign", variable.name)))
-        self.emit(symbol_model("when"), missing, *statements)
 
     # ------------------------------------------------------------------------------------------------------------- top level
 

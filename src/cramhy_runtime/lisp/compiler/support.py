@@ -11,12 +11,12 @@ from fractions import Fraction
 from cramhy_runtime import kernel
 
 from .. import arithmetic
-from ..conditions import ControlError_, error, program_error, type_error, unbound_variable
+from ..conditions import ControlError_, error, program_error, unbound_variable
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
 from ..dynamic import Bindings, bind, unbind
 from ..functions import function_of
-from ..packages import intern, is_symbol, keyword, printed, sym
+from ..packages import intern, keyword, printed, sym
 
 
 class Cell:

@@ -1,0 +1,23 @@
+"""Where the value of a node goes: into an expression, to a name, out of the function, or nowhere."""
+
+from __future__ import annotations
+
+from .constants import symbol_model
+
+NONE = symbol_model("None")
+TRUE = symbol_model("True")
+
+
+class Destination:
+    """Where a value goes. ``multiple``: all values are wanted, not only the first."""
+
+    __slots__ = ("kind", "name", "multiple")
+
+    def __init__(self, kind, name=None, multiple=False):
+        self.kind, self.name, self.multiple = kind, name, multiple
+
+
+EFFECT = Destination("effect")
+VALUE = Destination("value")
+VALUES = Destination("value", multiple=True)
+RETURN = Destination("return", multiple=True)

@@ -1,0 +1,96 @@
+"""Functions: from a `Lambda` node to ``defn`` or ``fn``, with its parameters and what they need done on entry.
+
+``&optional`` parameters have Python defaults; ``&rest`` and ``&key`` take Python's rest arguments apart, and Python callers may
+use keywords. A variable that must be caught anew in each turn of a loop comes as a default argument.
+"""
+
+from __future__ import annotations
+
+from hy import models
+
+from ..data import Cons
+from ..faces import python_name
+from ..packages import symbol_name
+from . import nodes
+from .constants import expression, symbol_model
+from .destinations import NONE, RETURN, TRUE, Destination
+
+
+class FunctionGenerator:
+    """The part of the `Generator` that defines functions."""
+
+    def Lambda(self, node, destination):
+        return self.finish(self.function(node), node, destination, pure=True)
+
+    def function(self, node, name=None):
+        """Emit the definition of a function and return the expression for it."""
+        given = name
+        if name is None:
+            base = node.name.cdr.car if isinstance(node.name, Cons) else node.name
+            name = self.scope.unique(python_name(symbol_name(base)) if base is not None else "Lfunction")
+        saved = self.out, self.frames, self.scope
+        self.out, self.frames, self.scope = [], [], node.scope
+        node.scope.uses_exit = False
+        parameters = self.parameters(node)
+        self.gen(node.body, RETURN)
+        statements = self.out
+        scope = node.scope
+        self.out, self.frames, self.scope = saved
+        header = []
+        names = [symbol_model(variable.name) for variable in scope.nonlocals if not variable.boxed]
+        if names:
+            header.append(expression(symbol_model("nonlocal"), *names))
+        if scope.uses_exit:
+            header.append(self.setting("Lexit", models.Integer(0)))
+        simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == symbol_model("return")
+        if simple:
+            return self.positioned(expression(symbol_model("fn"), models.List(parameters), statements[0][1]), node)
+        definition = expression(symbol_model("defn"), symbol_model(name), models.List(parameters), *header, *statements)
+        self.out.append(self.positioned(definition, node))
+        return symbol_model(name)
+
+    def parameters(self, node):
+        """The Python parameters of ``node``; what they need done on entry is emitted."""
+        spec = node.parameters
+        parameters = [symbol_model(variable.name) for variable in spec.required]
+        for variable, default, supplied in spec.optional:
+            plain = default is None and supplied is None
+            parameters.append(models.List([symbol_model(variable.name), NONE if plain else symbol_model("Lunsupplied")]))
+        if spec.rest is not None or spec.has_keys:
+            rest = spec.rest.name if spec.rest is not None else self.temporary("Lkeys")
+            parameters.append(expression(symbol_model("unpack-iterable"), symbol_model(rest)))
+        frozen = [variable for variable in node.scope.frozen if variable.fresh]
+        if frozen and not (spec.rest is not None or spec.has_keys):
+            parameters.append(symbol_model("*"))
+        parameters += [models.List([symbol_model(variable.name), symbol_model(variable.name)]) for variable in frozen]
+        if spec.has_keys:
+            keywords = self.temporary("Lpython")
+            parameters.append(expression(symbol_model("unpack-mapping"), symbol_model(keywords)))
+        for variable, default, supplied in spec.optional:
+            self.default(variable, default, supplied)
+        if spec.has_keys:
+            table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
+            values = self.call("keywords", symbol_model(rest), symbol_model(keywords), self.constant_keys(table),
+                               TRUE if spec.allow_other_keys else NONE)
+            if spec.keys:
+                self.emit(symbol_model("setv"), models.List([symbol_model(variable.name) for variable, *_ in spec.keys]), values)
+            else:
+                self.out.append(values)
+        if spec.rest is not None:
+            self.assign(spec.rest.name, self.call("list_from", symbol_model(spec.rest.name)))
+        for variable, default, supplied, _ in spec.keys:
+            self.default(variable, default, supplied)
+        return parameters
+
+    def constant_keys(self, table):
+        return models.Tuple([models.Tuple([self.constant(key), NONE if plain else symbol_model("Lunsupplied")]) for key, plain in table])
+
+    def default(self, variable, default, supplied):
+        missing = expression(symbol_model("is"), symbol_model(variable.name), symbol_model("Lunsupplied"))
+        if supplied is not None:
+            self.assign(supplied.name, expression(symbol_model("if"), missing, NONE, TRUE))
+        elif default is None:
+            return
+        value = default if default is not None else nodes.Constant(None)
+        statements, _ = self.captured(lambda: self.gen(value, Destination("assign", variable.name)))
+        self.emit(symbol_model("when"), missing, *statements)
