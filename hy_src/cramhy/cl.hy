@@ -190,8 +190,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (expand (list-from forms)))
 
 (defoperator loop-finish []
-  "Outside LOOP there is nothing to finish."
-  `(error "LOOP-FINISH is only meaningful inside LOOP."))
+  `(go %end-loop))
 
 (defoperator do-symbols [spec #* body]
   (setv #(variable #* rest) spec)

@@ -8,7 +8,7 @@ import sys
 
 def _session_options():
     options = argparse.ArgumentParser(add_help=False)
-    options.add_argument("--time", choices=["virtual", "wall"], default=None, help="virtual: as fast as the machine computes; wall: real time")
+    options.add_argument("--time", choices=["virtual", "wall"], default=None, help="virtual time, as fast as the machine computes, or wall time")
     options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
     options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks")
     options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time")

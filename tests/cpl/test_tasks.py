@@ -373,6 +373,17 @@ def test_wrong_use_of_tasks_says_what_is_wrong(call, text):
     assert problem.value.format_control == text
 
 
+def test_making_a_task_from_lisp_starts_it():
+    from cramhy_runtime.lisp.classes import find_class_or_error, make_instance
+    from cramhy_runtime.lisp.packages import keyword, sym
+
+    def made(*more):
+        return make_instance(find_class_or_error(sym("CPL::TASK")), keyword("NAME"), "x", keyword("THREAD-FUN"), lambda: 42, *more)
+
+    assert plan(lambda: cpl.join_task(made())) == 42
+    assert plan(lambda: made(keyword("RUN-THREAD"), None).status) is CREATED
+
+
 def test_a_task_needs_a_task_to_start_it():
     with pytest.raises(Error) as problem:
         started(lambda: 1)

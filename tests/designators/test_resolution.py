@@ -64,9 +64,11 @@ def test_what_cannot_be_resolved_says_so(kind, text):
 
 def test_the_hint_names_the_clauses_and_what_they_miss(driving):
     assert error_of(make("motion", [":type", ":driving"])).hint == (
+        "Tried 1 clause of motion-grounding:\n  (motion-grounding ?desig (drive ?speed)): property speed is missing")
+    assert error_of(make("motion", [":type", ":flying"], [":goal", 1])).hint == (
         "Tried 2 clauses of motion-grounding:\n"
-        "  (motion-grounding ?desig (drive ?speed)): property speed is missing\n"
-        "  (motion-grounding ?desig (move ?goal)): type is driving, not moving; property goal is missing")
+        "  (motion-grounding ?desig (drive ?speed)): type is flying, not driving; property speed is missing\n"
+        "  (motion-grounding ?desig (move ?goal)): type is flying, not moving")
 
 
 def test_the_hint_without_any_clause_says_what_to_define():

@@ -245,7 +245,7 @@ OBJECTS = r'''
 (setf (foo3 "a") 1)
 => SB-PCL::NO-APPLICABLE-METHOD-ERROR: There is no applicable method for the generic function #<STANDARD-GENERIC-FUNCTION (COMMON-LISP:SETF COMMON-LISP-USER::FOO3) (1)> when called with arguments (1 "a"). See also: The ANSI Standard, Section 7.6.6
 (describe (make-tm))
-=> 
+=>
 '''
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime import kernel
+from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import backquote
 from cramhy_runtime.lisp.conditions import Condition, Warning_, handler_bind, muffle_warning
 from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
@@ -22,6 +22,7 @@ USER = "COMMON-LISP-USER"
 @pytest.fixture(autouse=True)
 def in_user_package():
     kernel.start(clock="virtual")
+    image.boot()
     with binding(sym("*PACKAGE*"), find_package(USER)):
         yield
 

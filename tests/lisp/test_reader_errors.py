@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime import kernel
+from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import find_package, make_package, sym
@@ -13,6 +13,7 @@ from cramhy_runtime.lisp.reader_errors import UnmatchedClose
 @pytest.fixture(autouse=True)
 def in_user_package():
     kernel.start(clock="virtual")
+    image.boot()
     with binding(sym("*PACKAGE*"), find_package("COMMON-LISP-USER")):
         yield
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime import kernel
+from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import evaluator
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import all_values
@@ -25,6 +25,7 @@ def recorded(name):
 def answer(form):
     """What our evaluator says to ``form``, in the notation of ``sbcl/record.lisp``."""
     kernel.start(clock="virtual")
+    image.boot()
     with binding(sym("*PACKAGE*"), find_package("COMMON-LISP-USER"), sym("*PRINT-PRETTY*"), None):
         try:
             found = all_values(evaluator.evaluate(Reader(form).read()))

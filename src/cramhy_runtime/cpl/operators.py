@@ -10,6 +10,8 @@ What all parallel forms have in common is in ``branches.py``.
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 from cramhy_runtime import kernel
 
 from ..lisp.conditions import error, type_error
@@ -49,7 +51,7 @@ def named_top_level(body, name=None):
         if bound is not None:
             for symbol, value in zip(bound.car or (), bound.cdr or (), strict=False):
                 pairs += (symbol, value)
-    with binding(*pairs):
+    with binding(*pairs) if pairs else nullcontext():
         try:
             return _run_top_level(body, name, tree)
         finally:

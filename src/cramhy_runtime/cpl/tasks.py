@@ -22,7 +22,7 @@ from ..lisp.conditions import error, from_python
 from ..lisp.data import NO_VALUES, Symbol, list_from, truth
 from ..lisp.packages import keyword
 from .fluent_operators import fl_and, fl_funcall
-from .fluents import ValueFluent
+from .fluents import ValueFluent, function_of
 from .symbols import sym
 from .task_variables import inherit, inherited_bindings
 
@@ -47,7 +47,8 @@ class Task:
     """A branch of a plan: ``body`` is called without arguments in a task of its own once `execute` has started it.
 
     ``path`` is its place in the task tree; ``constraints`` are fluents that must all be true before the body starts.
-    ``ended``, if set, is called with the task when it is dead.
+    ``ended``, if set, is called with the task when it is dead. From Lisp, ``(make-instance 'task :thread-fun f)`` also starts it,
+    unless ``:run-thread nil`` is given (cpl.md 3.1).
     """
 
     __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
@@ -55,7 +56,7 @@ class Task:
                  "__dict__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
 
-    def __init__(self, body=None, name=None, path=None):
+    def __init__(self, body=None, name=None, path=None, *, thread_fun=None, run_thread=True):
         self._name = name
         self.body = body
         self.parent = None
@@ -75,6 +76,10 @@ class Task:
         self.unschedulable = 0
         self.suspension_handlers = None
         self.retry_level = 0
+        if thread_fun is not None:
+            self.body = function_of(thread_fun)
+            if truth(run_thread):
+                self.execute()
 
     # ---------------------------------------------------------------------------------------------------- names and status
 

@@ -32,6 +32,8 @@ def _groundings_tried(designator, predicate):
     if not clauses:
         return (f"There is no clause of {predicate} that could resolve it. Define one in a fact group that lists "
                 f"desig:{predicate}, and load the file.")
+    # A clause for another type is of interest only if there is none for this one.
+    clauses = [clause for clause in clauses if not _contradictions(designator, clause)] or clauses
     lines = [_compare(designator, clause) for clause in clauses]
     return f"Tried {len(lines)} clause{'s' if len(lines) > 1 else ''} of {predicate}:\n" + "\n".join(lines)
 
@@ -47,17 +49,19 @@ def _asks(clause):
     return found
 
 
+def _contradictions(designator, clause):
+    """The (key, value) pairs with constant values for which the designator has other values."""
+    present = {pair.car for pair in designator.description or ()}
+    return [(key, wanted) for key, wanted in _asks(clause)
+            if key in present and not isinstance(wanted, Cons) and not (isinstance(wanted, Symbol) and is_var(wanted))
+            and desig_prop_value(designator, key) is not wanted and desig_prop_value(designator, key) != wanted]
+
+
 def _compare(designator, clause):
     from ..lisp.printer import princ_to_string
 
     present = {pair.car for pair in designator.description or ()}
-    problems = []
-    for key, wanted in _asks(clause):
-        constant = not (isinstance(wanted, Symbol) and is_var(wanted)) and not isinstance(wanted, Cons)
-        name = princ_to_string(key).lower()
-        if key not in present:
-            problems.append(f"property {name} is missing")
-        elif constant and desig_prop_value(designator, key) is not wanted and desig_prop_value(designator, key) != wanted:
-            problems.append(f"{name} is {princ_to_string(desig_prop_value(designator, key)).lower()}, "
-                            f"not {princ_to_string(wanted).lower()}")
-    return f"  {princ_to_string(clause.head).lower()}: " + ("; ".join(problems) or "all properties are there, another goal fails")
+    problems = [f"{princ_to_string(key)} is {princ_to_string(desig_prop_value(designator, key))}, not {princ_to_string(wanted)}"
+                for key, wanted in _contradictions(designator, clause)]
+    problems += [f"property {princ_to_string(key)} is missing" for key, _ in _asks(clause) if key not in present]
+    return f"  {princ_to_string(clause.head)}: {'; '.join(problems) or 'all properties are there, another goal fails'}".lower()

@@ -343,9 +343,12 @@ class Kernel(Endings, Outside):
         return self._lots is None or all(task.preempted for task in self._queue)
 
     def _draw_lots(self):
+        # A task that has not begun never overtakes one spawned before it: branches begin in the order in which they stand.
         queue = self._queue
         number = int(self._lots.random() * len(queue))
         task = queue[number]
+        if task.carrier is None:
+            number, task = next((index, other) for index, other in enumerate(queue) if other.carrier is None)
         del queue[number]
         return task
 

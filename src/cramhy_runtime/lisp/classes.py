@@ -9,6 +9,8 @@ This module also re-exports what others need of the class world: `make_instance`
 
 from __future__ import annotations
 
+import importlib
+
 from .builtin_classes import CLASSES, BuiltInClass, lisp_mro, system_class
 from .class_objects import StandardClass, StandardObject, touch_classes
 from .conditions import Condition, Error, SimpleProgramError, error, type_error
@@ -260,5 +262,11 @@ def invalid_class_definition(text, *arguments):
 
 register_class(sym("CLASS"), type)
 
-from .class_definition import define_class, define_condition  # noqa: E402, F401  they need the names above
-from .instances import make_instance  # noqa: E402, F401
+_ELSEWHERE = {"define_class": "class_definition", "define_condition": "class_definition", "make_instance": "instances"}
+
+
+def __getattr__(name):
+    """The rest of the class world's interface, from modules that need this one first."""
+    if name in _ELSEWHERE:
+        return getattr(importlib.import_module(f".{_ELSEWHERE[name]}", __package__), name)
+    raise AttributeError(name)

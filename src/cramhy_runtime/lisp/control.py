@@ -10,7 +10,7 @@ from . import conditions
 from .conditions import error, type_error
 from .data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, list_from, one
 from .definitions import data
-from .evaluator import compile_lambda
+from .evaluator import compile_lambda, evaluate
 from .functions import functionp
 from .macros import macroexpand as expand_macros
 from .macros import macroexpand_1 as expand_macro
@@ -28,6 +28,7 @@ function-lambda-expression provide describe disassemble room ed"""
 
 
 compiled_function_p = functionp
+eval_ = evaluate
 
 
 def fdefinition(name):

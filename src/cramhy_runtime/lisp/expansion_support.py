@@ -6,10 +6,10 @@ A macro only rearranges forms; the work is done here. Users do not call these by
 from __future__ import annotations
 
 from . import conditions
-from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError, error, program_error, type_error
-from .data import Cons, MultipleValues, Symbol, UNSUPPLIED, all_values, list_from, one, truth
+from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError, error, program_error
+from .data import Cons, MultipleValues, Symbol, UNSUPPLIED, all_values, list_from, truth
 from .evaluator import PACKAGE
-from .packages import (COMMON_LISP, KEYWORD, all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
+from .packages import (COMMON_LISP, all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
                        printed, string_designator, sym, symbol_name)
 
 # ------------------------------------------------------------------------------------------------------------ destructuring
@@ -327,5 +327,3 @@ def proclaim(specifier):
             proclaim_special(symbol)
     return None
 
-
-__all__ = ["KEYWORD", "one", "type_error"]

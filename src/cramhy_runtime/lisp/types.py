@@ -8,6 +8,7 @@ defined later is found then, because unknown names are not remembered. ``subtype
 
 from __future__ import annotations
 
+import importlib
 import pathlib
 from fractions import Fraction
 
@@ -446,5 +447,8 @@ def upgraded_complex_part_type(typespec, environment=None):
     return sym("REAL") if typespec is not None else None
 
 
-from .coercion import coerce  # noqa: E402, F401  they need the names above
-from .type_relations import subtypep  # noqa: E402, F401
+def __getattr__(name):
+    """``coerce`` and ``subtypep``, from modules that need this one first."""
+    if name in ("coerce", "subtypep"):
+        return getattr(importlib.import_module({"coerce": ".coercion", "subtypep": ".type_relations"}[name], __package__), name)
+    raise AttributeError(name)

@@ -17,7 +17,7 @@ from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list
 from ..lisp.generic import generic
 from ..lisp.packages import find_package, keyword
 from ..prolog.query import holds
-from .matching import pm_execute_matching, running_matches
+from .matching import execute_by, running_matches
 from .symbols import sym
 
 GOAL_KEY = keyword("GOAL")
@@ -70,10 +70,11 @@ def try_reference_designator(designator, error_message=""):
 
 @generic_perform.method(MotionDesignator)
 def _perform_motion(designator):
-    if not running_matches(designator):
+    modules = running_matches(designator)
+    if not modules:
         return fail("No matching process module found for ~a", designator)
     try_reference_designator(designator, "Cannot perform motion.")
-    return pm_execute_matching(designator)
+    return execute_by(modules, designator)
 
 
 @generic_perform.method(ActionDesignator)

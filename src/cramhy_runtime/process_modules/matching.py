@@ -50,6 +50,11 @@ def pm_execute_matching(designator):
     names = running_matches(designator)
     if not names:
         return fail("No process modules found for executing designator ~a", designator)
+    return execute_by(names, designator)
+
+
+def execute_by(names, designator):
+    """Have the running modules ``names`` execute ``designator``, one after the other until one succeeds: the first value."""
     observed = on_preparing_performing or on_finishing_performing
     run_id = on_preparing_performing.first(designator, list_from(names)) if observed else None
     success = None

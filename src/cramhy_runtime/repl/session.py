@@ -90,7 +90,7 @@ class Session:
             else:
                 values = all_values(evaluator.evaluate(form, reader.filename, reader.positions))
             kernel.settle()
-        except kernel.Interrupted:
+        except (kernel.Interrupted, kernel.Abandoned):
             raise Interruption from None
         except Condition as condition:
             locate(condition, exception_position(condition))

@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from hy import models
 
+from ..backquote import Comma
 from ..data import Character, Cons, DoubleFloat, Symbol
 
 
@@ -98,6 +99,8 @@ class Constants:
             return expression(symbol_model("Lratio"), models.Integer(obj.numerator), models.Integer(obj.denominator))
         if kind is Character:
             return expression(symbol_model("Lcharacter"), models.String(obj.char))
+        if kind is Comma:
+            return expression(symbol_model("Lcomma"), models.String(obj.kind), self.builder(obj.form))
         if kind is list:
             return models.List([self.builder(item) for item in obj])
         raise NotStorable(obj)

@@ -11,6 +11,7 @@ from fractions import Fraction
 from cramhy_runtime import kernel
 
 from .. import arithmetic
+from ..backquote import Comma
 from ..conditions import ControlError_, error, program_error, unbound_variable
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
@@ -192,7 +193,7 @@ NAMESPACE = {
     "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield, "Lkeywords": keywords,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
-    "Lcharacter": Character, "Lfloat": float,
+    "Lcharacter": Character, "Lfloat": float, "Lcomma": Comma,
     "Ladd2": arithmetic.add2, "Lsub2": arithmetic.sub2, "Lmul2": arithmetic.mul2, "Ldiv2": arithmetic.div2, "Llt2": arithmetic.lt2,
     "Lgt2": arithmetic.gt2, "Lle2": arithmetic.le2, "Lge2": arithmetic.ge2, "Lnum_eq2": arithmetic.num_eq2,
 }

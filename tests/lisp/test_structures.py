@@ -1,0 +1,134 @@
+"""Structures as Python sees them, and what ``defstruct`` may be told."""
+
+import pytest
+
+from cramhy_runtime import image
+from cramhy_runtime.lisp import structures
+from cramhy_runtime.lisp.classes import class_name, find_class
+from cramhy_runtime.lisp.conditions import SimpleProgramError, TypeError_
+from cramhy_runtime.lisp.data import Symbol, UndefinedFunction, lisp_list
+from cramhy_runtime.lisp.equality import equalp
+from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
+
+image.boot()
+HOME = find_package("STRUCTURE-TESTS") or make_package("STRUCTURE-TESTS", use=("COMMON-LISP",))
+
+
+@pytest.fixture(autouse=True)
+def in_our_package():
+    old, structures.PACKAGE.value = structures.PACKAGE.value, HOME
+    yield
+    structures.PACKAGE.value = old
+
+
+def here(name):
+    return HOME.intern(name)
+
+
+@pytest.fixture
+def motion():
+    """(defstruct motion (speed 5) angle)"""
+    structures.define_structure(here("MOTION"), [structures.structure_slot(here("SPEED"), initform=lambda: 5),
+                                                 structures.structure_slot(here("ANGLE"))])
+    return find_class(here("MOTION"))
+
+
+def test_slots_are_attributes_and_the_class_can_be_called_with_keywords(motion):
+    obj = motion(angle=2)
+    assert (obj.speed, obj.angle) == (5, 2)
+    with pytest.raises(AttributeError):
+        obj.sped = 1
+
+
+def test_constructor_accessors_setters_copier_and_predicate_are_functions_of_their_symbols(motion):
+    obj = here("MAKE-MOTION").function(keyword("SPEED"), 7)
+    assert here("MOTION-SPEED").function(obj) == 7
+    assert here("MOTION-SPEED").setf_function(8, obj) == 8
+    copy = here("COPY-MOTION").function(obj)
+    assert copy is not obj and copy.speed == 8
+    assert here("MOTION-P").function(obj) is True and here("MOTION-P").function(5) is None
+
+
+def test_an_accessor_refuses_what_is_no_such_structure(motion):
+    with pytest.raises(TypeError_) as problem:
+        here("MOTION-SPEED").function(5)
+    assert problem.value.datum == 5 and problem.value.expected_type is here("MOTION")
+
+
+def test_an_unknown_keyword_is_an_error(motion):
+    with pytest.raises(SimpleProgramError) as problem:
+        here("MAKE-MOTION").function(keyword("SPED"), 1)
+    assert str(problem.value) == "Unknown &KEY argument: :SPED"
+
+
+def test_a_slot_with_a_type_refuses_other_values():
+    structures.define_structure(here("TYPED"), [structures.structure_slot(here("COUNT"), initform=lambda: 0, type=sym("FIXNUM"))])
+    with pytest.raises(TypeError_) as problem:
+        here("MAKE-TYPED").function(keyword("COUNT"), "many")
+    assert str(problem.value) == 'The value\n  "many"\nis not of type\n  FIXNUM\nwhen setting slot COUNT of structure TYPED'
+
+
+def test_slots_of_gives_names_and_values_in_order(motion):
+    assert structures.slots_of(motion(angle=1)) == [(here("SPEED"), 5), (here("ANGLE"), 1)]
+    assert class_name(motion) is here("MOTION")
+
+
+def test_equal_structures_are_equalp(motion):
+    assert equalp(motion(angle=1), motion(angle=1)) is True
+    assert equalp(motion(angle=1), motion(angle=2)) is None
+
+
+def test_initforms_are_computed_for_each_object():
+    counter = iter(range(10))
+    structures.define_structure(here("NUMBERED"), [structures.structure_slot(here("N"), initform=lambda: next(counter))])
+    make = here("MAKE-NUMBERED").function
+    assert (make().n, make().n) == (0, 1)
+
+
+def test_an_included_structure_gives_slots_accessors_and_type(motion):
+    structures.define_structure(here("TURN"), [structures.structure_slot(here("RADIUS"))], include=here("MOTION"),
+                                include_slots=[structures.structure_slot(here("SPEED"), initform=lambda: 1)])
+    turn = find_class(here("TURN"))(radius=3)
+    assert (turn.speed, turn.angle, turn.radius) == (1, None, 3)
+    assert isinstance(turn, motion)
+    assert here("MOTION-SPEED").function(turn) == here("TURN-SPEED").function(turn) == 1
+
+
+def test_reloading_the_same_definition_keeps_the_class_and_another_one_replaces_it(motion):
+    again = [structures.structure_slot(here("SPEED")), structures.structure_slot(here("ANGLE"))]
+    structures.define_structure(here("MOTION"), again)
+    assert find_class(here("MOTION")) is motion
+    structures.define_structure(here("MOTION"), [structures.structure_slot(here("OTHER"))])
+    assert find_class(here("MOTION")) is not motion
+    structures.define_structure(here("MOTION"), again)
+
+
+def test_a_read_only_slot_has_no_setter():
+    structures.define_structure(here("FROZEN"), [structures.structure_slot(here("X"), read_only=True)])
+    assert here("FROZEN-X").setf_function is None
+
+
+def test_names_of_functions_can_be_chosen_or_left_out():
+    structures.define_structure(here("PLAIN"), [structures.structure_slot(here("VALUE-OF"))], conc_name=None,
+                                constructors=[here("NEW-PLAIN")], copier=None, predicate=here("IS-PLAIN"))
+    assert here("VALUE-OF").function(here("NEW-PLAIN").function(keyword("VALUE-OF"), 3)) == 3
+    assert isinstance(here("COPY-PLAIN").function, UndefinedFunction)
+    assert here("IS-PLAIN").function(1) is None
+
+
+def test_a_constructor_by_position_falls_back_to_the_initforms_of_the_slots():
+    a, b = Symbol("A"), Symbol("B")
+    lambda_list, variables = structures.boa_lambda_list(lisp_list(a, sym("&OPTIONAL"), b))
+    assert list(variables) == [a, b]
+    assert list(list(lambda_list)[2]) == [b, list(lambda_list)[2].cdr.car]
+    construct = lambda first, second=structures.unsupplied(): lisp_list(first, second)  # what the macro compiles
+    slots = [structures.structure_slot(here("A")), structures.structure_slot(here("B"), initform=lambda: 9)]
+    structures.define_structure(here("POINT"), slots, constructors=[[here("POINT"), variables, construct]])
+    assert (here("POINT").function(1).b, here("POINT").function(1, 2).b) == (9, 2)
+
+
+def test_slots_with_names_that_are_alike_in_python_do_not_meet():
+    structures.define_structure(here("ALIKE"), [structures.structure_slot(here("A-B")), structures.structure_slot(here("A_B")),
+                                                structures.structure_slot(here("CLASS"))])
+    alike = here("MAKE-ALIKE").function(keyword("A-B"), 1, keyword("A_B"), 2, keyword("CLASS"), 3)
+    assert (here("ALIKE-A-B").function(alike), here("ALIKE-A_B").function(alike), here("ALIKE-CLASS").function(alike)) == (1, 2, 3)

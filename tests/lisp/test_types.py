@@ -1,0 +1,109 @@
+"""Types as Python code meets them: predicates, ``deftype``, types that are classes of Python."""
+
+import pytest
+
+from cramhy_runtime import image
+from cramhy_runtime.lisp import types
+from cramhy_runtime.lisp.classes import class_of, find_class, register_class
+from cramhy_runtime.lisp.conditions import SimpleError, SimpleTypeError
+from cramhy_runtime.lisp.data import Symbol, list_from, lisp_list
+from cramhy_runtime.lisp.packages import find_package, make_package, sym
+
+image.boot()
+HOME = find_package("TYPE-TESTS") or make_package("TYPE-TESTS", use=("COMMON-LISP",))
+
+
+def test_an_answer_is_true_or_none():
+    assert types.typep(1, sym("INTEGER")) is True
+    assert types.typep("1", sym("INTEGER")) is None
+
+
+@pytest.mark.parametrize("name", ["NUMBER", "INTEGER", "REAL", "BIT", "FIXNUM"])
+def test_pythons_true_is_no_number(name):
+    assert types.typep(True, sym(name)) is None
+    assert types.typep(True, sym("SYMBOL")) is True
+
+
+def test_pythons_false_counts_as_nil():
+    for name in ("NULL", "LIST", "SYMBOL", "BOOLEAN", "SEQUENCE"):
+        assert types.typep(False, sym(name)) is True
+    assert types.type_of(False) is sym("NULL")
+    assert class_of(False) is find_class(sym("NULL"))
+
+
+def test_a_list_specifier_is_compiled_once():
+    specifier = lisp_list(sym("OR"), sym("NULL"), sym("STRING"))
+    assert types.type_predicate(specifier) is types.type_predicate(specifier)
+
+
+def test_a_defined_type_takes_arguments_and_can_be_defined_again():
+    small = HOME.intern("SMALL")
+
+    def expander(limit):
+        def expand(form, environment):
+            given = form.cdr.car if form.cdr is not None else limit
+            return lisp_list(sym("INTEGER"), 0, given)
+
+        return expand
+
+    types.define_type(small, expander(10))
+    assert types.typep(10, small) is True and types.typep(11, small) is None
+    assert types.typep(11, lisp_list(small, 20)) is True
+    types.define_type(small, expander(5))
+    assert types.typep(10, small) is None
+
+
+def test_a_type_of_common_lisp_cannot_be_defined_again():
+    with pytest.raises(SimpleError) as problem:
+        types.define_type(sym("INTEGER"), lambda form, environment: None)
+    assert str(problem.value) == "INTEGER is a type of Common Lisp and cannot be defined again. Choose another name."
+
+
+def test_an_unknown_type_is_an_error_now_and_a_class_once_it_is_defined():
+    name = HOME.intern("LATER")
+    with pytest.raises(SimpleError, match="unknown type specifier"):
+        types.typep(1, name)
+    later = register_class(name, type("Later", (), {}))
+    assert types.typep(later(), name) is True
+
+
+def test_a_class_of_the_runtime_is_found_by_its_lisp_name():
+    class Rover:
+        lisp_name = "TYPE-TESTS::ROVER"
+
+    assert types.typep(Rover(), HOME.intern("ROVER")) is True
+    assert types.type_of(Rover()) is HOME.intern("ROVER")
+    assert types.typep(Rover(), sym("STANDARD-OBJECT")) is True
+
+
+def test_member_compares_with_eql():
+    specifier = lisp_list(sym("MEMBER"), 1, True)
+    assert types.typep(1, specifier) is True
+    assert types.typep(1.0, specifier) is None
+    assert types.typep(True, specifier) is True
+
+
+def test_satisfies_looks_the_function_up_at_each_test():
+    predicate = Symbol("EVEN-NOW")
+    predicate.function = lambda number: True
+    specifier = list_from([sym("SATISFIES"), predicate])
+    assert types.typep(3, specifier) is True
+    predicate.function = lambda number: None
+    assert types.typep(3, specifier) is None
+
+
+def test_python_sequences_are_vectors():
+    assert types.typep(b"ab", sym("VECTOR")) is True
+    assert types.typep([1, 2], lisp_list(sym("SIMPLE-VECTOR"), 2)) is True
+
+
+def test_coercion_leaves_alone_what_is_of_the_type():
+    text = "abc"
+    assert types.coerce(text, sym("STRING")) is text
+    assert types.coerce(None, sym("LIST")) is None
+
+
+def test_coercion_that_is_impossible_says_so():
+    with pytest.raises(SimpleTypeError) as problem:
+        types.coerce("12", sym("NUMBER"))
+    assert str(problem.value) == '"12" can\'t be converted to type NUMBER.'
