@@ -104,11 +104,6 @@ def ldb(bytespec, integer):
     return need_integer(integer) >> bytespec.cdr & _mask(bytespec)
 
 
-def set_ldb(newbyte, bytespec, integer):
-    """The integer that ``(setf (ldb bytespec place) newbyte)`` stores in the place."""
-    return dpb(newbyte, bytespec, integer)
-
-
 def ldb_test(bytespec, integer):
     return boolean(ldb(bytespec, integer))
 

@@ -63,12 +63,6 @@ _MAP = {
 _mro_cache: dict = {}
 
 
-def map_python_class(cls, name):
-    """Declare that instances of the Python class ``cls`` are instances of the system class ``name`` (such as "STREAM")."""
-    _MAP[cls] = name
-    forget()
-
-
 def forget():
     """Drop what is remembered about class precedence: a class has been redefined."""
     _mro_cache.clear()

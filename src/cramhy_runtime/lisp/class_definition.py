@@ -58,8 +58,9 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
         bases.append(StandardObject)
     cls = _make_or_change(name, bases, slots)
     cls.lisp_default_initargs = [tuple(python_list(entry))[:2] for entry in python_list(default_initargs)]
-    cls.lisp_documentation = documentation
     cls.__doc__ = documentation
+    if metaclass is not None and symbol_name(metaclass) != "STANDARD-CLASS":
+        cls.lisp_metaclass = find_class_or_error(metaclass)
     _define_accessors(cls, slots)
     return cls
 
@@ -209,7 +210,7 @@ def define_condition(name, parents=None, slots=None, *, report=None, default_ini
     bases = [base for base in bases if not any(other is not base and issubclass(other, base) for other in bases)]
     cls = _make_or_change(name, bases, slots)
     cls.lisp_default_initargs = [tuple(python_list(entry))[:2] for entry in python_list(default_initargs)]
-    cls.lisp_documentation = cls.__doc__ = documentation
+    cls.__doc__ = documentation
     if report is not None:
         cls.report = _report_method(report)
     elif "report" in vars(cls):

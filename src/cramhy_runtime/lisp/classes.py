@@ -241,13 +241,6 @@ def metaclass_of(cls):
     return StandardClass if issubclass(cls, StandardObject) or _own_name(cls) else type(cls)
 
 
-def print_class(cls, stream):
-    """Write ``#<STANDARD-CLASS TUT::TURTLE>``."""
-    from .printer import prin1_to_string
-
-    stream.write(f"#<{prin1_to_string(class_name(metaclass_of(cls)))} {prin1_to_string(class_name(cls))}>")
-
-
 def set_class_name(new, cls):
     cls.lisp_symbol = new
     return new

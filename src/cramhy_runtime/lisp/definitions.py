@@ -49,11 +49,10 @@ def define_function(name, function, documentation=None):
     return name
 
 
-class RedefinitionWarning(condition_types.SimpleStyleWarning):
+class RedefinitionWarning(condition_types.SimpleWarning):
     """A function is defined again, from another place."""
 
     lisp_name = "SB-KERNEL::REDEFINITION-WITH-DEFUN"
-    announced_as = "WARNING"
 
 
 def define_macro(name, expander, documentation=None):

@@ -9,9 +9,9 @@ qualifiers, and gives the list of the results; without methods it gives ``nil``.
 
 from __future__ import annotations
 
-from .conditions import SimpleError, error, warn
+from .conditions import SimpleError, error, restart_case, warn
 from .data import Cons, Symbol, lisp_list, list_from, one, python_list, truth
-from .generic_errors import no_next_method_error, no_primary_method_error
+from .generic_errors import no_primary_method_error
 from .packages import keyword, printed, sym, symbol_name
 
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
@@ -116,8 +116,6 @@ def _with_auxiliaries(main, befores, afters):
 
 
 def _retrying(generic_function, arguments, signal):
-    from .conditions import restart_case
-
     return restart_case([(sym("RETRY"), lambda: generic_function(*arguments), "Retry calling the generic function.")],
                         lambda: signal(generic_function, arguments))
 
@@ -346,7 +344,3 @@ def define_long_combination(name, groups, expand, *, documentation=None):
     combination.documentation = documentation
     _combinations[name] = combination
     return name
-
-
-def no_next_method_default(generic_function, method, arguments):
-    return no_next_method_error(generic_function, method, arguments)

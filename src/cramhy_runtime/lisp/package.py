@@ -6,7 +6,6 @@ Every module of this room lists its Lisp names in ``LISP_NAMES`` and its setters
 from __future__ import annotations
 
 import importlib
-import importlib.util
 
 from . import cl_names, expansion_support
 from .faces import define_face, lispify
@@ -14,7 +13,7 @@ from .packages import Package, find_package, register, sym
 
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
-    class_definition slots protocol generic structures streams stream_functions printer pretty pprint_dispatch format reader tokens
+    class_definition slots protocol generic structures streams stream_functions file_streams printer pretty pprint_dispatch format reader tokens
     readtables reader_functions symbols control""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
@@ -23,6 +22,9 @@ HELPERS = {
     "generic": "define-generic define-method",
     "method_combination": "define-short-combination define-long-combination",
     "structures": "structure-slot define-structure unsupplied",
+    "types": "define-type",
+    "printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
+        make-fill-pointer-output-stream stream-position with-open-file with-standard-io-syntax""",
     "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
     "places": "define-modifier define-setf-function define-setf-form define-expander",
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
@@ -34,8 +36,6 @@ HELPERS = {
 def fill():
     """Define the faces; called once, when ``cramhy_runtime.lisp`` is imported."""
     for name in MODULES:
-        if importlib.util.find_spec(f"{__package__}.{name}") is None:
-            continue
         module = importlib.import_module(f"{__package__}.{name}")
         names = " ".join(lisp_name for lisp_name in module.LISP_NAMES.split()
                          if lisp_name in _standard) if hasattr(module, "LISP_NAMES") else ""
@@ -48,6 +48,7 @@ def fill():
     define_face("COMMON-LISP", functions={"proclaim": expansion_support.proclaim})
     if find_package("CRAMHY") is None:
         register(Package("CRAMHY"))
+    importlib.import_module(f"{__package__}.clos_printing")  # teaches the printer about classes and generic functions
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})
 

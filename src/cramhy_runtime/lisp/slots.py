@@ -223,11 +223,6 @@ def update_if_obsolete(obj):
     return True
 
 
-def slot_names(cls):
-    """The names of the slots of instances of ``cls``, for printing and describing."""
-    return list(effective_slots(cls))
-
-
 # ------------------------------------------------------------------------------------------------------------ accessor methods
 
 

@@ -253,7 +253,7 @@ def _make_class(structure, parent, documentation):
             "__slots__": tuple(slot.attribute for slot in structure.slots[inherited:]),
             "__module__": python_name(package.name) if package else "lisp", "lisp_symbol": structure.name})
         register_class(structure.name, cls)
-    cls.lisp_documentation = documentation
+    cls.__doc__ = documentation
     structure.cls = cls
     cls.lisp_structure = structure
 

@@ -357,7 +357,7 @@ _MAKERS = {
 # ------------------------------------------------------------------------------------------------------------------- deftype
 
 
-def define_type(symbol, expander, documentation=None):
+def define_type(symbol, expander):
     """``deftype``: make ``symbol`` a type specifier; returns it.
 
     expander: a function of the whole specifier, a list ``(symbol . arguments)``, and an environment (nil), as macro functions
@@ -366,12 +366,8 @@ def define_type(symbol, expander, documentation=None):
     if sym("CAR").package is symbol.package and symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
     _expanders[symbol] = expander
-    _documentation[symbol] = documentation
     forget_predicates()
     return symbol
-
-
-_documentation: dict = {}
 
 
 def expand_type(specifier):
@@ -383,14 +379,6 @@ def expand_type(specifier):
             return specifier
         form = specifier if isinstance(specifier, Cons) else lisp_list(specifier)
         specifier = one(expander(form, None))
-
-
-def type_documentation(symbol):
-    """What ``(documentation symbol 'type)`` is: of a type or a class."""
-    if symbol in _documentation:
-        return _documentation[symbol]
-    cls = symbol_class(symbol)
-    return getattr(cls, "lisp_documentation", None) if cls is not None else None
 
 
 def is_known_type(specifier):
