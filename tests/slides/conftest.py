@@ -55,7 +55,7 @@ class Workspace:
 class Transcript:
     """What the REPL printed. ``answers`` are the texts between prompts, with stamps and addresses made equal."""
 
-    PROMPT = re.compile(r"^([A-Z-]+> |\d+\] )", re.M)
+    PROMPT = re.compile(r"(?:^|(?<=\] ))([A-Z-]+> |\d+\] )", re.M)
 
     def __init__(self, text):
         self.text = text

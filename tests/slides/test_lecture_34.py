@@ -102,5 +102,5 @@ def test_a_wait_blocks_until_the_turtle_is_there(workspace, backend):
 def test_a_surplus_parenthesis_is_a_warning_with_its_place(workspace):
     control_package(workspace, "control-turtlesim-one-paren-too-many.lisp")
     transcript = workspace.repl(*LOAD, "*pen-srv*")
-    assert "unmatched close parenthesis at" in transcript.text and "control-turtlesim.lisp:26:63" in transcript.text
+    assert "unmatched close parenthesis at" in transcript.text and "control-turtlesim.lisp:25:62" in transcript.text
     assert transcript.answers[2] == "NIL"

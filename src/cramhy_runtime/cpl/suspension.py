@@ -40,7 +40,7 @@ def _request(task):
         return
     task.held = True
     if task.kernel_task is not None and task.status is RUNNING and task is not current_task():
-        task.kernel_task.kernel.rouse(task.kernel_task)
+        task.kernel_task.interject(lambda: obey(task))
 
 
 def wake_up(task, *, reason=None, sync=True):

@@ -13,7 +13,7 @@ import itertools
 import weakref
 
 from ..lisp.condition_types import SimpleError, SimpleWarning
-from ..lisp.conditions import error, warn
+from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
 from ..lisp.generic import generic
 from ..lisp.packages import keyword
@@ -244,16 +244,22 @@ def desig_prop_value(designator, key):
     """The value of the first pair with ``key``; nil if there is none, or no designator."""
     check_key(key)
     if designator is not None:
-        for pair in designator.description or ():
+        for pair in _pairs(designator):
             if pair.car is key:
                 return pair.cdr.car if pair.cdr is not None else None
     return None
 
 
+def _pairs(designator):
+    """The entries of the description, which must be lists; another one is a type-error, as in the original."""
+    for entry in designator.description or ():
+        yield entry if isinstance(entry, Cons) else type_error(entry, "LIST")
+
+
 def desig_prop_values(designator, key):
     """The values of all pairs with ``key``, in order."""
     check_key(key)
-    return list_from([pair.cdr.car if pair.cdr is not None else None for pair in designator.description or () if pair.car is key])
+    return list_from([pair.cdr.car if pair.cdr is not None else None for pair in _pairs(designator) if pair.car is key])
 
 
 def with_desig_props_value(designator, name):

@@ -33,6 +33,10 @@ def _print_description(designator, stream):
     if description is not None and not isinstance(description, Cons):
         type_error(description, "LIST")
     for entry in description or ():
+        if not isinstance(entry, Cons):  # a description may be anything, such as '(:close-to :fridge)
+            stream.write("\n    ")
+            _bare(entry, stream, escape)
+            continue
         stream.write("\n    (")
         _bare(entry.car, stream, escape)
         stream.write(" ")

@@ -34,7 +34,7 @@ class Task:
     __slots__ = (
         "kernel", "id", "name", "parent", "local", "dynamic", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
-        "fn", "args", "context", "joiners", "cancel_request", "delivered", "swallowed", "_exception", "claimed", "__weakref__",
+        "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered", "swallowed", "_exception", "claimed", "__weakref__",
     )  # fmt: skip
 
     def __init__(self, kernel, number, fn, args, name, parent):
@@ -62,6 +62,7 @@ class Task:
         self.context = copy_context()
         self.joiners = None
         self.cancel_request = None
+        self.interjections = None  # functions to be called on its own stack
         self.delivered = None
         self.swallowed = 0
         self._exception = None
@@ -93,6 +94,18 @@ class Task:
         if self.cancel_request is not None or self.state is DEAD:
             return
         self.cancel_request = (reason,)
+        self.attention = True
+        if not self.shielded:
+            self.kernel.rouse(self)
+            if self is self.kernel.current:
+                budget.left = 0
+
+    def interject(self, fn):
+        """Have FN called on the task's own stack at its next park point or checkpoint; FN may park. Wakes it if it is parked.
+
+        Inside of `shield` the call waits. Suspension of branches (CPL) is made of this.
+        """
+        self.interjections = [*(self.interjections or ()), fn]
         self.attention = True
         if not self.shielded:
             self.kernel.rouse(self)
@@ -149,9 +162,16 @@ class Task:
             self._look_again()
             raise exception
 
+        if self.interjections and not self.shielded:
+            functions, self.interjections = self.interjections, None
+            self._look_again()
+            for function in functions:
+                function()
+            self.woken = True  # whoever parked looks again whether what it waits for has come
+
     def _look_again(self):
         waiting = self.cancel_request is not None and not self.cancelled_delivered
-        self.attention = waiting or bool(self.alarms) or self.abandoned
+        self.attention = waiting or bool(self.alarms) or bool(self.interjections) or self.abandoned
 
     def _cancellation(self):
         (reason,) = self.cancel_request

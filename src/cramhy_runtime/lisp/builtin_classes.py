@@ -83,8 +83,9 @@ def _compute_mro(cls):
     for base in cls.__mro__:
         name = _MAP.get(base) or _named(base)
         if name is not None:
-            # The Python class itself stays in front, so that Python code may specialize methods on it.
-            return [*result, base, *CLASSES[name].__mro__]
+            # The Python classes themselves stay in front, so that Python code may specialize methods on them: a keyword is a Symbol.
+            above = cls.__mro__[len(result):-1]
+            return [*result, *above, *CLASSES[name].__mro__]
         result.append(base)
     result.pop()  # object, which is T, comes last
     if not issubclass(cls, type):

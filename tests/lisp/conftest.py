@@ -1,0 +1,20 @@
+"""Each test file of this room finds the package COMMON-LISP-USER as it was before the others."""
+
+import pytest
+
+from cramhy_runtime.lisp.data import Symbol
+from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+
+_KEPT = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def user_package_of_its_own():
+    before = dict(COMMON_LISP_USER.internal)
+    contents = {symbol: [getattr(symbol, name) for name in _KEPT] for symbol in before.values() if isinstance(symbol, Symbol)}
+    yield
+    COMMON_LISP_USER.internal.clear()
+    COMMON_LISP_USER.internal.update(before)
+    for symbol, values in contents.items():
+        for name, value in zip(_KEPT, values):
+            setattr(symbol, name, value)
