@@ -9,7 +9,6 @@ tutorial: $(READY)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
 
 test: $(READY)
-	@$(BIN)/ruff check src tests benchmarks tutorials
 	@$(BIN)/python -m pytest
 
 golden: $(READY)
@@ -22,7 +21,7 @@ soak: $(READY)
 	@CRAMHY_SOAK=1 $(BIN)/python -m pytest
 
 lint: $(READY)
-	@$(BIN)/ruff check src tests benchmarks tutorials
+	@$(BIN)/ruff check src hy_src tests benchmarks tutorials
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "cramhy needs Python 3.11 or later; try make PYTHON=python3.11")'

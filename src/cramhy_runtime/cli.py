@@ -8,7 +8,7 @@ import sys
 
 def _session_options():
     options = argparse.ArgumentParser(add_help=False)
-    options.add_argument("--time", choices=["virtual", "wall"], default=None, help="virtual time, as fast as the machine computes, or wall time")
+    options.add_argument("--time", choices=["virtual", "wall"], default=None, help="virtual: as fast as the machine computes; or wall time")
     options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
     options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks")
     options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time")
@@ -24,6 +24,7 @@ def parser():
     main_parser = argparse.ArgumentParser(prog="cramhy", description="CRAM's robot plan language on Hy and Python.")
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     repl = commands.add_parser("repl", parents=[common], help="the REPL (also called roslisp_repl)")
+    repl.add_argument("--commands", action="store_true", help="serve rosservice, rostopic ... from this user's other terminals")
     repl.add_argument("--view", action="store_true", help="show the turtle's paper in a page")
     run = commands.add_parser("run", parents=[common], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file")
@@ -80,7 +81,9 @@ def roslisp_repl():
 def _repl(options):
     from cramhy_runtime.repl.console import Console
 
-    return Console(lambda: session(options)).run()
+    if options.view:
+        return _view(options)
+    return Console(lambda: session(options), commands=options.commands and options.time != "virtual").run()
 
 
 def _eval(options):

@@ -16,6 +16,7 @@ from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
 from cramhy_runtime.lisp.places_in_source import describe, excerpt
 
+from . import commands
 from .session import Interruption, condition_of, handle_interrupts, signalled_here
 
 
@@ -86,8 +87,9 @@ class Input:
 class Console:
     """The read-eval-print loop. ``make_session`` is called once the prompt is needed."""
 
-    def __init__(self, make_session, lines=None):
+    def __init__(self, make_session, lines=None, commands=False):
         self.make_session = make_session
+        self.commands = commands
         self.input = lines or Input()
         self.session = None
         self.level = 0
@@ -102,6 +104,8 @@ class Console:
         handle_interrupts()
         conditions.install_debugger(self.debug)
         streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT  # warnings belong to the transcript
+        if self.commands:
+            commands.listen()
         try:
             while True:
                 text = self.read_text(self.session.prompt())
@@ -149,8 +153,11 @@ class Console:
     # ---------------------------------------------------------------------------------------------------------- evaluating
 
     def evaluate(self, text):
-        """Evaluate and print every form of ``text``."""
+        """Evaluate and print every form of ``text``; a line that is a ROS command is carried out."""
         try:
+            if commands.is_command(text):
+                output, _ = commands.run_line(text)
+                return streams.CONSOLE_OUTPUT.write(output)
             for form, reader in self.session.forms(text):
                 self.show(self.session.evaluate(form, reader))
         except Interruption:

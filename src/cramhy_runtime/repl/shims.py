@@ -13,7 +13,8 @@ import shutil
 import sys
 from pathlib import Path
 
-TOOLS = ("catkin_create_pkg", "catkin_make", "roscore", "rosrun", "roslaunch", "rosservice", "rostopic", "rosnode", "rospack")
+TOOLS = ("catkin_create_pkg", "catkin_make", "roscore", "rosrun", "roslaunch", "rosservice", "rostopic", "rosnode", "rosparam", "rosmsg",
+         "rossrv", "rospack")
 
 
 def run(folder=None):
@@ -25,6 +26,7 @@ def run(folder=None):
     if folder is None:
         for tool in tools:
             print(f'{tool}() {{ cramhy ros {tool} "$@"; }}')
+        print('roslisp_repl() { command roslisp_repl --commands "$@"; }')
         if shutil.which("roscd") is None:
             print('roscd() { local to; to="$(cramhy ros roscd "$@")" && cd "$to"; }')
         return 0
@@ -144,21 +146,24 @@ def _rosrun(arguments):
 _roslaunch = _rosrun
 
 
-def _graph_note(command, arguments):
-    call = " ".join(arguments)
-    print(f'The ROS graph lives in the process of roslisp_repl; type there: (ros:{command} "{call}")')
+def _graph_command(name):
+    def run_there(arguments):
+        from .commands import send
+
+        answer = send([name, *arguments])
+        if answer is None:
+            print(f"ERROR: no REPL serves ROS commands. Start it with: roslisp_repl --commands (or type {name} ... at its prompt).",
+                  file=sys.stderr)
+            return 1
+        text, status = answer
+        print(text, end="", file=sys.stderr if status else sys.stdout)
+        return status
+
+    return run_there
 
 
-def _rosservice(arguments):
-    _graph_note("rosservice", arguments)
-
-
-def _rostopic(arguments):
-    _graph_note("rostopic", arguments)
-
-
-def _rosnode(arguments):
-    _graph_note("rosnode", arguments)
+_rosservice, _rostopic, _rosnode = map(_graph_command, ("rosservice", "rostopic", "rosnode"))
+_rosparam, _rosmsg, _rossrv = map(_graph_command, ("rosparam", "rosmsg", "rossrv"))
 
 
 def _rospack(arguments):
