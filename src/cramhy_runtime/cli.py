@@ -87,10 +87,12 @@ def _repl(options):
 
 
 def _eval(options):
+    from cramhy_runtime.lisp import streams
     from cramhy_runtime.repl import json_lines
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import condition_of, handle_interrupts
 
+    streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
     try:
         made = session(options, default_time="virtual")
     except Exception as problem:

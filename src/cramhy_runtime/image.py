@@ -52,6 +52,6 @@ def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, 
     from cramhy_runtime.lisp.random_state import seed_random
     from cramhy_runtime.turtlesim.node import start_with_first_node
 
-    seed_random(0 if seed is None else seed)
+    seed_random(seed)
     if turtlesim:
         start_with_first_node()

@@ -31,7 +31,7 @@ def score(files, show=0):
         done = subprocess.run([sys.executable, str(SHARED / "tools" / "golden.py"), "--cmd", command(path), "--show", str(show), str(path)],
                               capture_output=True, text=True, cwd=ROOT, env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""})
         *lines, last = done.stdout.strip().splitlines() or [""]
-        output += "\n".join(lines) + "\n" + done.stderr
+        output += "\n".join(lines) + "\n"
         good, _, all_of_them = last.removeprefix("passed ").partition(" of ")
         passed, total = passed + int(good or 0), total + int(all_of_them or 0)
     return f"{output}passed {passed} of {total}"

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from .score import score
+from .score import ROOT, score
 
-MUST_PASS = ["01_ros_and_turtle", "02_messages", "03b_no_node", "13_plan_language"]
+MUST_PASS = ["01_ros_and_turtle", "02_messages", "03_ros_errors", "03b_no_node", "05_motion_designators", "10_prolog", "11_printing",
+             "13_plan_language"]
 
 
 @pytest.mark.parametrize("name", MUST_PASS)
@@ -14,3 +15,9 @@ def test_every_answer_is_that_of_the_original(shared, name):
     output = score([shared / "golden" / f"{name}.jsonl"], show=5)
     passed, _, total = output.strip().splitlines()[-1].removeprefix("passed ").partition(" of ")
     assert passed == total, output
+
+
+def test_the_readme_shows_the_score(shared):
+    readme = (shared.parent / ROOT.name / "README.md").read_text()
+    for line in score(sorted((shared / "golden").glob("*.jsonl"))).splitlines():
+        assert line in readme
