@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import importlib.abc
 import importlib.machinery
+import importlib.util
 import sys
 import types
+from pathlib import Path
 
-from . import systems
+from . import loader, systems
 from .data import Symbol, UNBOUND, UndefinedFunction
 from .faces import attribute_symbols, python_name
 from .packages import all_packages, find_package
@@ -73,14 +75,42 @@ class PackageLoader(importlib.abc.Loader):
         module.__doc__ = package.documentation
 
 
+class FileLoader(importlib.abc.InspectLoader):
+    """Loads one ``.lisp`` file as a module: the face of the package that is current at its end."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def create_module(self, spec):
+        return PackageModule(spec.name)
+
+    def get_source(self, name):
+        return Path(self.path).read_text(encoding="utf-8")
+
+    def exec_module(self, module):
+        packages = []
+        loader.load_file(self.path, finished=packages.append)
+        module.__dict__["lisp_package"] = packages[0]
+        module.__doc__ = packages[0].documentation
+
+
 class SystemFinder(importlib.abc.MetaPathFinder):
-    """Finds a system for a Python module name that nothing else provides: it stands last in ``sys.meta_path``."""
+    """Finds a ``.lisp`` file beside Python's, or a system, for a module name that nothing else provides.
+
+    It stands last in ``sys.meta_path``. Underscores in the name may be dashes in the file's.
+    """
 
     def find_spec(self, name, path=None, target=None):
-        if path is not None or "." in name or name.startswith("_"):
+        short = name.rpartition(".")[2]
+        if short.startswith("_"):
             return None
+        for folder in sys.path if path is None else path:
+            for spelling in (short, short.replace("_", "-")):
+                file = Path(folder or ".", f"{spelling}.lisp")
+                if file.is_file():
+                    return importlib.util.spec_from_file_location(name, file, loader=FileLoader(str(file)))
         system = name.replace("_", "-")
-        if systems.find_asd(system) is None:
+        if path is not None or "." in name or systems.find_asd(system) is None:
             return None
         return importlib.machinery.ModuleSpec(name, PackageLoader(system), origin=f"the system {system}")
 

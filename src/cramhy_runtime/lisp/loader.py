@@ -61,10 +61,11 @@ def kept_path(path):
     return cache / f"{hashlib.sha256(str(path).encode()).hexdigest()[:16]}-{name}"
 
 
-def load_file(path, chain=""):
+def load_file(path, chain="", finished=None):
     """Load a ``.lisp`` or ``.hy`` file; ``*package*`` is the same afterwards as before.
 
-    path: the file. chain: fingerprint of what was loaded before it and may define macros that it uses.
+    path: the file. chain: fingerprint of what was loaded before it and may define macros that it uses. finished: called with
+    the package that is current at the end of the file.
     Returns the fingerprint of this file with its chain. A missing file is a file-error, a broken one an error with its place.
     """
     path = Path(path).absolute()
@@ -85,6 +86,8 @@ def load_file(path, chain=""):
             codes = load_text(text, str(path), stored=True)
             if codes is not None:
                 _keep(path, fingerprint, codes)
+        if finished is not None:
+            finished(PACKAGE.value)
     return fingerprint
 
 

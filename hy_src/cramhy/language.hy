@@ -9,11 +9,6 @@ is line for line Common Lisp after that: `in-package` takes the reader over, so 
 is a function and `(a . b)` a pair. Each form is compiled by the one compiler of `cramhy_runtime.lisp`, and Hy makes Python of
 what it emits. Without `in-package` the operators of the plan language take Hy bodies: `(top-level (par (left) (right)))`."
 
-(import cramhy_runtime.image [boot])
-(boot)
-
-(import cramhy.hy-files [lisp-form compile-form take-over plain-operator])
-
 (eval-and-compile
   (import cramhy_runtime.image [boot])
   (boot)
