@@ -104,8 +104,8 @@ class Console:
         handle_interrupts()
         conditions.install_debugger(self.debug)
         streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT  # warnings belong to the transcript
-        if self.commands:
-            commands.listen()
+        if self.commands and not commands.listen():
+            print("; Another REPL serves rosservice and its kin already; this one does not.")
         try:
             while True:
                 text = self.read_text(self.session.prompt())

@@ -15,7 +15,7 @@ from cramhy_runtime.lisp import conditions, evaluator, systems
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
-from cramhy_runtime.lisp.places_in_source import exception_position, user_position
+from cramhy_runtime.lisp.places_in_source import locate, user_position
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
@@ -93,7 +93,7 @@ class Session:
         except (kernel.Interrupted, kernel.Abandoned):
             raise Interruption from None
         except Condition as condition:
-            locate(condition, exception_position(condition))
+            locate(condition, condition)
             raise
         finally:
             kernel.interrupt_over()
@@ -116,21 +116,16 @@ class Session:
         return conditions.restart_case([(sym("ABORT"), lambda: (False, None), report)], lambda: (True, thunk()))
 
 
-def locate(condition, position):
-    """Note where ``condition`` arose, if that is not known better."""
-    if getattr(condition, "position", None) is None and position is not None:
-        condition.position = position
-
-
 def signalled_here(condition):
     """Note the place of a condition while its stack is still there; for debuggers."""
-    locate(condition, user_position())
+    if getattr(condition, "position", None) is None:
+        condition.position = user_position()
 
 
 def condition_of(exception):
     """The condition for any exception that left a form."""
     condition = from_python(exception)
-    locate(condition, exception_position(exception))
+    locate(condition, exception)
     return condition
 
 
