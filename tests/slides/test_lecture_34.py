@@ -104,3 +104,12 @@ def test_a_surplus_parenthesis_is_a_warning_with_its_place(workspace):
     transcript = workspace.repl(*LOAD, "*pen-srv*")
     assert "unmatched close parenthesis at" in transcript.text and "control-turtlesim.lisp:25:62" in transcript.text
     assert transcript.answers[2] == "NIL"
+
+
+def test_an_error_names_the_form_in_the_students_file(workspace):
+    control_package(workspace)
+    transcript = workspace.repl(*LOAD, '(start-ros-node "a")', '(init-ros-turtle "turtle1")', '(send-vel-cmd "fast" 1)', "0", "(send-vel-cmd 1)", "0")
+    wrong_value, wrong_count = transcript.answers[4], transcript.answers[6]
+    assert 'The value\n    "fast"\n  is not of type\n    REAL' in wrong_value
+    assert "at src/cram_my_beginner_tutorial/src/control-turtlesim.lisp:41:3\n      (publish *cmd-vel-pub*\n      ^" in wrong_value
+    assert "invalid number of arguments: 1" in wrong_count and "SEND-VEL-CMD takes 2 arguments." in wrong_count
