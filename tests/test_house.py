@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -65,6 +68,30 @@ def test_no_file_is_longer_than_600_lines(path):
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
 def test_every_module_opens_with_a_paragraph(path):
     assert ast.get_docstring(ast.parse(path.read_text()))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="each module gets a fresh interpreter by a fork")
+def test_any_module_can_be_imported_first():
+    """No module relies on another one having been imported before it."""
+    names = [".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__") for path in FILES]
+    done = subprocess.run([sys.executable, "-c", IMPORT_EACH, *names], capture_output=True, text=True)
+    assert not done.stdout, done.stdout
+    assert done.returncode == 0, done.stderr
+
+
+IMPORT_EACH = """
+import importlib, os, sys, traceback
+import hy, PIL.Image  # what every child would import again
+for name in sys.argv[1:]:
+    child = os.fork()
+    if not child:
+        try:
+            importlib.import_module(name)
+        except BaseException:
+            print(name, traceback.format_exc(limit=-3), sep="\\n", flush=True)
+        os._exit(0)
+    os.waitpid(child, 0)
+"""
 
 
 def test_nothing_names_a_path_of_a_machine():

@@ -28,13 +28,17 @@ Each is what the standard says that it expands into; see the section of ANSI in 
                  True `(if ~test ~(clause-body body) ~form))))
   form)
 
+(defn key-equal [variable key]
+  "Whether the key is `eql` to `key`; a string never is, but Python may share equal ones."
+  (if (isinstance key str) None `(eql ~variable (quote ~key))))
+
 (defn key-test [variable keys]
   "The test of a `case` clause: `keys` is one object or a list of them."
   (setv items (if (or (listp keys) (is keys None)) (elements keys) [keys]))
   (match (len items)
     0 None
-    1 `(eql ~variable (quote ~(get items 0)))
-    _ `(or ~@(lfor item items `(eql ~variable (quote ~item))))))
+    1 (key-equal variable (get items 0))
+    _ `(or ~@(lfor item items (key-equal variable item)))))
 
 (defn type-test [variable type]
   `(typep ~variable (quote ~type)))
@@ -94,6 +98,31 @@ Each is what the standard says that it expands into; see the section of ANSI in 
            ~(choose variable clauses type-test
               `(progn (setf ~place (%ask-for-value ~variable "CTYPECASE" (quote ~(list-from (lfor clause clauses clause.car)))))
                       (go ~again))))))))
+
+;; The compiler treats these itself; programs that expand forms see them as the macros that they are.
+
+(defoperator and [#* forms]
+  (cond
+    (not forms) True
+    (= (len forms) 1) (get forms 0)
+    True `(if ~(get forms 0) (and ~@(cut forms 1 None)) nil)))
+
+(defoperator or [#* forms]
+  (setv value (gensym "VALUE"))
+  (cond
+    (not forms) None
+    (= (len forms) 1) (get forms 0)
+    True `(let [[~value ~(get forms 0)]] (if ~value ~value (or ~@(cut forms 1 None))))))
+
+(defoperator multiple-value-list [form]
+  `(multiple-value-call (function list) ~form))
+
+(defoperator multiple-value-bind [variables form #* body]
+  (setv ignored (gensym "IGNORED"))
+  `(multiple-value-call (lambda [&optional ~@(elements variables) &rest ~ignored] ~@body) ~form))
+
+(defoperator lambda [#* parts]
+  `(function (lambda ~@parts)))
 
 ;; ------------------------------------------------------------------------------------------------------------- sequence
 
@@ -290,14 +319,14 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 ;; --------------------------------------------------------------------------------------------------- conditions, checks
 
 (defoperator assert [test [places None] #* message]
-  `(if ~test nil (%assertion-failed (quote ~test) ~@message)))
+  (setv again (gensym "AGAIN"))
+  `(tagbody ~again (if ~test nil (progn (%assertion-failed (quote ~test) ~@message) (go ~again)))))
 
 (defoperator check-type [place type [name None]]
-  `(if (typep ~place (quote ~type))
-       nil
-       ~(if (or (listp place) (isinstance place LispSymbol))
-            `(setf ~place (%check-type-failed ~place (quote ~place) (quote ~type) ~name))
-            `(%check-type-failed ~place (quote ~place) (quote ~type) ~name))))
+  (setv again (gensym "AGAIN") failed `(%check-type-failed ~place (quote ~place) (quote ~type) ~name))
+  (if (or (listp place) (isinstance place LispSymbol))
+      `(tagbody ~again (if (typep ~place (quote ~type)) nil (progn (setf ~place ~failed) (go ~again))))
+      `(if (typep ~place (quote ~type)) nil ~failed)))
 
 (defn handler-function [clause]
   "(type function) for a clause (type (variable) . body)."

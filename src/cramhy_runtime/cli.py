@@ -88,6 +88,7 @@ def _repl(options):
 
 def _eval(options):
     from cramhy_runtime.lisp import streams
+    from cramhy_runtime.lisp.conditions import Condition
     from cramhy_runtime.repl import json_lines
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import condition_of, handle_interrupts
@@ -95,7 +96,7 @@ def _eval(options):
     streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
     try:
         made = session(options, default_time="virtual")
-    except Exception as problem:
+    except (Exception, Condition) as problem:
         report(condition_of(problem))
         return 1
     handle_interrupts()

@@ -29,6 +29,7 @@ def boot():
     from cramhy_runtime.lisp import evaluator, importer, package, places_in_source, ros_load, systems
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 
+    kernel.allow_deep_recursion()
     if kernel.active() is None:
         kernel.start()
     package.fill()

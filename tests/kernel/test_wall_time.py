@@ -1,5 +1,7 @@
 """Wall time: the same scheduling with a pace-maker. No test here waits: the operating system's clock is a toy."""
 
+import time
+
 import pytest
 
 from cramhy_runtime import kernel
@@ -146,6 +148,13 @@ def test_the_real_clock_can_be_asked_for_by_name(start):
     before = kernel.now()
     kernel.sleep(0.001)
     assert kernel.now() >= before + 0.001
+
+
+def test_every_clock_knows_the_moment_of_its_zero(start):
+    start(clock="wall")
+    assert abs(kernel.active().epoch + kernel.now() - time.time()) < 5
+    start(clock="virtual")
+    assert kernel.active().epoch == kernel.VirtualClock.epoch
 
 
 def test_an_unknown_clock_or_back_end_is_refused():

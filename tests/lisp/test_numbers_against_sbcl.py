@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime import image
+from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp.classes import class_name
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import all_values, one
@@ -25,6 +25,8 @@ PACKAGE, PRETTY = sym("*PACKAGE*"), sym("*PRINT-PRETTY*")
 def answers(program):
     """(form text, what SBCL answered, what we answer) for the forms of ``program`` that are followed by ``=> answer``."""
     image.boot()
+    if kernel.active() is None:
+        kernel.start()
     expected, text = [], []
     for line in program.strip().splitlines():
         if line.startswith("=> "):

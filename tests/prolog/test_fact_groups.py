@@ -219,3 +219,25 @@ def test_predicates_written_in_python():
 
     assert ask("(and (between 1 6 ?x) (even ?x))") == "(((?X . 2)) ((?X . 4)) ((?X . 6)))"
     assert error_text(lambda: ask("(even)")) == "invalid number of arguments: 0"
+
+
+@pytest.mark.parametrize("rule", ["", " (== ?m ?n)"])
+def test_facts_are_found_by_values_that_are_the_same_in_lisp(rule):
+    """Python's ``1 == True == 1.0`` and ``0.0 == -0.0`` must not mix up the rows of a table, nor the clauses of an index."""
+    atoms = ("1", "t", "1.0", "0.0", "-0.0", '"a"', "a", "nil")
+    group("same", *(f"((v {atom} {number}){rule})" for number, atom in enumerate(atoms)))
+    for number, atom in enumerate(atoms):
+        assert ask(f"(v {atom} ?n)") == f"(((?N . {number})))"
+    assert ask("(v 1.0d0 ?n)") == "NIL"
+
+
+def test_the_hooks_of_a_proof_take_methods():
+    seen = []
+    query.on_prepare_prolog_prove.add(lambda goal, binds: seen.append(show(goal)) or "id", "test")
+    query.on_finish_prolog_prove.add(lambda log_id, success: seen.append((log_id, success)), "test")
+    try:
+        ask("(member ?x (1))")
+    finally:
+        query.on_prepare_prolog_prove.remove("test")
+        query.on_finish_prolog_prove.remove("test")
+    assert seen == ["(MEMBER ?X (1))", ("id", True)]

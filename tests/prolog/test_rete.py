@@ -120,4 +120,4 @@ def test_redefining_a_production_warns(warnings_given):
     rete.register_production(read("p"), read("((a ?x))"))
     production = rete.register_production(read("p"), read("((b ?x))"))
     assert warnings_given and warnings_given[0].startswith("Redefining production `")
-    assert show(production).startswith("#S(PRODUCTION-DEFINITION :NAME P :VAR-BINDINGS (?X) :BODY ((B ?X))")
+    assert show(production).startswith("#S(CRAM-PROLOG::PRODUCTION-DEFINITION :NAME P :VAR-BINDINGS (?X) :BODY ((B ?X))")

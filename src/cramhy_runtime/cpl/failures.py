@@ -15,7 +15,7 @@ from cramhy_runtime import kernel
 from ..lisp import condition_types as types
 from ..lisp import conditions
 from ..lisp.conditions import error, handler_bind, handler_case, make_condition, matches, signal_condition
-from ..lisp.data import one, truth
+from ..lisp.data import list_from, one, truth
 from ..lisp.dynamic import binding
 from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure
 from .hooks import (
@@ -135,8 +135,6 @@ def _attempts(handling, body):
 def _observed(handling, body):
     names = [specifier.__name__ if isinstance(specifier, type) else getattr(specifier, "name", str(specifier))
              for specifier, _ in handling.clauses]
-    from ..lisp.data import list_from
-
     handling.id = on_with_failure_handling_begin.first(list_from(names))
     try:
         return _attempts(handling, body)
@@ -167,8 +165,6 @@ class _Failed:
 
 def composite_failure(failures):
     """Fail with a ``composite-failure`` of the conditions ``failures``, a Python list in order."""
-    from ..lisp.data import list_from
-
     return fail(CompositeFailure(failures=list_from(failures)))
 
 

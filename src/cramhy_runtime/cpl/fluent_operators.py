@@ -10,8 +10,10 @@ Repaired: called with that list alone, it follows the fluents in it.
 
 from __future__ import annotations
 
+from ..lisp.condition_types import CaseFailure
 from ..lisp.conditions import error
-from ..lisp.data import list_from, truth
+from ..lisp.data import lisp_list, list_from, truth
+from ..lisp.equality import eq, eql
 from ..lisp.packages import keyword
 from .fluents import (
     ALWAYS,
@@ -26,7 +28,6 @@ from .fluents import (
     check_fluent,
     function_of,
     is_cacheable,
-    unchanged,
     value,
 )
 from .symbols import sym
@@ -90,14 +91,14 @@ fl_member = _lifted("MEMBER", "FL-MEMBER")
 def _lift_test(operator, test):
     def lifted(first, second):
         if isinstance(first, Fluent) or isinstance(second, Fluent):
-            return net(operator, _formula(lambda a, b: True if test(a, b) else None, (first, second)), (first, second))
-        return True if test(first, second) else None
+            return net(operator, _formula(test, (first, second)), (first, second))
+        return test(first, second)
 
     return lifted
 
 
-fl_eq = _lift_test("FL-EQ", lambda a, b: a is b or (a.__class__ is int and b.__class__ is int and a == b))
-fl_eql = _lift_test("FL-EQL", unchanged)
+fl_eq = _lift_test("FL-EQ", eq)
+fl_eql = _lift_test("FL-EQL", eql)
 
 
 def fl_not(argument):
@@ -171,9 +172,6 @@ def fl_pulsed(fluent, *, handle_missed_pulses=None):
         return PulseFluent(fluent)
     mode = _MISSED.get(handle_missed_pulses) or (handle_missed_pulses if handle_missed_pulses in _MISSED.values() else None)
     if mode is None:
-        from ..lisp.condition_types import CaseFailure
-        from ..lisp.data import lisp_list
-
         return error(CaseFailure(handle_missed_pulses, "ECASE", lisp_list(*_MISSED)))
     return PulseFluent(fluent, mode)
 
@@ -184,7 +182,7 @@ pulsed = fl_pulsed
 def fl_value_changed(fluent, *, test=None, key=None):
     """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
     check_fluent(fluent)
-    return ChangeFluent(fluent, function_of(test) or unchanged, function_of(key) or (lambda current: current))
+    return ChangeFluent(fluent, function_of(test) or eql, function_of(key) or (lambda current: current))
 
 
 _parameters = {}

@@ -13,29 +13,21 @@ its inputs; an error in one observer no longer keeps the others from being told;
 from __future__ import annotations
 
 import itertools
-import math
-from fractions import Fraction
 from weakref import ref
 
 from cramhy_runtime import kernel
 
+from ..lisp import functions
+from ..lisp.classes import find_class_or_error, make_instance
 from ..lisp.conditions import SimpleTypeError, error
-from ..lisp.data import DoubleFloat, Symbol, truth
+from ..lisp.data import MultipleValues, Symbol, truth
+from ..lisp.equality import eql
 from ..lisp.generic import generic
+from ..lisp.packages import keyword
 from .hooks import on_make_fluent_hook
+from .symbols import sym
 
 _count = itertools.count(1)
-_NUMBERS = frozenset((int, float, DoubleFloat, Fraction, complex))
-
-
-def unchanged(old, new):
-    """``cl:eql``: the default test of fluents and the test of nets."""
-    if old is new:
-        return True
-    kind = new.__class__
-    if kind is not old.__class__ or kind not in _NUMBERS or old != new:
-        return False
-    return old != 0 or kind is int or not isinstance(new, float) or math.copysign(1.0, old) == math.copysign(1.0, new)
 
 
 class Fluent:
@@ -143,7 +135,7 @@ class ValueFluent(Fluent):
         """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
         old = self.stored
         if self.test is None:
-            if old is new or (new.__class__ is old.__class__ and new.__class__ in _NUMBERS and unchanged(old, new)):
+            if eql(old, new):
                 return new
         elif truth(self.test(old, new)):
             return new
@@ -201,7 +193,7 @@ class CachedNet(Net):
     def pulse(self):
         new = self.formula(value)
         old = self.cached
-        if new is old or unchanged(old, new):
+        if eql(old, new):
             return
         self.cached = new
         self.pulses += 1
@@ -271,7 +263,7 @@ class ChangeFluent(Net):
 
 def function_of(designator):
     """The function that a function or symbol stands for; ``None`` stays ``None``."""
-    return designator.function if isinstance(designator, Symbol) else designator
+    return None if designator is None else functions.function_of(designator)
 
 
 def is_cacheable(fluent):
@@ -301,9 +293,6 @@ def make_fluent(*, class_=None, name=None, value=None, test=None, allow_tracing=
     """A new fluent, by default a value fluent with ``value``; ``test`` says which assignments change nothing (``eql``)."""
     if class_ is None and not others:
         return ValueFluent(name, value, test)
-    from ..lisp.classes import find_class_or_error, make_instance
-    from ..lisp.packages import keyword, sym
-
     cls = class_ if isinstance(class_, type) else find_class_or_error(class_ or sym("CPL-IMPL::VALUE-FLUENT"))
     if cls is ValueFluent and not others:
         return ValueFluent(name, value, test)
@@ -328,8 +317,6 @@ def register_update_callback(fluent, name, function):
 
 def get_update_callback(fluent, name):
     """Two values: the callback registered under ``name`` (a net counts under its own name) and whether there is one."""
-    from ..lisp.data import MultipleValues
-
     if fluent.callbacks and name in fluent.callbacks:
         return MultipleValues((fluent.callbacks[name], True))
     for net in fluent.living_nets():

@@ -6,6 +6,8 @@ with real time, run time, task, context and text. Source: cpl.md section 10. Tag
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime import kernel
 
 from ..lisp.conditions import error
@@ -47,8 +49,6 @@ def _write(line):
     if hasattr(stream, "write"):
         stream.write(line)
     else:
-        import sys
-
         sys.stderr.write(line)
 
 

@@ -10,7 +10,7 @@ from ..lisp.conditions import CompileError, error
 from ..lisp.data import list_from, python_list
 from ..lisp.faces import define_face
 from . import failures, fluent_operators, logging, operators, plans, policies, suspension, tags, task_variables, tree, waiting
-from .symbols import ensure_package, sym
+from .symbols import sym
 
 
 def partial_order(steps, orderings):
@@ -102,6 +102,5 @@ FUNCTIONS = {
 
 def define():
     """Enter the functions into CRAMHY."""
-    ensure_package("CRAMHY")
     define_face("CRAMHY", functions=FUNCTIONS)
     sym("CRAMHY::PARAMETER-VALUE").setf_function = fluent_operators.set_parameter_value

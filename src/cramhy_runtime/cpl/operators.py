@@ -15,7 +15,7 @@ from contextlib import nullcontext
 from cramhy_runtime import kernel
 
 from ..lisp.conditions import error, type_error
-from ..lisp.data import Cons, truth
+from ..lisp.data import Cons, list_from, one, truth
 from ..lisp.dynamic import binding
 from .branches import branch_tasks, run, run_forms, run_one
 from .failure_types import CompositeFailure, opened
@@ -23,8 +23,9 @@ from .failures import attempt, composite_failure
 from .fluent_operators import fl_pulsed
 from .fluents import ValueFluent
 from .hooks import on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook
-from .tasks import DEAD, DONE, FAILED, Task, ToplevelTask, end_tasks, inside_plan
+from .tasks import DEAD, DONE, FAILED, Task, ToplevelTask, end_tasks, inside_plan, task_dead
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
+from .watching import watch
 
 
 def top_level(body):
@@ -117,8 +118,6 @@ def _first_success(branches):
     for task in branches.tasks:
         if task.status in DONE:
             return task.result, None
-    from ..lisp.data import list_from
-
     return None, CompositeFailure(failures=list_from([task.result for task in reversed(branches.tasks)]))
 
 
@@ -204,8 +203,6 @@ def order(before, after):
     if not isinstance(after, Task):
         type_error(after, "TASK")
     if isinstance(before, Task):
-        from .tasks import task_dead
-
         constraint = task_dead(before)
     elif before.__class__ is ValueFluent:
         constraint = fl_pulsed(before)
@@ -229,15 +226,11 @@ def with_parallel_childs(name, thunks, watcher):
     never does, the form goes on when all children are dead, and waits for ever.
     """
     inside_plan(name or "WITH-PARALLEL-CHILDS")
-    from .watching import watch
-
     return watch(branch_tasks(name or "WITH-PARALLEL-CHILDS", thunks), watcher)
 
 
 def mapcar_clean(function, first, *more):
     """``(mapcar-clean function list...)``: the results of ``mapcar`` without the nils. Repaired: works with several lists."""
-    from ..lisp.data import list_from, one
-
     results = (one(function(*arguments)) for arguments in zip(*(_list(lst) for lst in (first, *more)), strict=False))
     return list_from([result for result in results if truth(result)])
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ..lisp.data import list_from
-from .tree import Code, TaskTreeNode
+from .tree import TaskTreeNode
 
 
 def name(thing):
@@ -48,10 +47,6 @@ def task_tree_node_parent(node):
     return node.parent
 
 
-def task_tree_node_code_replacements(node):
-    return list_from(node.replacements)
-
-
 def task_tree_node_p(thing):
     return True if isinstance(thing, TaskTreeNode) else None
 
@@ -59,7 +54,3 @@ def task_tree_node_p(thing):
 def make_task_tree_node(*, path=None, parent=None, code=None):
     """``make-task-tree-node``: a node that belongs to no tree yet."""
     return TaskTreeNode(path, parent, code)
-
-
-def make_code(*, sexp=None, function=None, task=None, parameters=None):
-    return Code(sexp, function, task, parameters)

@@ -91,16 +91,8 @@ def _run_handlers(task):
 
 
 def _await(children, statuses, what):
-    me = kernel.current()
     for child in children:
-        while child.status not in statuses:
-            if child.observers is None:
-                child.observers = []
-            child.observers.append(me)
-            try:
-                kernel.park(lambda child=child: f"the {what} of {child.name}")
-            finally:
-                child.observers.remove(me)
+        child.park_until(statuses, lambda child=child: f"the {what} of {child.name}", kernel.park)
 
 
 def on_suspension(handler, body):

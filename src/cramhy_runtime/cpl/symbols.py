@@ -3,15 +3,9 @@
 What they contain is declared in ``package.py``, when all the code is there.
 """
 
-from ..lisp.packages import COMMON_LISP, Package, find_package, register, sym
-
-
-def ensure_package(name, *nicknames, use=()):
-    """The package ``name``, registered with its nicknames if it does not exist yet."""
-    return find_package(name) or register(Package(name, list(nicknames), use))
-
+from ..lisp.packages import COMMON_LISP, ensure_package, sym
 
 CPL_IMPL = ensure_package("CRAM-LANGUAGE-IMPLEMENTATION", "CPL-IMPL", use=[COMMON_LISP])
 CPL = ensure_package("CRAM-LANGUAGE", "CPL")
 
-__all__ = ["CPL", "CPL_IMPL", "ensure_package", "sym"]
+__all__ = ["CPL", "CPL_IMPL", "sym"]

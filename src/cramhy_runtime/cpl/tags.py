@@ -9,6 +9,7 @@ The macro collects the tag names, binds each by `make_tag_task`, and compiles ``
 
 from __future__ import annotations
 
+from ..lisp.conditions import error
 from ..lisp.data import Cons, lisp_list
 from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
@@ -56,6 +57,4 @@ def execute_tag(task, body):
 
 def tag_outside_of_with_tags(name):
     """The error of ``(:tag ...)`` outside of ``with-tags``."""
-    from ..lisp.conditions import error
-
     return error("(:TAG ~S ..) used outside of WITH-TAGS.", name)

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from ..lisp.data import UNBOUND, Symbol
-from ..lisp.dynamic import Bindings
+from ..lisp.data import Symbol
+from ..lisp.dynamic import Bindings, special
 from ..lisp.packages import find_package, sym
 
 _inherited = set()  # the language's own: inherited when bound
@@ -48,10 +48,7 @@ def define_task_state(package, name, getter):
 
 def inherit(symbol, initial):
     """Declare one of the language's own task variables, with its global value."""
-    symbol.special = True
-    if symbol.value is UNBOUND:
-        symbol.value = initial
-    _inherited.add(symbol)
+    _inherited.add(special(symbol, initial))
     return symbol
 
 
@@ -60,9 +57,7 @@ def define_task_variable(symbol, global_value=None, *, documentation=None, init_
 
     ``init_function(task, parent, value)`` computes the initial value in the parent; ``parent`` is nil for a top-level.
     """
-    symbol.special = True
-    if symbol.value is UNBOUND:
-        symbol.value = global_value
+    special(symbol, global_value)
     _declared[symbol] = init_function.function if isinstance(init_function, Symbol) else init_function
     return symbol
 

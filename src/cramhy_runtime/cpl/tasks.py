@@ -18,9 +18,11 @@ import itertools
 from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
-from ..lisp.conditions import error, from_python
+from ..lisp.conditions import error, from_python, type_error
 from ..lisp.data import NO_VALUES, Symbol, list_from, truth
 from ..lisp.packages import keyword
+from ..lisp.places_in_source import locate
+from .failure_types import PlanFailure, envelope
 from .fluent_operators import fl_and, fl_funcall
 from .fluents import ValueFluent, function_of
 from .symbols import sym
@@ -38,6 +40,9 @@ _NEXT = {
     SUSPENDED: (RUNNING, EVAPORATED, FAILED),
 }
 
+DEEPEST = 1000
+"""How many levels of tasks below a top-level there may be. A plan that nests deeper has lost its end."""
+
 _count = itertools.count(1)
 SAVE_TASKS = inherit(sym("CPL-IMPL::*SAVE-TASKS*"), None)
 saved_tasks = []
@@ -52,7 +57,7 @@ class Task:
     """
 
     __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
-                 "constraints", "ended", "observers", "held", "unschedulable", "suspension_handlers", "retry_level", "__weakref__",
+                 "constraints", "ended", "observers", "held", "unschedulable", "suspension_handlers", "retry_level", "depth", "__weakref__",
                  "__dict__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
 
@@ -76,6 +81,7 @@ class Task:
         self.unschedulable = 0
         self.suspension_handlers = None
         self.retry_level = 0
+        self.depth = 0
         if thread_fun is not None:
             self.body = function_of(thread_fun)
             if truth(run_thread):
@@ -131,6 +137,9 @@ class Task:
         self._find_parent()
         parent = self.parent
         if parent is not None:
+            self.depth = parent.depth + 1
+            if self.depth > DEEPEST:
+                error(types.StorageCondition(f"Branches within branches, {DEEPEST} deep: a plan starts itself, perhaps without end."))
             parent.children[self] = True
             if self.tree is None:
                 self.tree = parent.tree
@@ -139,6 +148,7 @@ class Task:
         bindings = inherited_bindings(self, parent)
         self.kernel_task = kernel.spawn(self._live, bindings, name=self.name if self._name is None else "task")
         self.kernel_task.name = _KernelName(self)
+        self.kernel_task.when_refused = self._refused
         if truth(SAVE_TASKS.value):
             saved_tasks.append(self)
         return self
@@ -174,6 +184,14 @@ class Task:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
         self._die(status, result)
 
+    def _refused(self, exception):
+        """The system gives no stack for it: it fails before its first step."""
+        if self.status is CREATED:
+            self.change_status(RUNNING)
+            alive = len(kernel.active().tasks)
+            self._die(FAILED, envelope(types.StorageCondition(f"The system refuses a thread for another task ({exception}); "
+                                                              f"{alive} tasks are alive.")))
+
     def _await_constraints(self):
         from .waiting import wait_for
 
@@ -196,15 +214,19 @@ class Task:
         if isinstance(exception, (kernel.Cancelled, kernel.Abandoned)):
             return EVAPORATED, NO_VALUES
         if isinstance(exception, PlanFailure):
+            locate(exception, exception)
             return FAILED, exception
         if isinstance(exception, (KeyboardInterrupt, SystemExit, kernel.Interrupted)):
             return FAILED, exception  # meant for the program as a whole: every parent passes it on
         if isinstance(exception, (types.Condition, Exception)):
-            return FAILED, envelope(from_python(exception))
+            condition = from_python(exception)
+            locate(condition, exception)
+            return FAILED, envelope(condition)
         lost = types.ControlError_(
             "A branch of a plan tried to leave a form around it, by RETURN-FROM, RETURN, GO or THROW. Every branch has a stack of its "
             "own, so only its values can leave it: let the branch return a value, or FAIL and handle the failure outside.")
         lost.__cause__ = exception
+        locate(lost, exception)
         return FAILED, envelope(lost)
 
     def _die(self, status, result):
@@ -232,15 +254,18 @@ class Task:
             return
         kernel_task.cancel(reason)
 
-    def park_until(self, statuses, why):
-        """Wait until its status is among ``statuses``. To be called in another task."""
+    def park_until(self, statuses, why, wait=None):
+        """Wait until its status is among ``statuses``. To be called in another task.
+
+        ``wait(why)`` is `pause`, so that the waiting task can be suspended, unless another function is given.
+        """
         me = kernel.current()
         while self.status not in statuses:
             if self.observers is None:
                 self.observers = []
             self.observers.append(me)
             try:
-                pause(why)
+                (wait or pause)(why)
             finally:
                 self.observers.remove(me)
 
@@ -291,9 +316,9 @@ def inside_plan(form):
     """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
     task = getattr(kernel.current().local, "plan_task", None)
     if task is None:
-        from ..lisp.data import one
-
-        return one(error("'~a' form not inside a plan.", form))
+        outside = types.SimpleError("'~a' form not inside a plan.", form)
+        outside.hint = f"Plan forms run inside of a plan: write (top-level ({str(form).lower()} ...))."
+        return error(outside)
     return task
 
 
@@ -312,17 +337,9 @@ def end_tasks(tasks, reason=None):
     """Evaporate ``tasks`` and wait until they are dead; a request to end the current task waits for that too."""
     for task in tasks:
         task.evaporate(reason)
-    me = kernel.current()
     with kernel.shield():
         for task in tasks:
-            while task.status not in DEAD:
-                if task.observers is None:
-                    task.observers = []
-                task.observers.append(me)
-                try:
-                    kernel.park(lambda task=task: f"the cleanup of {task.name}")
-                finally:
-                    task.observers.remove(me)
+            task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}", kernel.park)
 
 
 # ----------------------------------------------------------------------------------------------------- readers and requests
@@ -400,8 +417,6 @@ def list_saved_tasks():
 
 def check_reason(reason):
     if reason is not None and not isinstance(reason, str):
-        from ..lisp.conditions import type_error
-
         type_error(reason, "(OR NULL STRING)")
 
 
@@ -430,6 +445,3 @@ def join_task(task):
 
         signal_failure(task.result)
     return task.result
-
-
-from .failure_types import PlanFailure, envelope  # noqa: E402

@@ -7,9 +7,10 @@ and a step can be replaced for the next run. Repetition of a part goes to siblin
 
 from __future__ import annotations
 
-from ..lisp.conditions import error
+from ..lisp.conditions import error, type_error
 from ..lisp.data import Cons, lisp_list, list_from, truth
 from ..lisp.packages import keyword
+from .branches import run_one
 from .hooks import on_finishing_task_execution, on_preparing_task_execution
 from .symbols import sym
 from .tasks import CREATED, Task, current_task
@@ -91,8 +92,6 @@ def current_path():
 def _tree_or_error():
     tree = current_tree()
     if tree is None:
-        from ..lisp.conditions import type_error
-
         type_error(None, "TASK-TREE-NODE",
                    "\n(A plan function, goal or tag was used outside of a plan: call it inside (top-level ...), or from a function "
                    "defined with def-top-level-cram-function.)")
@@ -178,8 +177,6 @@ def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp
     run_id = on_preparing_task_execution.first(name, log_parameters, log_pattern, lambda_list, parameters) if observed else None
     label = name if callable(name) else (lambda: f"[{name}]")
     task = _task_of(_next_free(path_part, _current_node()), label, sexp, function, parameters)
-    from .branches import run_one
-
     if not observed:
         return run_one(task, "TASK")
     try:

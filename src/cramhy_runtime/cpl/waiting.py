@@ -32,7 +32,9 @@ def wait_for(fluent, *, timeout=None, **ignored):
     me = kernel.current()
 
     def why():
-        return f"the fluent {fluent!r}"
+        from ..lisp.printer import prin1_to_string
+
+        return f"the fluent {prin1_to_string(fluent)}"
 
     if not fluent.waiters:
         fluent.waiters = []

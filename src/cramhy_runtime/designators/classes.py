@@ -17,6 +17,7 @@ from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
 from ..lisp.generic import generic
 from ..lisp.packages import keyword
+from ..prolog.utilities import current_timestamp
 from .symbols import DESIG_PROPS
 
 A, ALL = keyword("A"), keyword("ALL")
@@ -220,8 +221,6 @@ def update_designator_properties(new_properties, old_properties):
 
 def make_effective_designator(parent, *, new_properties=None, data_object=None, timestamp=None):
     """A new, unequated designator of the class of ``parent`` that is effective and stands for ``data_object``."""
-    from ..prolog.utilities import current_timestamp
-
     designator = parent.__class__(new_properties if new_properties is not None else parent.description)
     designator.data = data_object
     designator.effective = True
@@ -260,10 +259,5 @@ def desig_prop_values(designator, key):
     """The values of all pairs with ``key``, in order."""
     check_key(key)
     return list_from([pair.cdr.car if pair.cdr is not None else None for pair in _pairs(designator) if pair.car is key])
-
-
-def with_desig_props_value(designator, name):
-    """The value that ``with-desig-props`` binds the symbol ``name`` to."""
-    return desig_prop_value(designator, keyword(name.name))
 
 

@@ -7,10 +7,11 @@ their callbacks are told. Source: designators.md section 6.
 
 from __future__ import annotations
 
-from ..cpl.hooks import Hook
-from ..lisp.conditions import error, type_error
+from ..lisp.conditions import error, handler_case, type_error
 from ..lisp.data import list_from
 from ..lisp.generic import generic
+from ..lisp.hooks import Hook
+from ..prolog.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError
 
 on_equate_designators = Hook("CUT::ON-EQUATE-DESIGNATORS", "(successor parent)")
@@ -101,8 +102,6 @@ def get_equal_designators(designator):
 
 def designator_solutions(designator, from_root=None):
     """The lazy list of its reference (or that of the oldest) and those of the solutions after it; empty if it has none."""
-    from ..lisp.conditions import handler_case
-    from ..prolog.lazy_lists import from_iterator
     from .resolution import next_solution, reference
 
     def solutions():

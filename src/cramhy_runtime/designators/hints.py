@@ -8,6 +8,7 @@ reading of the clauses, not a trace of the proof, and computed only when somebod
 from __future__ import annotations
 
 from ..lisp.data import Cons, Symbol
+from ..lisp.printer import princ_to_string
 from ..prolog.database import functors
 from ..prolog.patterns import is_var
 from .classes import ActionDesignator, MotionDesignator, ObjectDesignator, desig_prop_value
@@ -58,8 +59,6 @@ def _contradictions(designator, clause):
 
 
 def _compare(designator, clause):
-    from ..lisp.printer import princ_to_string
-
     present = {pair.car for pair in designator.description or ()}
     problems = [f"{princ_to_string(key)} is {princ_to_string(desig_prop_value(designator, key))}, not {princ_to_string(wanted)}"
                 for key, wanted in _contradictions(designator, clause)]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from ..cpl.fluents import ValueFluent
-from ..cpl.hooks import Hook
 from ..cpl.tree import with_task_tree_node
 from ..lisp.data import lisp_list, one
+from ..lisp.functions import function_of
+from ..lisp.hooks import Hook
 from .classes import make_designator
 from .equating import with_equate_callback
 from .symbols import sym
@@ -25,7 +26,7 @@ def register_designator_create_function(function):
 def create_designator(name, type_, properties):
     """The designator that a definition ``(name type properties)`` of ``with-designators`` makes."""
     for function in _create_functions:
-        made = one((function.function if hasattr(function, "setf_function") else function)(name, type_, properties))
+        made = one(function_of(function)(name, type_, properties))
         if made is not None:
             break
     else:

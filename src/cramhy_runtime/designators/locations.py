@@ -12,8 +12,8 @@ from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
 from ..lisp.conditions import restart_case, type_error
-from ..lisp.data import UNBOUND, Cons, list_from, one, truth
-from ..lisp.dynamic import binding
+from ..lisp.data import Cons, list_from, one, truth
+from ..lisp.dynamic import binding, special
 from ..lisp.packages import keyword
 from ..prolog.lazy_lists import elements, from_iterator
 from ..prolog.query import ask
@@ -22,10 +22,7 @@ from .classes import LocationDesignator
 from .symbols import sym
 
 ACCEPT, UNKNOWN, MAYBE_REJECT = keyword("ACCEPT"), keyword("UNKNOWN"), keyword("MAYBE-REJECT")
-MAX_RETRIES = sym("DESIG::*LOCATION-GENERATOR-MAX-RETRIES*")
-MAX_RETRIES.special = True
-if MAX_RETRIES.value is UNBOUND:
-    MAX_RETRIES.value = 30
+MAX_RETRIES = special(sym("DESIG::*LOCATION-GENERATOR-MAX-RETRIES*"), 30)
 LOCATION_GROUNDING = sym("DESIG::LOCATION-GROUNDING")
 FILTERS = inherit(sym("DESIG::*LOCATION-SOLUTION-FILTERS*"), None)
 

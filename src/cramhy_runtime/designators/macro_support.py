@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from ..cpl.symbols import ensure_package
+from ..lisp.classes import find_class_or_error
 from ..lisp.faces import define_face
+from ..lisp.packages import keyword
 from . import classes, language_support, locations, properties_package
 
 
 def register_designator_class(type_, class_name):
     """``(register-designator-class type class-name)``, both unevaluated."""
-    from ..lisp.classes import find_class_or_error
-    from ..lisp.packages import keyword
-
     return classes.register_designator_class(keyword(type_.name), find_class_or_error(class_name))
 
 
 def define():
     """Enter the functions into CRAMHY."""
-    ensure_package("CRAMHY")
     define_face("CRAMHY", functions={
         "register-designator-class": register_designator_class,
         "register-location-generator": locations.register_location_generator,

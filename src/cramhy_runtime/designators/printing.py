@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from ..lisp.conditions import type_error
-from ..lisp.data import UNBOUND, Cons, Symbol
-from ..lisp.packages import find_package, symbol_name
-from ..lisp.print_controls import PRINT_ESCAPE
+from ..lisp.data import Cons, Symbol
+from ..lisp.dynamic import special
+from ..lisp.packages import symbol_name
+from ..lisp.print_controls import PACKAGE, PRINT_ESCAPE
 from ..lisp.printer import define_printer, print_unreadable, write
 from .classes import Designator, type_keyword
 from .symbols import sym
 
-PRINT_DESCRIPTION = sym("DESIG::*DESIGNATOR-PPRINT-DESCRIPTION*")
-PRINT_DESCRIPTION.special = True
-if PRINT_DESCRIPTION.value is UNBOUND:
-    PRINT_DESCRIPTION.value = True
-PACKAGE = sym("*PACKAGE*")
+PRINT_DESCRIPTION = special(sym("DESIG::*DESIGNATOR-PPRINT-DESCRIPTION*"), True)
 
 
 def print_designator(designator, stream):
@@ -47,8 +44,7 @@ def _print_description(designator, stream):
 def _bare(thing, stream, escape):
     """Print ``thing``; a symbol as the symbol of its name in the current package, which needs no prefix."""
     if isinstance(thing, Symbol):
-        package = find_package(PACKAGE.value) if PACKAGE.value is not UNBOUND else find_package("COMMON-LISP-USER")
-        thing = package.intern(symbol_name(thing))
+        thing = PACKAGE.value.intern(symbol_name(thing))
     write(thing, stream, escape)
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from ..lisp.data import python_list
+from ..lisp.expansion_support import define_package
 from ..lisp.packages import symbol_name
 from .symbols import DESIG_PROPS
 
 
 def define_designator_package(name, options):
     """Define the package ``name`` with the options of ``defpackage`` and ``(:desig-properties symbol...)``; returns it."""
-    from ..lisp.expansion_support import define_package
-
     properties, rest = [], []
     for option in python_list(options):
         if option.car.name == "DESIG-PROPERTIES":

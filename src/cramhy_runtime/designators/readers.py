@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from ..lisp.condition_types import UnboundSlot
+from ..lisp.conditions import error
+from ..lisp.data import UNBOUND
+from .symbols import sym
+
 
 def description(designator):
     """The whole description, a list of ``(key value)``."""
@@ -50,10 +55,5 @@ def designator(condition):
 
 
 def _slot(data, attribute):
-    from ..lisp.condition_types import UnboundSlot
-    from ..lisp.conditions import error
-    from ..lisp.data import UNBOUND
-    from ..lisp.packages import sym
-
     value = getattr(data, attribute)
     return error(UnboundSlot(sym(f"DESIG::{attribute.upper()}"), data)) if value is UNBOUND else value

@@ -14,6 +14,7 @@ from cramhy_runtime import kernel
 from ..lisp import equality
 from ..lisp.conditions import error
 from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol
+from ..lisp.dynamic import special
 from ..lisp.generic import generic
 from ..prolog.lazy_lists import from_iterator, lazy_car, lazy_cdr
 from ..prolog.patterns import is_var
@@ -25,11 +26,7 @@ from .equating import equate, youngest
 from .locations import location_solutions
 from .symbols import sym
 
-DEFAULT_ROLE = sym("DESIG::*DEFAULT-ROLE*")
-DEFAULT_ROLE.special = True
-if DEFAULT_ROLE.value is UNBOUND:
-    DEFAULT_ROLE.value = None
-
+DEFAULT_ROLE = special(sym("DESIG::*DEFAULT-ROLE*"))
 ACTION_GROUNDING = sym("DESIG::ACTION-GROUNDING")
 MOTION_GROUNDING = sym("DESIG::MOTION-GROUNDING")
 

@@ -1,7 +1,6 @@
 """The Lisp packages of this room, made before anything interns a symbol in them; their contents are in ``package.py``."""
 
-from ..cpl.symbols import ensure_package
-from ..lisp.packages import sym
+from ..lisp.packages import ensure_package, sym
 from ..prolog import package as _prolog  # noqa: F401  this room's predicates and hooks have names of its packages
 
 DESIG = ensure_package("CRAM-DESIGNATORS", "DESIG")

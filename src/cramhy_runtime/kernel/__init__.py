@@ -24,7 +24,7 @@ Where the parts are:
   other threads and calls that block
 * `tasks`      a task, its end, the request to end
 * `timers`, `clocks`, `budget` (what checkpoints count), `reports` (what people read), `errors`
-* `backends`   stacks: threads of the operating system, or greenlets
+* `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
 * `active`     the functions below, which act on the kernel that is active
 
 Taken from trio: cancellation at checkpoints, the shield, a clock that jumps, the deadlock as an error with a text. Left
@@ -57,6 +57,7 @@ from .active import (
     yield_,
 )
 from .clocks import VirtualClock, WallClock
+from .depth import allow_deep_recursion
 from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, TimeLimit
 from .reports import describe_frame, unhandled
 from .scheduler import Kernel
@@ -65,7 +66,7 @@ from .timers import Timer
 
 __all__ = [
     "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer",
-    "VirtualClock", "WallClock", "active", "call_at", "call_every", "checkpoint", "current", "describe_frame",
+    "VirtualClock", "WallClock", "active", "allow_deep_recursion", "call_at", "call_every", "checkpoint", "current", "describe_frame",
     "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "run_blocking", "settle", "shield", "sleep",
     "spawn", "start", "stop", "unhandled", "unpark", "yield_",
 ]  # fmt: skip

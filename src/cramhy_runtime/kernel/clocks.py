@@ -47,6 +47,9 @@ class VirtualClock:
     """Time that stands still while anything runs, and jumps to the next timer when everything is parked."""
 
     virtual = True
+    epoch = 1292688669.674
+    """The moment at which virtual time begins, in seconds since 1970: any will do, if it is always the same. It is that of the ROS
+    lecture's transcript, so that stamps look as on the slides."""
 
     def __init__(self):
         self.time = 0.0
@@ -76,6 +79,7 @@ class WallClock:
         self._os_clock = os_clock
         self._wait = wait
         self._start = os_clock()
+        self.epoch = time.time()  # the moment at which the kernel's time began, in seconds since 1970
 
     def now(self):
         """Seconds since the start of the kernel."""

@@ -82,6 +82,11 @@ class Kernel(Endings, Outside):
         """Seconds since the kernel was started."""
         return self.clock.now()
 
+    @property
+    def epoch(self):
+        """The moment at which its time began, in seconds since 1970."""
+        return self.clock.epoch
+
     def spawn(self, fn, *args, name=None, parent=None):
         """A new task that will run FN(*ARGS), at the end of the queue. PARENT: the current task if not given."""
         me = self.current
@@ -256,6 +261,9 @@ class Kernel(Endings, Outside):
                 task.carrier = self.backend.carrier(self.carry)
             except NoStack as refused:
                 task._exception = refused.__cause__
+                if task.when_refused is not None:
+                    task.claimed = True
+                    self._call(lambda task=task: task.when_refused(task._exception))
                 self._bury(task)
                 task = self._next()
         self.current = task

@@ -34,7 +34,9 @@ class Task:
     __slots__ = (
         "kernel", "id", "name", "parent", "local", "dynamic", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
-        "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered", "swallowed", "_exception", "claimed", "__weakref__",
+        "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered",
+        "swallowed", "_exception", "claimed", "when_refused",
+        "__weakref__",
     )  # fmt: skip
 
     def __init__(self, kernel, number, fn, args, name, parent):
@@ -67,6 +69,7 @@ class Task:
         self.swallowed = 0
         self._exception = None
         self.claimed = False
+        self.when_refused = None  # called with the exception, in the scheduler, if the system gives no stack for it
 
     @property
     def dead(self):

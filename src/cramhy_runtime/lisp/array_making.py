@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from itertools import product
 
-from .arrays import dimensions_of, element_type_of
+from .arrays import array_element_type, dimensions_of
 from .conditions import error, type_error
 from .data import UNSUPPLIED, Character, Cons, LispString
 from .element_types import check_element, upgraded_element_type
@@ -131,9 +131,9 @@ def _is_sequence(thing):
 def _displaced(dimensions, size, element_type, adjustable, fill_pointer, target, offset):
     dimensions_of(target) if isinstance(target, (list, str, LispString, LispArray)) else \
         type_error(target, "(OR ARRAY NULL)", "\nwhen binding SB-VM::DISPLACED-TO")
-    if element_type_of(target) != element_type and not isinstance(element_type, Cons):
+    if array_element_type(target) != element_type and not isinstance(element_type, Cons):
         error("Array element type ~S does not match the type ~S of the array it is displaced to.", element_type,
-              element_type_of(target))
+              array_element_type(target))
     if offset.__class__ is not int or offset < 0:
         type_error(offset, INDEX_TYPE, "\nwhen binding SB-VM::DISPLACED-INDEX-OFFSET")
     if isinstance(target, (str, LispString)):
@@ -168,7 +168,7 @@ def adjust_array(array, dimensions, *, element_type=UNSUPPLIED, initial_element=
     old_dimensions, dimensions = dimensions_of(array), _dimensions(dimensions)
     if len(old_dimensions) != len(dimensions):
         error("Expected ~D new dimension~:P for array, but received ~D.", len(old_dimensions), len(dimensions))
-    kind = element_type_of(array)
+    kind = array_element_type(array)
     size = 1
     for dimension in dimensions:
         size *= dimension

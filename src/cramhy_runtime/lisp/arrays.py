@@ -12,11 +12,10 @@ from __future__ import annotations
 
 from .condition_types import SimpleTypeError, TypeError_, formatted
 from .conditions import error, type_error
-from .data import Character, LispString, MultipleValues, lisp_list, list_from
+from .data import Character, LispString, MultipleValues, list_from
 from .element_types import check_element, upgraded_element_type
-from .packages import sym
 from .sequence_types import char_of, constant_changed
-from .vectors import BIT, CHARACTER, LispArray, TypedVector, Vector, is_bit_vector
+from .vectors import BIT, LispArray, TypedVector, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
 
 LISP_NAMES = """
 aref svref row-major-aref bit sbit array-dimensions array-dimension array-rank array-total-size array-in-bounds-p
@@ -69,48 +68,13 @@ def simple_bit_vector_p(thing):
     return True if isinstance(thing, TypedVector) and thing.element_type is BIT else None
 
 
-def is_simple(thing):
-    """Whether the array ``thing`` has no fill pointer, is not adjustable and not displaced."""
-    if isinstance(thing, LispString):
-        return thing.fill_pointer is None and not thing.adjustable
-    return not isinstance(thing, Vector) and not getattr(thing, "adjustable", False) and \
-        getattr(thing, "displaced_to", None) is None
-
-
 def not_an_array(thing, context="\nwhen binding ARRAY"):
     return type_error(thing, "ARRAY", context)
 
 
 def dimensions_of(array, context="\nwhen binding ARRAY"):
     """The dimensions as a Python tuple, fill pointers ignored; a non-array is a type-error."""
-    if isinstance(array, (list, str)):
-        return (len(array),)
-    if isinstance(array, LispArray):
-        return array.dimensions
-    if isinstance(array, LispString):
-        return (len(array.chars),)
-    return not_an_array(array, context)
-
-
-def element_type_of(array):
-    """The upgraded element type, ``True`` for T."""
-    if isinstance(array, (str, LispString)):
-        return CHARACTER
-    return getattr(array, "element_type", True)
-
-
-def array_type(array):
-    """The type specifier that ``type-of`` gives for an array: ``(SIMPLE-VECTOR 2)``, ``(VECTOR T 3)``."""
-    dimensions, element_type = dimensions_of(array), element_type_of(array)
-    simple = is_simple(array)
-    if len(dimensions) == 1:
-        if element_type is BIT:
-            return lisp_list(sym("SIMPLE-BIT-VECTOR" if simple else "BIT-VECTOR"), *dimensions)
-        if not simple:
-            return lisp_list(sym("VECTOR"), element_type, *dimensions)
-        if element_type is True:
-            return lisp_list(sym("SIMPLE-VECTOR"), *dimensions)
-    return lisp_list(sym("SIMPLE-ARRAY" if simple else "ARRAY"), element_type, list_from(dimensions))
+    return dimensions(array) if isinstance(array, (list, str, LispArray, LispString)) else not_an_array(array, context)
 
 
 # ---------------------------------------------------------------------------------------------------- reading and writing
@@ -277,7 +241,7 @@ def array_row_major_index(array, *subscripts):
 def array_element_type(array):
     """``array-element-type``: the upgraded element type."""
     dimensions_of(array)
-    return element_type_of(array)
+    return element_type(array)
 
 
 def upgraded_array_element_type(specifier, environment=None):

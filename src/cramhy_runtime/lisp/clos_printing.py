@@ -8,6 +8,7 @@ from __future__ import annotations
 from .classes import class_name, metaclass_of
 from .data import Cons, lisp_list, list_from
 from .generic import GenericFunction
+from .generic_errors import ShownAsGeneric
 from .method_combination import Combination
 from .methods import EqlSpecializer, Method
 from .packages import is_symbol, sym
@@ -71,7 +72,13 @@ def _print_combination(combination, stream):
     print_unreadable(combination, stream, f"METHOD-COMBINATION {name_text(combination.name)}", identity=True)
 
 
+def _print_shown_as_generic(function, stream):
+    count = "" if function.methods is None else f" ({function.methods})"
+    stream.write(f"#<STANDARD-GENERIC-FUNCTION {function.name}{count}>")
+
+
 define_printer(type, print_class)
 define_printer(GenericFunction, print_generic_function)
 define_printer(Method, print_method)
 define_printer(Combination, _print_combination)
+define_printer(ShownAsGeneric, _print_shown_as_generic)

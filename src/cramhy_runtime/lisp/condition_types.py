@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import re
 
-from .data import UNBOUND
+from cramhy_runtime import kernel
+
+from .data import UNBOUND, Cons
 from .packages import is_symbol, printed, symbol_name
 
 __all__ = []
@@ -34,6 +36,15 @@ def shown(obj):
     from .printer import prin1_to_string
 
     return prin1_to_string(obj)
+
+
+def shown_with(obj, package):
+    """``obj`` as ``prin1`` prints it while ``package`` is current."""
+    from .dynamic import binding
+    from .packages import find_package, sym
+
+    with binding(sym("*PACKAGE*"), find_package(package)):
+        return shown(obj)
 
 
 @public
@@ -130,7 +141,7 @@ class TypeError_(Error):
         self.datum, self.expected_type = datum, expected_type
 
     def report(self):
-        expected = self.expected_type if isinstance(self.expected_type, str) else shown(self.expected_type)
+        expected = self.expected_type if isinstance(self.expected_type, str) else shown_with(self.expected_type, "COMMON-LISP")
         return f"The value\n  {shown(self.datum)}\nis not of type\n  {expected}{self.context}"
 
 
@@ -181,7 +192,9 @@ class UndefinedFunction(CellError):
     lisp_name = "UNDEFINED-FUNCTION"
 
     def report(self):
-        return f"The function {printed(self.name) if is_symbol(self.name) else shown(self.name)} is undefined."
+        if is_symbol(self.name):
+            return f"The function {printed(self.name)} is undefined."
+        return f"The function {shown_with(self.name, 'KEYWORD')} is undefined."  # SBCL hides no package in (SETF NAME)
 
 
 @public
@@ -210,7 +223,8 @@ class ArithmeticError_(Error):
         head = f"arithmetic error {symbol_name(_class_symbol(type(self)))} signalled"
         if self.operation is None:
             return head
-        call = " ".join([printed(self.operation), *(shown(operand) for operand in self.operands or ())])
+        operator = shown(self.operation) if is_symbol(self.operation) else printed(self.operation)
+        call = " ".join([operator, *(shown(operand) for operand in self.operands or ())])
         return f"{head}\nOperation was ({call})."
 
 
@@ -322,7 +336,9 @@ class CaseFailure(TypeError_):
     lisp_name = "SB-KERNEL::CASE-FAILURE"
 
     def __init__(self, datum=None, operator="ECASE", possibilities=None, **slots):
-        super().__init__(datum, possibilities, **slots)
+        from .packages import sym
+
+        super().__init__(datum, Cons(sym("OR" if operator.endswith("TYPECASE") else "MEMBER"), possibilities), **slots)
         self.operator, self.possibilities = operator, possibilities
 
     def report(self):
@@ -357,6 +373,30 @@ class PythonError(Error):
         return f"Python raised {type(self.exception).__name__}: {self.exception}"
 
 
+@public
+class RunEnded(PythonError):
+    """What ends a run as a whole. The kernel's text says what each task waits for."""
+
+    lisp_name = "CRAMHY::RUN-ENDED"
+
+    def report(self):
+        return str(self.exception)
+
+
+@public
+class Deadlock(RunEnded):
+    """Every task waits, and nothing can wake one."""
+
+    lisp_name = "CRAMHY::DEADLOCK"
+
+
+@public
+class TimeLimit(RunEnded):
+    """The time limit of the run is reached."""
+
+    lisp_name = "CRAMHY::TIME-LIMIT"
+
+
 def _class_symbol(cls):
     from .classes import class_name
 
@@ -364,7 +404,7 @@ def _class_symbol(cls):
 
 
 _ARITY = re.compile(r"^(?P<name>.*)\(\) (?:takes (?:from )?\d+(?: to \d+)? positional arguments? but (?P<given>\d+) (?:was|were) given"
-                    r"|missing (?P<missing>\d+) required positional arguments?: .*)$")
+                    r"|missing \d+ required positional arguments?: '(?P<missing>[^']*)'.*)$")
 
 
 def _wrong_argument_count(exception):
@@ -375,24 +415,58 @@ def _wrong_argument_count(exception):
     match = _ARITY.match(str(exception))
     if not match:
         return None
+    name, function = _called(match["name"])
+    code = getattr(function, "__code__", None) or _code_of(match["name"], exception)
+    if match["given"]:
+        condition = SimpleProgramError("invalid number of arguments: ~S", int(match["given"]))
+    elif code is None:
+        condition = SimpleProgramError("invalid number of arguments")
+    else:  # the arguments that were given are those before the first missing one
+        condition = SimpleProgramError("invalid number of arguments: ~S", code.co_varnames.index(match["missing"]))
+    if function is not None and code is not None:
+        wanted = code.co_argcount
+        optional = len(function.__defaults__ or ())
+        count = f"{wanted - optional} to {wanted}" if optional else str(wanted)
+        if code.co_flags & 0x04:
+            count = f"at least {wanted - optional}"
+        condition.hint = f"{name} takes {count} argument{'' if count.split()[-1] == '1' else 's'}."
+    return condition
+
+
+def _code_of(name, exception):
+    """The code called ``name`` among that of the functions which ``exception`` passed, for a function that is gone already."""
+    trace, codes = exception.__traceback__, []
+    while trace is not None:
+        codes.append(trace.tb_frame.f_code)
+        trace = trace.tb_next
+    while codes:
+        code = codes.pop()
+        if getattr(code, "co_qualname", None) == name:
+            return code
+        codes += [constant for constant in code.co_consts if isinstance(constant, type(code))]
+    return None
+
+
+def _called(name):
+    """(how the user calls it, function) for Python's qualified name of a function."""
+    import gc
+    from types import FunctionType
+
     from .packages import all_packages
 
-    found = next((symbol for package in all_packages() for table in (package.external, package.internal) for symbol in table.values()
-                  if getattr(getattr(symbol, "function", None), "__qualname__", None) == match["name"]), None)
-    code = getattr(getattr(found, "function", None), "__code__", None)
-    if match["given"]:
-        given = int(match["given"])
-    elif code is None:
-        return None
-    else:
-        given = code.co_argcount - len(found.function.__defaults__ or ()) - int(match["missing"])
-    condition = SimpleProgramError("invalid number of arguments: ~S", given)
-    if code is not None:
-        wanted = code.co_argcount
-        optional = len(found.function.__defaults__ or ())
-        count = f"{wanted - optional} to {wanted}" if optional else str(wanted)
-        condition.hint = f"{shown(found)} takes {count} argument{'s' if count != '1' else ''}."
-    return condition
+    if "<locals>" not in name:
+        for package in all_packages():
+            for table in (package.external, package.internal):
+                for symbol in table.values():
+                    function = getattr(symbol, "function", None)
+                    if getattr(function, "__qualname__", None) == name:
+                        return shown(symbol), getattr(function, "python", function)
+    # a local function or a lambda expression: only the collector knows it
+    found = next((each for each in gc.get_objects() if isinstance(each, FunctionType) and each.__qualname__ == name), None)
+    short = name.rpartition(".")[2]
+    if short.startswith(("<lambda>", "Lfunction")):
+        return "The function", found
+    return f"The function {short.replace('_', '-').upper()}", found
 
 
 def condition_for(exception):
@@ -403,6 +477,12 @@ def condition_for(exception):
         return FloatingPointOverflow()
     if isinstance(exception, RecursionError):
         return StorageCondition("Control stack exhausted: a function calls itself too deeply, perhaps without end.")
+    if isinstance(exception, MemoryError):
+        return StorageCondition("Heap exhausted: there is no memory for this object.")
+    if isinstance(exception, kernel.Deadlock):
+        return Deadlock(exception)
+    if isinstance(exception, kernel.TimeLimit):
+        return TimeLimit(exception)
     if isinstance(exception, TypeError):
         wrong = _wrong_argument_count(exception)
         if wrong is not None:

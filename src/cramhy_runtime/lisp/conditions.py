@@ -144,9 +144,13 @@ def make_condition(datum, arguments=(), default=types.SimpleError):
     if isinstance(datum, str) or datum.__class__.__name__ == "LispString" or callable(datum) and not is_symbol(datum):
         return default(datum if callable(datum) else str(datum), *arguments)
     if is_symbol(datum):
-        from .classes import find_class_or_error
+        from .classes import find_class
 
-        return _instance(find_class_or_error(datum), arguments)
+        cls = find_class(datum, None)
+        if not (isinstance(cls, type) and issubclass(cls, types.Condition)):
+            return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum,
+                                               expected_type=sym("CONDITION")))
+        return _instance(cls, arguments)
     return type_error(datum, "(OR CONDITION SYMBOL STRING)")
 
 
@@ -208,8 +212,11 @@ def invoke_debugger(condition):
 
 def break_(control="break", *arguments):
     """``cl:break``: enter the debugger directly, with a restart CONTINUE."""
-    with_simple_restart(sym("CONTINUE"), "Return from BREAK.",
-                        lambda: invoke_debugger(make_condition(control, arguments, types.SimpleCondition)))
+    def stop():
+        with binding(DEBUGGER_HOOK, None):  # a break is for the user, not for a program's hook
+            invoke_debugger(make_condition(control, arguments, types.SimpleCondition))
+
+    with_simple_restart(sym("CONTINUE"), "Return from BREAK.", stop)
 
 
 # ----------------------------------------------------------------------------------------------------------------- restarts

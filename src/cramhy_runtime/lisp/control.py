@@ -24,7 +24,7 @@ error signal warn cerror break invoke-debugger compute-restarts find-restart inv
 abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
 simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
 arithmetic-error-operation arithmetic-error-operands stream-error-stream file-error-pathname
-function-lambda-expression provide describe disassemble room ed"""
+function-lambda-expression provide describe inspect disassemble room ed"""
 
 
 compiled_function_p = functionp
@@ -61,11 +61,14 @@ def macroexpand_1(form, environment=None):
     return MultipleValues((expansion, True if expanded else None))
 
 
-def special_operator_p(symbol):
-    from .compiler import special_forms  # noqa: F401
-    from .compiler.analyze import SPECIAL_FORMS
+SPECIAL_OPERATORS = {sym(name) for name in """BLOCK CATCH EVAL-WHEN FLET FUNCTION GO IF LABELS LET LET* LOAD-TIME-VALUE LOCALLY
+MACROLET MULTIPLE-VALUE-CALL MULTIPLE-VALUE-PROG1 PROGN PROGV QUOTE RETURN-FROM SETQ SYMBOL-MACROLET TAGBODY THE THROW
+UNWIND-PROTECT""".split()}
+"""The 25 of ANSI 3.1.2.1.2.1; the compiler treats a few macros itself too, which must not show."""
 
-    return True if symbol in SPECIAL_FORMS else None
+
+def special_operator_p(symbol):
+    return True if symbol in SPECIAL_OPERATORS else None
 
 
 def constantp(form, environment=None):
@@ -198,7 +201,23 @@ def _reader(attribute):
 
 
 simple_condition_format_control = _reader("format_control")
-type_error_datum, type_error_expected_type = _reader("datum"), _reader("expected_type")
+type_error_datum = _reader("datum")
+
+
+def type_error_expected_type(condition):
+    """The type specifier. The runtime names types by their printed form, which is read here."""
+    expected = condition.expected_type
+    if not isinstance(expected, str):
+        return expected
+    from .dynamic import binding
+    from .evaluator import PACKAGE
+    from .packages import COMMON_LISP
+    from .reader import read_from_string
+
+    with binding(PACKAGE, COMMON_LISP):
+        return one(read_from_string(expected))
+
+
 cell_error_name, unbound_slot_instance = _reader("name"), _reader("instance")
 arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _reader("operands")
 stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
@@ -234,6 +253,11 @@ def describe(obj, stream=None):
         if obj.special:
             output.write(f"  names a special variable{': ' + text if text else ''}\n")
     return MultipleValues()
+
+
+def inspect(obj):
+    """Print what ``obj`` is; there is no menu to go into its parts, for which the forms at the prompt serve."""
+    return describe(obj)
 
 
 def disassemble(function):

@@ -13,17 +13,15 @@ from . import tokens
 from .backquote import Comma
 from .conditions import Condition, style_warn
 from .data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
+from .dynamic import special
 from .packages import KEYWORD, is_symbol, keyword, sym, symbol_name
 from .reader_errors import fail, place
 from .readtables import READTABLE, call
 from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
 
-READ_EVAL = sym("*READ-EVAL*")
-READ_EVAL.value, READ_EVAL.special = True, True
-FEATURES = sym("*FEATURES*")
-FEATURES.value = list_from([keyword(name) for name in ("CRAMHY", "ANSI-CL", "COMMON-LISP", "IEEE-FLOATING-POINT", "UNICODE",
-                                                       *(["UNIX"] if os.name == "posix" else []))])
-FEATURES.special = True
+READ_EVAL = special("*READ-EVAL*", True)
+FEATURES = special("*FEATURES*", list_from([keyword(name) for name in (
+    "CRAMHY", "ANSI-CL", "COMMON-LISP", "IEEE-FLOATING-POINT", "UNICODE", *(["UNIX"] if os.name == "posix" else []))]))
 
 _MAX_ARGUMENT = 1 << 24
 """No array rank, length or label is larger; a larger number is a mistake and would only eat memory."""

@@ -12,6 +12,19 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
+from .data import UNBOUND
+from .packages import sym
+
+
+def special(symbol, initial=None):
+    """Proclaim ``symbol``, or the one that `packages.sym` finds, special; ``initial`` is its value if it has none. The symbol."""
+    if isinstance(symbol, str):
+        symbol = sym(symbol)
+    symbol.special = True
+    if symbol.value is UNBOUND:
+        symbol.value = initial
+    return symbol
+
 
 class Bindings:
     """The stack of a task's dynamic bindings: symbols, and the values that each hides."""
@@ -65,7 +78,8 @@ class binding:
             bind(pairs[index], pairs[index + 1])
 
     def __exit__(self, *exc):
-        unbind(self.count)
+        if self.count:
+            unbind(self.count)
 
 
 def global_value(symbol):
@@ -76,8 +90,3 @@ def global_value(symbol):
             if bound is symbol:
                 return old
     return symbol.value
-
-
-def is_bound_dynamically(symbol):
-    bindings = kernel.current().dynamic
-    return bindings is not None and any(entry[0] is symbol for entry in bindings.stack)

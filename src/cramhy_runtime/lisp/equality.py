@@ -21,15 +21,6 @@ from .vectors import LispArray, is_bit_vector
 
 LISP_NAMES = "eq eql equal equalp sxhash"
 
-_content_classes: tuple = (pathlib.PurePath,)
-
-
-def compare_by_content(cls):
-    """Make ``equal`` compare instances of the hashable class ``cls`` by Python's ``==``, as it does pathnames."""
-    global _content_classes
-    _content_classes += (cls,)
-    return cls
-
 
 def eq(x, y):
     """``eq``: the same object. Numbers of equal type and value count as the same, as small ones do in SBCL."""
@@ -68,7 +59,7 @@ def equal(x, y):
         return True if isinstance(y, (str, LispString)) and str(x) == str(y) else None
     if is_bit_vector(x):
         return True if is_bit_vector(y) and list(x) == list(y) else None
-    if isinstance(x, _content_classes):
+    if isinstance(x, pathlib.PurePath):
         return True if x == y else None
     return eql(x, y)
 
@@ -174,7 +165,7 @@ def equal_key(x):
         return _cons_key(x, equal_key)
     if is_bit_vector(x):
         return ("bits", tuple(x))
-    if isinstance(x, _content_classes):
+    if isinstance(x, pathlib.PurePath):
         return ("content", x)
     return eql_key(x)
 

@@ -42,6 +42,7 @@ class Unit:
         self.positions = positions if positions is not None else {}
         self.namespace = namespace if namespace is not None else new_namespace(filename)
         self.stored = stored
+        self.situations = SITUATIONS if stored else EXECUTE
         self.constants = backend.Constants()
         self.names = {}
 
@@ -52,9 +53,9 @@ class Unit:
         analyzer._at = self.positions.get(id(form))
         try:
             node = analyzer.toplevel(form, self.names)
+            statements = backend.Generator(self.constants).toplevel(node)
         except RecursionError:
-            error(CompileError("The form is nested too deeply to be compiled.", position=analyzer.place()))
-        statements = backend.Generator(self.constants).toplevel(node)
+            too_deep(analyzer.place())
         self.names.clear()
         if self.stored:
             return [*self.constants.take_forms(), *statements]
@@ -63,7 +64,15 @@ class Unit:
 
     def code(self, statements):
         """The code object of Hy statements."""
-        return compile(compiler().python_tree(statements, self.filename), self.filename, "exec")
+        try:
+            return compile(compiler().python_tree(statements, self.filename), self.filename, "exec")
+        except (RecursionError, compiler().HyError) as problem:
+            cause = problem  # Hy wraps what its macros raise
+            while cause is not None and not isinstance(cause, RecursionError):
+                cause = cause.__cause__ or cause.__context__
+            if cause is None:
+                raise
+        return too_deep()
 
     def compile(self, form):
         """The code object of one top-level form."""
@@ -91,18 +100,38 @@ class Unit:
                 for part in form.cdr or ():
                     yield from self.toplevel_parts(part)
                 return
-            if head is EVAL_WHEN and isinstance(form.cdr, Cons):
-                situations = set(form.cdr.car or ())
-                if situations & {sym(":EXECUTE"), sym(":LOAD-TOPLEVEL"), sym(":COMPILE-TOPLEVEL"), sym("EVAL"), sym("LOAD"),
-                                 sym("COMPILE")}:
+            if head is EVAL_WHEN and isinstance(form.cdr, Cons) and isinstance(form.cdr.car, Cons):
+                if not self.situations.isdisjoint(form.cdr.car):
                     yield from self.toplevel_parts(Cons(PROGN, form.cdr.cdr))
                 return
-            if head.macro is not None or not compiler().is_special(head):
+            if head in (MACROLET, SYMBOL_MACROLET, LOCALLY) and isinstance(form.cdr, Cons):
+                yield from self._scoped_parts(form)
+                return
+            if not compiler().is_special(head):
                 expansion, expanded = self.expand(form)
                 if expanded:
                     yield from self.toplevel_parts(expansion)
                     return
         yield form
+
+    def _scoped_parts(self, form):
+        """The forms in a top-level ``macrolet``, ``symbol-macrolet`` or ``locally``: each again with what surrounds it."""
+        head, rest = form.car, form.cdr
+        around = [head] if head is LOCALLY else [head, rest.car]
+        forms = list(rest if head is LOCALLY else rest.cdr or ())
+        while forms and isinstance(forms[0], Cons) and forms[0].car is DECLARE:
+            around.append(forms.pop(0))
+        if len(forms) < 2 and not (forms and isinstance(forms[0], Cons) and forms[0].car is PROGN):
+            yield form
+            return
+        for part in forms:
+            inner = list(part.cdr or ()) if isinstance(part, Cons) and part.car is PROGN else [part]
+            for item in inner:
+                scoped = list_from([*around, item])
+                if id(form) in self.positions:
+                    self.positions.setdefault("kept", []).append(scoped)
+                    self.positions.setdefault(id(scoped), self.positions[id(form)])
+                yield scoped
 
     def expand(self, form):
         from .macros import macroexpand_1
@@ -110,7 +139,7 @@ class Unit:
         try:
             expansion, expanded = macroexpand_1(form)
         except Condition as problem:
-            if getattr(problem, "position", self) is None and id(form) in self.positions:
+            if getattr(problem, "position", None) is None and id(form) in self.positions:
                 problem.position = (self.filename, *self.positions[id(form)][:2])
             raise
         if expanded and isinstance(expansion, Cons) and id(form) in self.positions:
@@ -119,13 +148,21 @@ class Unit:
         return expansion, expanded
 
 
+def too_deep(position=None):
+    error(CompileError("The form is nested too deeply to be compiled.", position=position))
+
+
 def new_namespace(filename):
     """Globals for compiled code."""
     return {"__name__": "cramhy_code", "__file__": filename, "__builtins__": __builtins__, **NAMESPACE}
 
 
+EXECUTE = {sym(":EXECUTE"), sym("EVAL")}
+"""The situations of ``eval-when`` in which ``eval`` evaluates; a file is compiled and loaded at once, so it evaluates in all."""
+SITUATIONS = EXECUTE | {sym(":LOAD-TOPLEVEL"), sym(":COMPILE-TOPLEVEL"), sym("LOAD"), sym("COMPILE")}
 PROGN = sym("PROGN")
 EVAL_WHEN = sym("EVAL-WHEN")
+MACROLET, SYMBOL_MACROLET, LOCALLY, DECLARE = sym("MACROLET"), sym("SYMBOL-MACROLET"), sym("LOCALLY"), sym("DECLARE")
 
 _session = None
 

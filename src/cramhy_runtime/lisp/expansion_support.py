@@ -235,6 +235,12 @@ def package_iterator(packages, kinds):
     return lambda: next(iterator, None)
 
 
+def hash_table_iterator(table):
+    """The generator function of ``with-hash-table-iterator``: T, key and value a call, nil at the end."""
+    entries = iter(table.items())
+    return lambda: next((MultipleValues((True, key, value)) for key, value in entries), None)
+
+
 # -------------------------------------------------------------------------------------------------------------- places, plists
 
 
@@ -288,7 +294,10 @@ _traced: dict = {}
 def trace(names):
     """``trace``: print the calls of the named functions; without names, the list of those traced."""
     from .printer import prin1_to_string
-    from .streams import trace_output
+    from .streams import TRACE_OUTPUT
+
+    def trace_output():
+        return TRACE_OUTPUT.value
 
     depth = [0]
     for name in names or ():

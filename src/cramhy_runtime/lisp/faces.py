@@ -14,7 +14,8 @@ import functools
 import keyword as python_keywords
 import sys
 
-from .data import Keyword, Symbol, UNBOUND
+from .data import Keyword, Symbol
+from .dynamic import special
 from .packages import Package, find_package, find_package_or_error, intern, keyword, register
 
 
@@ -110,11 +111,7 @@ def define_face(name, nicknames=(), use=(), shadow=(), functions=None, variables
             symbol.function = lispify(function)
             package.export(symbol)
     for variable, value in (variables or {}).items():
-        symbol = package.intern(variable.upper())
-        symbol.special = True
-        if symbol.value is UNBOUND:
-            symbol.value = value
-        package.export(symbol)
+        package.export(special(package.intern(variable.upper()), value))
     for symbol_name in export.upper().split():
         package.export(package.intern(symbol_name))
     for symbol_name in internal.upper().split():

@@ -87,9 +87,18 @@ def open_(
     return stream
 
 
-def with_open_file(function, filespec, **options):
-    """What the macro ``with-open-file`` becomes: the values of ``function(stream)``; the file is always closed."""
-    stream = open_(filespec, **options)
+def with_open_file(
+    function,
+    filespec,
+    *,
+    direction=UNSUPPLIED,
+    element_type=None,
+    if_exists=UNSUPPLIED,
+    if_does_not_exist=UNSUPPLIED,
+    external_format=None,
+):
+    """What the macro ``with-open-file`` becomes: the values of ``function(stream)``; the file is always closed. Keywords: `open_`."""
+    stream = open_(filespec, direction=direction, if_exists=if_exists, if_does_not_exist=if_does_not_exist)
     try:
         return function(stream)
     finally:

@@ -14,13 +14,11 @@ from __future__ import annotations
 import math
 import struct
 
-from .data import DoubleFloat, Symbol
+from .data import DoubleFloat
+from .dynamic import special
 from .packages import sym
 
-READ_DEFAULT_FLOAT_FORMAT = sym("*READ-DEFAULT-FLOAT-FORMAT*")
-READ_DEFAULT_FLOAT_FORMAT.special = True
-if not isinstance(READ_DEFAULT_FLOAT_FORMAT.value, Symbol):
-    READ_DEFAULT_FLOAT_FORMAT.value = sym("SINGLE-FLOAT")
+READ_DEFAULT_FLOAT_FORMAT = special("*READ-DEFAULT-FLOAT-FORMAT*", sym("SINGLE-FLOAT"))
 _DOUBLE_NAMES = (sym("DOUBLE-FLOAT"), sym("LONG-FLOAT"))
 _SMALLEST_SINGLE = 2.0**-126
 _SMALLEST_DOUBLE = 2.0**-1022

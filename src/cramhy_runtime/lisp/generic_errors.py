@@ -55,6 +55,26 @@ def no_next_method_error(generic_function, method, arguments):
     return error(NoNextMethodError(generic_function, list_from(arguments), method=method))
 
 
+class ShownAsGeneric:
+    """What errors show for a function that is generic in the original and a plain one here: its name, and how
+    many methods it has (``None``: nobody knows)."""
+
+    __slots__ = ("name", "methods")
+
+    def __init__(self, name, methods):
+        self.name, self.methods = name, methods
+
+
+def no_applicable_method(name, methods, *arguments):
+    """Signal what the generic function ``name`` (as printed) of the original, with ``methods`` methods, signals for ``arguments``."""
+    return no_applicable_method_error(ShownAsGeneric(name, methods), arguments)
+
+
+def no_primary_method(name, methods, *arguments):
+    """The same for a function whose only methods for ``arguments`` are auxiliary ones."""
+    return no_primary_method_error(ShownAsGeneric(name, methods), arguments)
+
+
 def incongruent(generic_function, method):
     """Signal that the lambda list of ``method`` does not fit that of ``generic_function``, and say in what."""
     ours, theirs = generic_function.shape, method.shape

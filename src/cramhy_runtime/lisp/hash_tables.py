@@ -18,7 +18,8 @@ from .data import UNSUPPLIED, Cons, Keyword, MultipleValues, Symbol, list_from
 from .equality import KEYS, eq, eql, equal, equalp, equalp_key
 from .functions import function_of
 from .packages import sym
-from .printer import define_printer, print_hash_table
+from .printer import define_printer
+from .standard_printers import print_hash_table
 
 LISP_NAMES = """
 make-hash-table gethash remhash clrhash maphash hash-table-p hash-table-count hash-table-test hash-table-size

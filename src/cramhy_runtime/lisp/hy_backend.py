@@ -5,6 +5,7 @@ Importing this module imports Hy, which costs a noticeable part of a start; so t
 
 from __future__ import annotations
 
+import ast
 import types
 
 from hy import models
@@ -45,8 +46,56 @@ def python_tree(statements, filename):
     for statement in statements:
         if isinstance(statement, models.Sequence):
             _place(statement, None)
-    return hy_compile(models.Expression([models.Symbol("do"), *statements]), _module, filename=filename, source="",
-                      import_stdlib=False)
+    return tidy(hy_compile(models.Expression([models.Symbol("do"), *statements]), _module, filename=filename, source="",
+                           import_stdlib=False))
+
+
+def tidy(tree):
+    """``tree`` without what Hy adds because its statements are expressions: variables that only ever hold ``None``, and what
+    stands after a jump. Our generator delivers all values itself, so these cost time in every turn of a loop and mean nothing."""
+    used = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign):
+            if not _is_nothing(node.value):
+                used.update(target.id for target in node.targets if isinstance(target, ast.Name))
+        elif isinstance(node, ast.Return):
+            if isinstance(node.value, ast.Name):
+                node.value.ctx = None  # returning the variable is no use of it
+        elif isinstance(node, ast.AnnAssign | ast.NamedExpr):
+            used.add(getattr(node.target, "id", None))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+            used.add(node.id)
+    for node in ast.walk(tree):
+        for name in ("body", "orelse", "finalbody"):
+            statements = getattr(node, name, None)
+            if isinstance(statements, list):
+                kept = _without_empty(statements, used)
+                setattr(node, name, kept or ([ast.Pass(lineno=statements[0].lineno, col_offset=0)] if statements and name == "body" else []))
+        if isinstance(node, ast.Return) and isinstance(node.value, ast.Name):
+            node.value.ctx = ast.Load()
+    return tree
+
+
+def _is_nothing(value):
+    return isinstance(value, ast.Constant) and value.value is None
+
+
+def _without_empty(statements, used):
+    kept = []
+    for statement in statements:
+        if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
+            name = statement.targets[0].id
+            if name.startswith("_hy_anon") and name not in used:
+                continue
+        if isinstance(statement, ast.Return) and isinstance(statement.value, ast.Name):
+            name = statement.value.id
+            if name.startswith("_hy_anon") and name not in used:
+                continue
+        kept.append(statement)
+        if isinstance(statement, ast.Return | ast.Break | ast.Continue | ast.Raise):
+            break
+    return kept
 
 
 def is_special(symbol):

@@ -15,6 +15,10 @@ from .packages import keyword, sym, symbol_name
 KEYWORDS = {name: f"&{name}" for name in ("OPTIONAL", "REST", "BODY", "KEY", "AUX", "WHOLE", "ENVIRONMENT", "ALLOW-OTHER-KEYS")}
 
 
+ORDER = {"&REQUIRED": 0, "&OPTIONAL": 1, "&REST": 2, "&BODY": 2, "&KEY": 3, "&AUX": 4}
+"""What may follow what in a lambda list."""
+
+
 @dataclass
 class LambdaList:
     """A lambda list. In destructuring ones, required items and rest may be lambda lists themselves (Lisp lists)."""
@@ -46,13 +50,18 @@ def parse(lambda_list, destructuring=False):
     while isinstance(cell, Cons):
         item, cell = cell.car, cell.cdr
         marker = _marker(item)
+        if marker in ORDER:
+            if ORDER[marker] <= ORDER["&" + state]:
+                malformed(lambda_list, f"{marker} is misplaced or occurs twice.")
+        elif marker == "&ALLOW-OTHER-KEYS" and state != "KEY":
+            malformed(lambda_list, "&ALLOW-OTHER-KEYS may only follow &KEY.")
         if marker == "&WHOLE":
             result.whole, cell = _next(lambda_list, cell, marker)
         elif marker == "&ENVIRONMENT":
             result.environment, cell = _next(lambda_list, cell, marker)
         elif marker in ("&REST", "&BODY"):
             result.rest, cell = _next(lambda_list, cell, marker)
-            state = "AFTER-REST"
+            state = "REST"
         elif marker == "&OPTIONAL":
             state = "OPTIONAL"
         elif marker == "&KEY":

@@ -70,11 +70,14 @@ def load_file(path, chain="", finished=None):
     """
     path = Path(path).absolute()
     try:
-        text = path.read_text(encoding="utf-8")
+        data = path.read_bytes()
+        text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except OSError as problem:
         return error(FileError(str(path), "Cannot load ~A: ~A.", str(path), problem.strerror))
     except UnicodeDecodeError as problem:
-        return error(FileError(str(path), "Cannot load ~A: it is no UTF-8 text (byte ~D).", str(path), problem.start))
+        line = data.count(b"\n", 0, problem.start) + 1
+        return error(FileError(str(path), "Cannot load ~A: it is no UTF-8 text (line ~D, byte ~D of the file). Save it as UTF-8.",
+                               str(path), line, problem.start))
     fingerprint = hashlib.sha256(f"{stamp()}{chain}{path}".encode() + text.encode()).hexdigest()
     with binding(PACKAGE, PACKAGE.value, LOAD_PATHNAME, str(path), LOAD_TRUENAME, str(path)):
         codes = _kept(path, fingerprint)

@@ -57,7 +57,7 @@ def define_operator(package, name, function):
             expansion = function(*(form.cdr or ()))
         except Condition:
             raise
-        except (TypeError, ValueError) as problem:
+        except (TypeError, ValueError, AttributeError) as problem:
             return malformed(form, symbol, problem)
         return from_hy(expansion, home)
 
@@ -71,7 +71,7 @@ def define_operator(package, name, function):
 def malformed(form, symbol, problem):
     """Signal that a call of the macro ``symbol`` has not the shape that it must have."""
     why = str(problem)
-    for marker in ("positional argument", "unpack", "iterable", "takes", "missing"):
+    for marker in ("positional argument", "unpack", "iterable", "takes", "missing", "has no attribute"):
         if marker in why:
             why = "it has the wrong number of parts, or a part is not a list."
             break

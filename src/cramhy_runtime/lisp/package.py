@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import importlib
 
-from . import cl_names, expansion_support
+from . import cl_names, expansion_support, extension_packages
 from .faces import define_face, lispify
-from .packages import Package, find_package, register, sym
+from .packages import sym
 
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
-    class_definition slots protocol generic structures streams stream_functions file_streams printer pretty pprint_dispatch format reader tokens
-    readtables reader_functions symbols control""".split())
+    class_definition slots protocol generic structures streams stream_functions file_streams printer pretty pprint_dispatch format reader
+    tokens readtables reader_functions symbols control""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
 HELPERS = {
@@ -24,17 +24,19 @@ HELPERS = {
     "structures": "structure-slot define-structure unsupplied",
     "types": "define-type",
     "printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
-        make-fill-pointer-output-stream stream-position with-open-file with-standard-io-syntax""",
+        make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
+    "file_streams": "with-open-file",
     "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
     "places": "define-modifier define-setf-function define-setf-form define-expander",
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
         handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart define-package set-package
-        package-symbols all-symbols package-iterator put-property remove-property time trace untrace next-method-exists""",
+        package-symbols all-symbols package-iterator hash-table-iterator
+        put-property remove-property time trace untrace next-method-exists""",
 }
 
 
 def fill():
-    """Define the faces; called once, when ``cramhy_runtime.lisp`` is imported."""
+    """Define the faces; called once, by `image.boot`."""
     for name in MODULES:
         module = importlib.import_module(f"{__package__}.{name}")
         names = " ".join(lisp_name for lisp_name in module.LISP_NAMES.split()
@@ -46,11 +48,10 @@ def fill():
         for lisp_name, setter in getattr(module, "SETTERS", {}).items():
             sym(lisp_name).setf_function = lispify(setter)
     define_face("COMMON-LISP", functions={"proclaim": expansion_support.proclaim})
-    if find_package("CRAMHY") is None:
-        register(Package("CRAMHY"))
     importlib.import_module(f"{__package__}.clos_printing")  # teaches the printer about classes and generic functions
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})
+    extension_packages.define_faces()
 
 
 _standard = set(cl_names.NAMES.split())

@@ -8,7 +8,7 @@ message texts are SBCL's.
 from __future__ import annotations
 
 from . import cl_names
-from .data import Keyword, MultipleValues, Symbol
+from .data import Keyword, Symbol
 
 
 class Package:
@@ -147,6 +147,11 @@ def register(package):
     return package
 
 
+def ensure_package(name, *nicknames, use=()):
+    """The package ``name``, registered with its nicknames if it does not exist yet: what a room's ``symbols.py`` calls."""
+    return find_package(name) or register(Package(name, nicknames, use))
+
+
 def make_package(name, nicknames=(), use=()):
     """A new registered package that uses the packages ``use``."""
     return register(Package(name, nicknames, [find_package_or_error(other) for other in use]))
@@ -265,7 +270,4 @@ KEYWORD = register(Package("KEYWORD"))
 COMMON_LISP = register(Package("COMMON-LISP", ["CL"]))
 COMMON_LISP.external.update({name.upper(): Symbol(name.upper(), COMMON_LISP) for name in cl_names.NAMES.split()}, NIL=None, T=True)
 COMMON_LISP_USER = register(Package("COMMON-LISP-USER", ["CL-USER"], [COMMON_LISP]))
-
-
-def lisp_values(*items):
-    return MultipleValues(items)
+CRAMHY = register(Package("CRAMHY"))  # what macros expand into: functions of the runtime that users do not name

@@ -8,11 +8,13 @@ in ``symbol.compiler_data``.
 
 from __future__ import annotations
 
+import functools
+
 from .conditions import CompileError, error
 from .data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
 from .definitions import data
-from .lambda_lists import destructure, gensym, support
-from .macros import macroexpand_1
+from .lambda_lists import destructure, gensym, parse, support
+from .macros import macroexpand_1, malformed
 from .packages import is_symbol, sym
 
 LET_STAR, PROGN, SETQ = sym("LET*"), sym("PROGN"), sym("SETQ")
@@ -34,9 +36,9 @@ def setf_expansion(place, environment=None):
         expander = (head.compiler_data or {}).get("setf-expander")
         if expander is not None:
             return expander(place, environment)
-        expansion, expanded = macroexpand_1(place, environment)
-        if expanded:
-            return setf_expansion(expansion, environment)
+    expansion, expanded = macroexpand_1(place, environment)  # knows that a local function hides a macro
+    if expanded:
+        return setf_expansion(expansion, environment)
     return _function_place(place)
 
 
@@ -91,7 +93,15 @@ def macro(name):
 
     def define(function):
         symbol = sym(name)
-        symbol.macro = function
+
+        @functools.wraps(function)
+        def expander(form, environment):
+            try:
+                return function(form, environment)
+            except (TypeError, ValueError) as problem:
+                return malformed(form, symbol, problem)
+
+        symbol.macro = expander
         return function
 
     return define
@@ -209,18 +219,27 @@ def _remf(form, environment):
 
 @macro("DEFINE-MODIFY-MACRO")
 def _define_modify_macro(form, environment):
-    """``(define-modify-macro name lambda-list function [doc])``"""
+    """``(define-modify-macro name lambda-list function [doc])``
+
+    The lambda list takes the forms after the place apart; only &optional and &rest are allowed in it.
+    """
     name, lambda_list, function, *_ = list(form.cdr)
     quote = sym("QUOTE")
-    return lisp_list(support("DEFINE-MODIFIER"), lisp_list(quote, name), lisp_list(quote, lambda_list), lisp_list(quote, function))
+    parsed = parse(lambda_list)
+    if parsed.has_keys or parsed.aux:
+        return error(CompileError("&KEY is not allowed in a DEFINE-MODIFY-MACRO lambda list: ~S", lambda_list))
+    variables = [*parsed.required, *(variable for variable, _, _ in parsed.optional)]
+    arguments = lisp_list(sym("LAMBDA"), lambda_list, Cons(sym("LIST*"), list_from([*variables, parsed.rest])))
+    return lisp_list(support("DEFINE-MODIFIER"), lisp_list(quote, name), arguments, lisp_list(quote, function))
 
 
-def define_modifier(name, lambda_list, function):
-    """What ``define-modify-macro`` does when it is run."""
+def define_modifier(name, arguments, function):
+    """What ``define-modify-macro`` does when it is run: ``arguments`` gives the list of the forms after the place."""
 
     def expand(form, environment):
         place, *rest = list(form.cdr)
-        return modify(place, environment, lambda old: lisp_list(function, old, *rest))
+        forms = list(one(arguments(*rest)) or ())
+        return modify(place, environment, lambda old: lisp_list(function, old, *forms))
 
     name.macro = expand
     return name

@@ -42,9 +42,17 @@ def exception_position(exception):
     found, traceback = None, exception.__traceback__
     while traceback is not None:
         if is_user_file(traceback.tb_frame.f_code.co_filename):
-            found = frame_position(traceback.tb_frame, traceback.tb_lasti)
+            found = traceback
         traceback = traceback.tb_next
-    return found
+    return found and frame_position(found.tb_frame, found.tb_lasti)
+
+
+def locate(condition, exception):
+    """Note on ``condition`` the innermost place of the user's text that ``exception`` passed, if no better one is known."""
+    if getattr(condition, "position", None) is None:
+        position = exception_position(exception)
+        if position is not None:
+            condition.position = position
 
 
 def describe(position):

@@ -9,7 +9,8 @@ priority first. Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
 from __future__ import annotations
 
 from . import pprint_code as code
-from .data import UNBOUND, Cons, Symbol, python_list
+from .data import Cons, Symbol, python_list
+from .dynamic import special
 from .packages import sym
 from .pretty import pprint_fill
 from .print_arrays import is_printed_array, pprint_array
@@ -104,10 +105,7 @@ def _is_of_type(obj, specifier):
 
 
 INITIAL = DispatchTable({head: Entry(None, LOWEST, layout) for head, layout in _STANDARD.items()})
-PRINT_PPRINT_DISPATCH = sym("*PRINT-PPRINT-DISPATCH*")
-PRINT_PPRINT_DISPATCH.special = True
-if PRINT_PPRINT_DISPATCH.value is UNBOUND:
-    PRINT_PPRINT_DISPATCH.value = INITIAL.copy()
+PRINT_PPRINT_DISPATCH = special("*PRINT-PPRINT-DISPATCH*", INITIAL.copy())
 
 
 def _table(designator):

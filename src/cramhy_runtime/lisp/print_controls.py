@@ -12,36 +12,28 @@ from fractions import Fraction
 
 from cramhy_runtime import kernel
 
-from .data import UNBOUND, Character, Symbol
-from .dynamic import binding
-from .packages import COMMON_LISP_USER, keyword, sym
-
-
-def _control(name, value):
-    symbol = sym(name)
-    symbol.special = True
-    if symbol.value is UNBOUND:
-        symbol.value = value
-    return symbol
+from .data import Character, Symbol
+from .dynamic import binding, special
+from .packages import COMMON_LISP_USER, keyword
 
 
 UPCASE, DOWNCASE, CAPITALIZE = keyword("UPCASE"), keyword("DOWNCASE"), keyword("CAPITALIZE")
 
-PRINT_ESCAPE = _control("*PRINT-ESCAPE*", True)
-PRINT_READABLY = _control("*PRINT-READABLY*", None)
-PRINT_BASE = _control("*PRINT-BASE*", 10)
-PRINT_RADIX = _control("*PRINT-RADIX*", None)
-PRINT_CASE = _control("*PRINT-CASE*", UPCASE)
-PRINT_CIRCLE = _control("*PRINT-CIRCLE*", None)
-PRINT_LENGTH = _control("*PRINT-LENGTH*", None)
-PRINT_LEVEL = _control("*PRINT-LEVEL*", None)
-PRINT_PRETTY = _control("*PRINT-PRETTY*", True)
-PRINT_RIGHT_MARGIN = _control("*PRINT-RIGHT-MARGIN*", None)
-PRINT_LINES = _control("*PRINT-LINES*", None)
-PRINT_MISER_WIDTH = _control("*PRINT-MISER-WIDTH*", None)
-PRINT_GENSYM = _control("*PRINT-GENSYM*", True)
-PRINT_ARRAY = _control("*PRINT-ARRAY*", True)
-PACKAGE = _control("*PACKAGE*", COMMON_LISP_USER)
+PRINT_ESCAPE = special("*PRINT-ESCAPE*", True)
+PRINT_READABLY = special("*PRINT-READABLY*", None)
+PRINT_BASE = special("*PRINT-BASE*", 10)
+PRINT_RADIX = special("*PRINT-RADIX*", None)
+PRINT_CASE = special("*PRINT-CASE*", UPCASE)
+PRINT_CIRCLE = special("*PRINT-CIRCLE*", None)
+PRINT_LENGTH = special("*PRINT-LENGTH*", None)
+PRINT_LEVEL = special("*PRINT-LEVEL*", None)
+PRINT_PRETTY = special("*PRINT-PRETTY*", True)
+PRINT_RIGHT_MARGIN = special("*PRINT-RIGHT-MARGIN*", None)
+PRINT_LINES = special("*PRINT-LINES*", None)
+PRINT_MISER_WIDTH = special("*PRINT-MISER-WIDTH*", None)
+PRINT_GENSYM = special("*PRINT-GENSYM*", True)
+PRINT_ARRAY = special("*PRINT-ARRAY*", True)
+PACKAGE = special("*PACKAGE*", COMMON_LISP_USER)
 
 LEVEL = Symbol("*CURRENT-LEVEL-IN-PRINT*")
 LEVEL.value = 0

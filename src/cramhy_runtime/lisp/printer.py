@@ -184,11 +184,6 @@ def printer_for(cls):
     return found
 
 
-def forget_printers():
-    """Look printers up anew: classes have been redefined."""
-    _found.clear()
-
-
 # --------------------------------------------------------------------------------------------------- unreadable objects
 
 _addresses: dict = {}
@@ -427,4 +422,4 @@ def write_to_string(
 LISP_NAMES = "prin1 princ print pprint prin1-to-string princ-to-string write-to-string"
 LISP_FUNCTIONS = {"write": lisp_write}
 
-from .standard_printers import function_name, print_hash_table, print_structure, report_to  # noqa: E402, F401  it uses ours
+from . import standard_printers  # noqa: E402, F401  its printers are entered above; it uses ours, so whoever comes first gets both

@@ -5,8 +5,8 @@ The macros (``hy_src/cramhy/cl.hy``) only put the forms of their bodies into fun
 
 from __future__ import annotations
 
-from . import file_streams, print_controls, printer
-from .data import UNSUPPLIED, LispString
+from . import print_controls, printer
+from .data import LispString
 from .float_printing import READ_DEFAULT_FLOAT_FORMAT
 from .format import formatter
 from .packages import COMMON_LISP_USER, sym
@@ -66,22 +66,6 @@ def stream_position(stream):
     return stream.position
 
 
-def with_open_file(
-    function,
-    filespec,
-    *,
-    direction=UNSUPPLIED,
-    element_type=None,
-    if_exists=UNSUPPLIED,
-    if_does_not_exist=UNSUPPLIED,
-    external_format=None,
-):
-    """``with-open-file``: see `file_streams.open_` for the arguments."""
-    return file_streams.with_open_file(
-        function, filespec, direction=direction, if_exists=if_exists, if_does_not_exist=if_does_not_exist
-    )
-
-
 _OFF = """
 *PRINT-CIRCLE* *PRINT-LENGTH* *PRINT-LEVEL* *PRINT-LINES* *PRINT-MISER-WIDTH* *PRINT-PRETTY* *PRINT-RADIX* *PRINT-RIGHT-MARGIN*
 *READ-SUPPRESS*
@@ -111,8 +95,3 @@ def with_standard_io_syntax(thunk):
 
 
 __all__ = ["formatter"]
-MACRO_SUPPORT = """
-pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter make-fill-pointer-output-stream
-stream-position with-open-file with-standard-io-syntax
-"""
-"""The Lisp names (package CRAMHY) of these functions."""

@@ -12,7 +12,8 @@ import random as python_random
 
 from .arithmetic import is_integer, single
 from .conditions import SimpleTypeError, error, type_error
-from .data import UNBOUND, DoubleFloat
+from .data import DoubleFloat
+from .dynamic import special
 from .packages import sym
 
 LISP_NAMES = "random make-random-state random-state-p"
@@ -54,10 +55,7 @@ def _initial_words(seed):
     return words
 
 
-RANDOM_STATE = sym("*RANDOM-STATE*")
-RANDOM_STATE.special = True
-if RANDOM_STATE.value is UNBOUND:
-    RANDOM_STATE.value = RandomState()
+RANDOM_STATE = special("*RANDOM-STATE*", RandomState())
 
 
 def seed_random(seed=None):

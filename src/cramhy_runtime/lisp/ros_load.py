@@ -6,10 +6,10 @@ import os
 
 from . import systems
 from .conditions import error
-from .data import Cons, truth
+from .data import Cons, lisp_list, truth
 from .dynamic import binding
 from .faces import define_face
-from .loader import LOAD_PATHNAME
+from .loader import LOAD_PATHNAME, load
 from .packages import string_designator, sym
 
 
@@ -52,6 +52,15 @@ def find_system(name, error_p=True):
     return systems.find_system(known)
 
 
+def require(module, pathnames=None):
+    """``require``: load the system of that name unless it is there; ASDF itself always is."""
+    name = string_designator(module).lower()
+    if name in ("asdf", "uiop") or name.startswith("sb-"):
+        return None
+    systems.load_system(name)
+    return lisp_list(string_designator(module))
+
+
 def _defsystem(form, environment):
     quote = sym("QUOTE")
     return Cons(sym("CRAMHY::DEFINE-SYSTEM-HERE"), Cons(Cons(quote, Cons(form, None)), None))
@@ -72,5 +81,6 @@ def define_faces():
                 variables={"*CURRENT-ROS-PACKAGE*": None})
     define_face("ASDF", functions={"load-system": asdf_load_system, "find-system": find_system, "defsystem": define_system_here})
     define_face("CRAMHY", functions={"define-system-here": define_system_here})
+    define_face("COMMON-LISP", functions={"load": load, "require": require})
     sym("ASDF::DEFSYSTEM").macro = _defsystem
 

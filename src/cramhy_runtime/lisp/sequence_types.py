@@ -16,7 +16,7 @@ from .data import Character, Cons, LispString, Symbol, list_from
 from .element_types import check_element, upgraded_element_type
 from .lists import items_of
 from .packages import sym
-from .vectors import BIT, CHARACTER, LispArray, TypedVector, Vector
+from .vectors import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type
 
 INDEX_TYPE = "(MOD 4611686018427387901)"
 
@@ -49,8 +49,6 @@ class IndexTooLarge(TypeError_):
     def report(self):
         if self.sequence is None or isinstance(self.sequence, Cons):
             return f"The index {self.datum} is too large for a list of length {self.length}."
-        from .arrays import array_type
-
         pointer = getattr(self.sequence, "fill_pointer", None)
         return formatted("Invalid index ~S for ~S ~@[with fill-pointer ~a~], should be a non-negative integer below ~S.",
                          (self.datum, array_type(self.sequence), pointer, self.length))

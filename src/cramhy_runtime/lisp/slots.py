@@ -12,10 +12,10 @@ from operator import attrgetter
 
 from .class_objects import effective_slots, find_slot, when_classes_change
 from .classes import class_of
-from .condition_types import shown
+from .condition_types import formatted, shown
 from .conditions import CellError, Condition, SimpleError, UnboundSlot, error, restart_case, type_error
 from .data import UNBOUND, Symbol, boolean, list_from, one, truth
-from .packages import sym, symbol_name
+from .packages import sym
 
 LISP_NAMES = "slot-value slot-boundp slot-makunbound slot-exists-p"
 
@@ -40,8 +40,7 @@ class MissingSlot(CellError):
         self.instance, self.what = instance, what
 
     def report(self):
-        return (f"When attempting to {self.what}, the slot\n{symbol_name(self.name)} is missing from the object\n"
-                f"{shown(self.instance)}.")
+        return formatted("~@<When attempting to ~A, the slot ~S is missing from the object ~S.~@:>", (self.what, self.name, self.instance))
 
 
 def _attribute(obj, name):

@@ -12,6 +12,7 @@ import weakref
 
 from . import print_controls as controls
 from .backquote import Comma
+from .condition_types import shown_with
 from .conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
 from .data import Cons, DoubleFloat, LispString, Symbol
 from .packages import Package, all_packages, is_symbol, sym, symbol_name
@@ -46,7 +47,11 @@ def print_structure(obj, stream):
     """``#S(NAME :SLOT value)``, one slot per line when they do not fit on one."""
     from .structures import slots_of
 
-    name, slots = class_symbol(type(obj)), list(slots_of(obj))
+    print_slots(class_symbol(type(obj)), list(slots_of(obj)), stream)
+
+
+def print_slots(name, slots, stream):
+    """Print what looks like a structure ``name`` (a symbol) with ``slots``, a list of (name, value)."""
     if not slots:
         stream.write("#S(")
         output_object(name, stream)
@@ -140,8 +145,7 @@ class _Verbatim:
 
 def _type_error_report(condition):
     expected = condition.expected_type
-    if isinstance(expected, str):
-        expected = _Verbatim(expected)
+    expected = _Verbatim(expected if isinstance(expected, str) else shown_with(expected, "COMMON-LISP"))
     context = condition.context.lstrip("\n") if condition.context else None
     return "~@<The value ~@:_~2@T~S ~@:_is not of type ~@:_~2@T~S~@[ ~@:_~A~]~:@>", condition.datum, expected, context
 

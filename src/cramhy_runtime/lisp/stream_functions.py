@@ -241,21 +241,6 @@ def call_with_output_to_string(function, target=None):
     return stream.text() if target is None else result
 
 
-def call_with_input_from_string(string, function, start=0, end=None):
-    """What ``with-input-from-string`` becomes: the values of ``function(stream)``."""
-    return function(make_string_input_stream(string, start, end))
-
-
-def output_to_string(thunk):
-    """The text that ``thunk`` prints to ``*standard-output*``. For Python callers and tests."""
-    from .print_controls import bound
-
-    stream = StringOutputStream()
-    with bound(streams.STANDARD_OUTPUT, stream):
-        thunk()
-    return stream.text()
-
-
 # --------------------------------------------------------------------------------------------------- asking and closing
 
 

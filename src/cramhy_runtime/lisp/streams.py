@@ -14,8 +14,8 @@ from __future__ import annotations
 import sys
 import weakref
 
-from .data import UNBOUND
-from .packages import Package, find_package, register, sym
+from .dynamic import special
+from .packages import Package, find_package, register
 
 for _package, _external in (("SB-SYS", "FD-STREAM"), ("SB-IMPL", ""), ("SB-PRETTY", ""), ("SB-FORMAT", "FORMAT-ERROR")):
     _home = find_package(_package) or register(
@@ -420,21 +420,13 @@ CONSOLE_ERROR = ConsoleOutput("stderr", "standard error")
 CONSOLE_INPUT = ConsoleInput()
 
 
-def _special(name, value):
-    symbol = sym(name)
-    symbol.special = True
-    if symbol.value is UNBOUND:
-        symbol.value = value
-    return symbol
-
-
-STANDARD_OUTPUT = _special("*STANDARD-OUTPUT*", CONSOLE_OUTPUT)
-STANDARD_INPUT = _special("*STANDARD-INPUT*", CONSOLE_INPUT)
-ERROR_OUTPUT = _special("*ERROR-OUTPUT*", CONSOLE_ERROR)
-TRACE_OUTPUT = _special("*TRACE-OUTPUT*", CONSOLE_OUTPUT)
-TERMINAL_IO = _special("*TERMINAL-IO*", TwoWayStream(CONSOLE_INPUT, CONSOLE_OUTPUT))
-QUERY_IO = _special("*QUERY-IO*", SynonymStream(TERMINAL_IO))
-DEBUG_IO = _special("*DEBUG-IO*", SynonymStream(TERMINAL_IO))
+STANDARD_OUTPUT = special("*STANDARD-OUTPUT*", CONSOLE_OUTPUT)
+STANDARD_INPUT = special("*STANDARD-INPUT*", CONSOLE_INPUT)
+ERROR_OUTPUT = special("*ERROR-OUTPUT*", CONSOLE_ERROR)
+TRACE_OUTPUT = special("*TRACE-OUTPUT*", CONSOLE_OUTPUT)
+TERMINAL_IO = special("*TERMINAL-IO*", TwoWayStream(CONSOLE_INPUT, CONSOLE_OUTPUT))
+QUERY_IO = special("*QUERY-IO*", SynonymStream(TERMINAL_IO))
+DEBUG_IO = special("*DEBUG-IO*", SynonymStream(TERMINAL_IO))
 
 _wrapped: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
 

@@ -11,7 +11,8 @@ from .packages import Package, find_package_or_error, is_symbol, keyword, printe
 LISP_NAMES = """symbolp keywordp symbol-name symbol-package symbol-value set symbol-function boundp fboundp makunbound fmakunbound
 make-symbol gensym gentemp copy-symbol intern find-symbol unintern export unexport import shadow shadowing-import use-package
 unuse-package find-package package-name package-nicknames package-use-list package-used-by-list package-shadowing-symbols
-list-all-packages make-package delete-package rename-package packagep find-all-symbols package-error-package"""
+list-all-packages make-package delete-package rename-package packagep find-all-symbols package-error-package
+apropos apropos-list"""
 
 
 def _symbol(obj):
@@ -70,12 +71,12 @@ def fboundp(name):
     from .compiler.analyze import SPECIAL_FORMS
 
     if isinstance(name, Cons):
-        return True if isinstance(name.cdr.car, Symbol) and name.cdr.car.setf_function is not None else None
+        return name.cdr.car.setf_function if isinstance(name.cdr.car, Symbol) else None
     if not isinstance(_symbol(name), Symbol):
         return None
-    if not isinstance(name.function, UndefinedFunction) or name.macro is not None or name in SPECIAL_FORMS:
-        return True
-    return None
+    if not isinstance(name.function, UndefinedFunction):
+        return name.function
+    return True if name.macro is not None or name in SPECIAL_FORMS else None
 
 
 def makunbound(symbol):
@@ -250,6 +251,19 @@ def find_all_symbols(name):
 
 def package_error_package(condition):
     return condition.package
+
+
+def apropos(text, package=None):
+    """Print the symbols whose names contain ``text``, with what they are; no values."""
+    from .printer import prin1_to_string
+    from .streams import standard_output
+
+    output = standard_output()
+    output.fresh_line()
+    for symbol in apropos_list(text, package) or ():
+        about = " = " + prin1_to_string(symbol.value) if boundp(symbol) and not isinstance(symbol, Keyword) else ""
+        output.write(f"{prin1_to_string(symbol)}{' (fbound)' if fboundp(symbol) else ''}{about}\n")
+    return MultipleValues()
 
 
 def apropos_list(text, package=None):

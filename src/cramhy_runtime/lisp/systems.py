@@ -119,8 +119,8 @@ def define_system(form, folder):
     options = list(form.cdr.cdr or ())
     if len(options) % 2:
         return error(CompileError("DEFSYSTEM ~A: the options must be pairs of a keyword and a value.", name))
-    table = {symbol_name(key): value for key, value in zip(options[::2], options[1::2])}
-    depends = [_dependency(item) for item in table.get("DEPENDS-ON") or ()]
+    table = _options(name, options)
+    depends = [_dependency(item) for item in _listed(name, "DEPENDS-ON", table.get("DEPENDS-ON"))]
     folder = folder / table["PATHNAME"] if isinstance(table.get("PATHNAME"), str) else folder
     system = System(name, folder, [item for item in depends if item], _components(name, table.get("COMPONENTS")),
                     table.get("DESCRIPTION"))
@@ -128,6 +128,29 @@ def define_system(form, folder):
         _make_serial(system.components)
     _systems[name] = system
     return system
+
+
+def _options(system, items):
+    """The options in the list ``items`` of keywords and values, by name."""
+    table = {}
+    for key, value in zip(items[::2], items[1::2]):
+        if not isinstance(key, Symbol):
+            error(CompileError("DEFSYSTEM ~A: the name of an option is a keyword such as :COMPONENTS, not ~S.", system, key))
+        table[symbol_name(key)] = value
+    return table
+
+
+def _listed(system, option, value):
+    """The elements of the ``value`` of an option that must be a list."""
+    if value is not None and not isinstance(value, Cons):
+        error(CompileError("DEFSYSTEM ~A: :~A must be a list, but it is ~S.", system, option, value))
+    return list(value or ())
+
+
+def _component_name(designator):
+    """As a string; a symbol stands for its name in lower case, as for ASDF."""
+    name = string_designator(designator)
+    return name if isinstance(designator, str) else name.lower()
 
 
 def _dependency(item):
@@ -142,15 +165,16 @@ def _components(system, form):
         style_warn("DEFSYSTEM ~A: :COMPONENTS should be a list of components, but it is the single component (~S ...); taken as "
                    "a list of one.", system, form.car)
         form = Cons(form, None)
-    return [_component(system, item) for item in form or ()]
+    return [_component(system, item) for item in _listed(system, "COMPONENTS", form)]
 
 
 def _component(system, form):
-    if not isinstance(form, Cons) or not isinstance(form.cdr, Cons):
+    if not isinstance(form, Cons) or not isinstance(form.cdr, Cons) or not isinstance(form.car, Symbol) \
+            or not isinstance(form.cdr.car, (str, Symbol)):
         return error(CompileError("DEFSYSTEM ~A: a component is (:file \"name\" ...) or (:module \"name\" ...), not ~S.", system, form))
     kind, name = symbol_name(form.car), form.cdr.car
     options, rest = {}, form.cdr.cdr
-    while isinstance(rest, Cons) and isinstance(rest.cdr, Cons):
+    while isinstance(rest, Cons) and isinstance(rest.cdr, Cons) and isinstance(rest.car, Symbol):
         options[symbol_name(rest.car)] = rest.cdr.car
         if symbol_name(rest.car) == "COMPONENTS" and isinstance(rest.cdr.car, Cons) and isinstance(rest.cdr.car.car, Symbol):
             # (:module "src" :components (:file ...) (:file ...)): the list was forgotten, as on a slide of lecture 38
@@ -159,11 +183,13 @@ def _component(system, form):
             options["COMPONENTS"] = rest.cdr
             break
         rest = rest.cdr.cdr
-    depends = [string_designator(item) for item in options.get("DEPENDS-ON") or ()]
+    if rest is not None and not isinstance(options.get("COMPONENTS"), Cons):
+        return error(CompileError("DEFSYSTEM ~A: after its name, the component ~S has pairs of a keyword and a value.", system, form))
+    depends = [_component_name(item) for item in _listed(system, "DEPENDS-ON", options.get("DEPENDS-ON"))]
     path = options.get("PATHNAME")
-    component = Component(kind, string_designator(name), depends, path=path if isinstance(path, str) else None)
+    component = Component(kind, _component_name(name), depends, path=path if isinstance(path, str) else None)
     if kind == "MODULE":
-        component.components = [_component(system, item) for item in options.get("COMPONENTS") or ()]
+        component.components = [_component(system, item) for item in _listed(system, "COMPONENTS", options.get("COMPONENTS"))]
         if options.get("SERIAL") is not None:
             _make_serial(component.components)
     return component

@@ -17,12 +17,12 @@ from .builtin_classes import BuiltInClass, lisp_mro
 from .class_objects import StandardObject, when_classes_change
 from .classes import class_name, class_of, symbol_class
 from .conditions import SimpleError, error
-from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, list_from, one, truth
+from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
 from .equality import eql
 from .generic import GenericFunction
 from .packages import Package, is_symbol, sym
 from .structures import StructureObject
-from .vectors import LispArray, TypedVector, Vector
+from .vectors import LispArray, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
 
 LISP_NAMES = "typep type-of coerce subtypep upgraded-complex-part-type"
 
@@ -50,17 +50,7 @@ def _is_array(obj):
 
 
 def _is_simple(obj):
-    if isinstance(obj, LispString):
-        return obj.fill_pointer is None and not obj.adjustable
-    if isinstance(obj, Vector):
-        return False
-    if isinstance(obj, LispArray):
-        return not obj.adjustable and obj.displaced_to is None
-    return _is_array(obj)
-
-
-def _is_bit_vector(obj):
-    return isinstance(obj, (TypedVector, Vector)) and getattr(obj.element_type, "name", "") == "BIT"
+    return _is_array(obj) and is_simple(obj)
 
 
 def _is_standard_character(obj):
@@ -70,8 +60,8 @@ def _is_standard_character(obj):
 _ATOMIC = {
     "ARRAY": _is_array, "SIMPLE-ARRAY": _is_simple, "VECTOR": _is_vector, "STRING": _is_string,
     "SIMPLE-STRING": lambda obj: _is_string(obj) and _is_simple(obj), "BASE-STRING": lambda obj: False,
-    "SIMPLE-BASE-STRING": lambda obj: False, "BIT-VECTOR": _is_bit_vector,
-    "SIMPLE-BIT-VECTOR": lambda obj: _is_bit_vector(obj) and _is_simple(obj),
+    "SIMPLE-BASE-STRING": lambda obj: False, "BIT-VECTOR": is_bit_vector,
+    "SIMPLE-BIT-VECTOR": lambda obj: is_bit_vector(obj) and _is_simple(obj),
     "SIMPLE-VECTOR": lambda obj: obj.__class__ is list,
     "SEQUENCE": lambda obj: obj is None or obj is False or isinstance(obj, Cons) or _is_vector(obj),
     "LIST": lambda obj: obj is None or obj is False or isinstance(obj, Cons),
@@ -273,24 +263,9 @@ def _sized(kind):
         predicate, size = _ATOMIC[kind], arguments[0] if arguments else None
         if size is None or is_star(size):
             return predicate
-        return lambda obj: predicate(obj) and dimensions(obj) == [size]
+        return lambda obj: predicate(obj) and dimensions(obj) == (size,)
 
     return make
-
-
-def dimensions(array):
-    """The dimensions of an array, as a Python list; of a vector with a fill pointer the whole size."""
-    if isinstance(array, LispArray):
-        return list(array.dimensions)
-    return [len(array.chars) if isinstance(array, LispString) else len(array)]
-
-
-def element_type(array):
-    if isinstance(array, (str, LispString)):
-        return sym("CHARACTER")
-    if isinstance(array, (bytes, bytearray)):
-        return lisp_list(sym("UNSIGNED-BYTE"), 8)
-    return getattr(array, "element_type", True)
 
 
 def _vector(arguments, _):
@@ -414,21 +389,8 @@ def type_of(object):
     if cls is complex:
         return lisp_list(sym("COMPLEX"), lisp_list(sym("SINGLE-FLOAT"), *sorted((object.real, object.imag))))
     if _is_array(object):
-        return _array_type(object)
+        return array_type(object)
     return class_name(class_of(object))
-
-
-def _array_type(array):
-    sizes, kind = dimensions(array), element_type(array)
-    simple = _is_simple(array)
-    if len(sizes) == 1:
-        if _is_bit_vector(array):
-            return lisp_list(sym("SIMPLE-BIT-VECTOR" if simple else "BIT-VECTOR"), *sizes)
-        if not simple:
-            return lisp_list(sym("VECTOR"), kind, *sizes)
-        if kind is True:
-            return lisp_list(sym("SIMPLE-VECTOR"), *sizes)
-    return lisp_list(sym("SIMPLE-ARRAY" if simple else "ARRAY"), kind, list_from(sizes))
 
 
 def upgraded_complex_part_type(typespec, environment=None):

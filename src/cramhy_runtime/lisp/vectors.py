@@ -8,6 +8,7 @@ pointer and may grow. A displaced array shares the storage of its target.
 
 from __future__ import annotations
 
+from .data import LispString, lisp_list, list_from
 from .packages import sym
 
 BIT = sym("BIT")
@@ -106,3 +107,42 @@ def bit_vector(bits):
 def is_bit_vector(thing):
     """Whether ``thing`` is a bit vector."""
     return isinstance(thing, (TypedVector, Vector)) and thing.element_type is BIT
+
+
+# ------------------------------------------------------------------------------------------------------- what arrays are like
+
+
+def is_simple(array):
+    """Whether ``array`` has no fill pointer, is not adjustable and not displaced."""
+    if isinstance(array, LispString):
+        return array.fill_pointer is None and not array.adjustable
+    return not isinstance(array, Vector) and not getattr(array, "adjustable", False) and getattr(array, "displaced_to", None) is None
+
+
+def dimensions(array):
+    """The dimensions as a Python tuple; of a vector with a fill pointer the whole size."""
+    if isinstance(array, LispArray):
+        return array.dimensions
+    return (len(array.chars) if isinstance(array, LispString) else len(array),)
+
+
+def element_type(array):
+    """The upgraded element type, ``True`` for T. Python's bytes count as a vector of octets."""
+    if isinstance(array, (str, LispString)):
+        return CHARACTER
+    if isinstance(array, (bytes, bytearray)):
+        return lisp_list(sym("UNSIGNED-BYTE"), 8)
+    return getattr(array, "element_type", True)
+
+
+def array_type(array):
+    """The type specifier that ``type-of`` gives for an array: ``(SIMPLE-VECTOR 2)``, ``(VECTOR T 3)``."""
+    sizes, kind, simple = dimensions(array), element_type(array), is_simple(array)
+    if len(sizes) == 1:
+        if kind is BIT:
+            return lisp_list(sym("SIMPLE-BIT-VECTOR" if simple else "BIT-VECTOR"), *sizes)
+        if not simple:
+            return lisp_list(sym("VECTOR"), kind, *sizes)
+        if kind is True:
+            return lisp_list(sym("SIMPLE-VECTOR"), *sizes)
+    return lisp_list(sym("SIMPLE-ARRAY" if simple else "ARRAY"), kind, list_from(sizes))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ..cpl.symbols import ensure_package
 from ..lisp.data import python_list
 from ..lisp.faces import define_face
 from .modules import define_process_module
@@ -12,7 +11,6 @@ from .running import with_process_modules_running
 
 def define():
     """Enter the functions into CRAMHY."""
-    ensure_package("CRAMHY")
     define_face("CRAMHY", functions={
         "define-process-module": define_process_module,
         "register-process-module": register_process_module,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..cpl.failures import attempt, fail, signal_failure
-from ..cpl.hooks import Hook
 from ..lisp.data import list_from, one, truth
+from ..lisp.hooks import Hook
 from ..prolog.facts import built_in_group
 from ..prolog.query import ask
 from ..prolog.terms import Var

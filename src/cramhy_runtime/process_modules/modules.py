@@ -18,19 +18,22 @@ from cramhy_runtime import kernel
 
 from ..cpl.branches import Branches, nobody_lives
 from ..cpl.failure_types import PlanFailure, SimplePlanFailure, opened
-from ..cpl.fluent_operators import fl_funcall
+from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
 from ..cpl.fluents import ValueFluent
-from ..cpl.hooks import Hook
 from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_variables import inherit
 from ..cpl.tasks import EVAPORATED, Task, current_task, pause
 from ..cpl.tasks import FAILED as TASK_FAILED
+from ..cpl.waiting import wait_for
 from ..designators.equating import current_desig
+from ..lisp.class_definition import define_class
+from ..lisp.classes import class_name, find_class_or_error, make_instance
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import DEBUGGER_HOOK, Error, error, handler_bind, invoke_debugger, restart_case, warn
-from ..lisp.data import MultipleValues, Symbol, all_values, list_from, python_list, truth, values
+from ..lisp.data import MultipleValues, Symbol, all_values, lisp_list, list_from, python_list, truth, values
 from ..lisp.dynamic import binding
 from ..lisp.generic import generic
+from ..lisp.hooks import Hook
 from ..lisp.packages import keyword
 from .registry import ProcessModuleNotRunning, ProcessModuleRunning, is_defined, module_called, register_process_module, running, unknown
 from .symbols import sym
@@ -245,16 +248,11 @@ class _GiveUp:
     """What the restarts of a module's error return."""
 
 
-
-
 def define_process_module(name, body):
     """``(def-process-module name (designator) ...)``: define the class ``name`` of modules whose body is ``body(designator)``.
 
     The body gets the youngest equated designator of the input. Returns the names of all modules.
     """
-    from ..lisp.class_definition import define_class
-    from ..lisp.data import lisp_list
-
     cls = define_class(name, lisp_list(sym("CPM::PROCESS-MODULE")), None)
     pm_run.method(cls)(lambda module, module_name=None: body(current_desig(module.input.stored)))
     return register_process_module(name)
@@ -262,8 +260,6 @@ def define_process_module(name, body):
 
 def make_module(name, class_name=None):
     """A new module called ``name`` of the class ``class_name`` (default: ``name``)."""
-    from ..lisp.classes import find_class_or_error, make_instance
-
     return make_instance(find_class_or_error(class_name or name), keyword("NAME"), name)
 
 
@@ -283,8 +279,6 @@ def _run_module(next_method, module, name=None):
 
 
 def sym_of_class(module):
-    from ..lisp.classes import class_name
-
     return class_name(type(module))
 
 
@@ -331,9 +325,6 @@ def await_online(module):
     """Wait, with a warning, until ``module`` is not offline."""
     status = module.status_fluent
     if status.stored is OFFLINE:
-        from ..cpl.fluent_operators import fl_not
-        from ..cpl.waiting import wait_for
-
         warn(SimpleWarning("Process module ~a not running. Status is ~a. Waiting for it to come up.", module, OFFLINE))
         wait_for(fl_not(fl_funcall(lambda now: now is OFFLINE or None, status)))
 
@@ -379,9 +370,6 @@ def _monitor_by_name(name, *, designators=None):
 
 @monitor_process_module.method(ProcessModule)
 def _monitor(module, *, designators=None):
-    from ..cpl.fluent_operators import fl_pulsed
-    from ..cpl.waiting import wait_for
-
     wanted = python_list(designators)
     while True:
         wait_for(finished_fluent(module))

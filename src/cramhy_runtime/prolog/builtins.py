@@ -7,13 +7,14 @@ prolog.md section 7.
 from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import Error, SimpleError, SimpleWarning, error, handler_case, warn
-from cramhy_runtime.lisp.data import Cons, Symbol, UndefinedFunction, list_from, truth
-from cramhy_runtime.lisp.packages import is_symbol, sym
+from cramhy_runtime.lisp.data import Cons, Symbol, UndefinedFunction, list_from, one, truth
+from cramhy_runtime.lisp.packages import is_symbol
 
 from .lazy_lists import lazy_take
 from .lisp_calls import BREAK_ON_LISP_ERRORS, call_lisp, compare, lisp_fun, lisp_fun_goal, lisp_pred_goal
 from .machine import fail
 from .natives import step_predicate, test
+from .symbols import sym
 from .terms import Var, deref, elements, ground, import_term, list_end, raw, resolve, undo, unify
 
 _MISC, _LISTS, _MATH = "CRAM-PROLOG::MISC-UTILS", "CRAM-PROLOG::LIST-UTILS", "CRAM-PROLOG::MATH-UTILS"
@@ -242,8 +243,6 @@ def _generate_values(m, values, call):
     function = call.car if isinstance(call, Cons) else call
     if not isinstance(function, Symbol) or isinstance(function.function, UndefinedFunction):
         return error("Generator function `~a' not valid", function)
-    from cramhy_runtime.lisp.data import one
-
     return m.unify(values, import_term(one(function.function(*(call.cdr or ()))), m.names))
 
 

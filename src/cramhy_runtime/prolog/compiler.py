@@ -12,15 +12,15 @@ one more Python call per clause, which closures would need at least, at 1.2 M.
 from __future__ import annotations
 
 from cramhy_runtime.kernel.budget import budget
-from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.lisp.data import Cons, Symbol
 
 from . import control, lisp_calls
 from .database import Clause, arguments_of, extended, find_predicate, valid_functor
 from .lazy_lists import LazyTail
 from .machine import fail
 from .patterns import ANONYMOUS, same_atom, variable
-from .relations import compile_relation
+from .relations import compile_relation, index_key
+from .symbols import sym
 from .terms import UNSET, TermTail, Var, unify
 
 LOOP = range(100)
@@ -34,23 +34,11 @@ _AND = sym("AND")
 _COMPARISONS = {sym(name): sym(name) for name in ("<", ">", "<=", ">=")}
 _TRUE = sym("CRAM-PROLOG::TRUE")
 
+_ANY, _LIST, _OTHER = object(), object(), object()
+"""What a clause can match by its first argument, where that is no key of the index: anything, lists, other atoms."""
+
 INLINED = frozenset([_CUT, _UNIFIES, _LISP_FUN, _LISP_PRED, _AND, _TRUE, *_COMPARISONS])
 """Functors whose goals are compiled in place: when users extend one, all code is made anew."""
-
-
-def index_key(atom):
-    """The key of a first argument in an index: equal for atoms that are `same_atom`."""
-    kind = atom.__class__
-    if kind is Symbol or kind is Keyword or atom is None or atom is True:
-        return atom
-    if kind is int or kind is str or kind is float or kind is DoubleFloat:
-        return kind, atom
-    return None.__class__, id(atom)
-
-
-def _indexable(atom):
-    kind = atom.__class__
-    return kind in (Symbol, Keyword, int, str, float, DoubleFloat) or atom is None or atom is True
 
 
 def compile_clauses(predicate, clauses):
@@ -181,7 +169,7 @@ class _Code:
         numbers = list(range(len(names)))
         self.buckets = {"EVERY": numbers}
         kinds = [self._kind(patterns) for patterns, _ in self.fitting]
-        if not self.arity or all(kind == "any" for kind in kinds):
+        if not self.arity or all(kind is _ANY for kind in kinds):
             self._candidates(numbers, "EVERY")
         else:
             self.emit("while a0.__class__ is Var:")
@@ -189,13 +177,13 @@ class _Code:
             self.emit("    if r is UNSET: break")
             self.emit("    a0 = r")
             self.emit("c0 = a0.__class__")
-            lists = [n for n in numbers if kinds[n] in ("any", "list")]
-            others = [n for n in numbers if kinds[n] in ("any", "other")]
+            lists = [n for n in numbers if kinds[n] in (_ANY, _LIST)]
+            others = [n for n in numbers if kinds[n] in (_ANY, _OTHER)]
             keys = {}
             for n in numbers:
-                if kinds[n] not in ("any", "list", "other"):
+                if kinds[n] not in (_ANY, _LIST, _OTHER):
                     keys.setdefault(kinds[n], None)
-            index = {key: [n for n in numbers if kinds[n] in ("any", "other", key)] for key in keys}
+            index = {key: [n for n in numbers if kinds[n] in (_ANY, _OTHER, key)] for key in keys}
             self.buckets.update(LISTS=lists, OTHERS=others, INDEX=index)
             self._branch("if c0 is Cons:", lists, "LISTS")
             self._branch("elif c0 is Var:", numbers, "EVERY")
@@ -236,13 +224,14 @@ class _Code:
 
     def _kind(self, patterns):
         if not patterns:
-            return "any"
+            return _ANY
         first = patterns[0]
         if isinstance(first, _Rest) or variable(first):
-            return "any"
+            return _ANY
         if isinstance(first, Cons):
-            return "list"
-        return index_key(first) if _indexable(first) else "other"
+            return _LIST
+        key = index_key(first)
+        return _OTHER if key is NotImplemented else key
 
     # --------------------------------------------------------------------------------------------------------------- a clause
 
@@ -518,4 +507,4 @@ def _next_clause(m, step):
     return clauses[i](m, k, height, *arguments)
 
 
-__all__ = ["Clause", "INLINED", "compile_clauses", "index_key"]
+__all__ = ["Clause", "INLINED", "compile_clauses"]

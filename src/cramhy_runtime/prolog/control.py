@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from
-from cramhy_runtime.lisp.packages import sym
 
-from .database import arguments_of, find_predicate, undefined_step, valid_functor, warn_undefined
+from .database import arguments_of, find_predicate, handled, undefined_step, valid_functor, warn_undefined
 from .machine import FAIL, SOLVED, Machine, fail
-from .terms import Restore, TermTail, Var, copy_term, deref, raw, unify, unset_variables
+from .symbols import sym
+from .terms import Restore, TermTail, Var, copy_term, deref, raw, undo, unify, unset_variables
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 
@@ -53,16 +53,9 @@ def extend(name, entry):
         height = len(m.choices)
         arguments = arguments_of(Cons(name, terms))
         m.choices.append((len(m.trail), (find_predicate(name, len(arguments)).call, k, *arguments)))
-        return base(m, terms, (_handled, k, height), b if b <= height else height)
+        return base(m, terms, (handled, k, height), b if b <= height else height)
 
     CONTROL[name] = with_fallback
-
-
-def _handled(m, step):
-    _, k, height = step
-    if height < len(m.choices):
-        m.choices[height] = (m.choices[height][0], FAIL)
-    return k
 
 
 # ------------------------------------------------------------------------------------------------------------ solving goals
@@ -291,8 +284,7 @@ def _same(a, b):
     if a is b:
         return True
     same = unify(a, b, trail) and not trail
-    for variable in trail:
-        variable.ref = Var.ref
+    undo(trail, 0)
     return same
 
 

@@ -176,12 +176,13 @@ def _with_fallback(handler, clauses):
     def call(m, step):
         height = len(m.choices)
         m.choices.append((len(m.trail), (clauses, *step[1:])))
-        return handler(m, (handler, (_handled, step[1], height), *step[2:]))
+        return handler(m, (handler, (handled, step[1], height), *step[2:]))
 
     return call
 
 
-def _handled(m, step):
+def handled(m, step):
+    """The continuation of a goal with a fallback, whose choice point is at the height in ``step``: there is a solution, drop it."""
     choices, height = m.choices, step[2]
     if height < len(choices):
         choices[height] = (choices[height][0], FAIL)

@@ -12,13 +12,16 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.conditions import error
-from cramhy_runtime.lisp.data import UNSUPPLIED, Cons, Symbol, all_values, list_from, one, truth
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import symbol_name
+from cramhy_runtime.lisp.data import UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, one, truth
+from cramhy_runtime.lisp.dynamic import binding, special
+from cramhy_runtime.lisp.functions import function_of
+from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.lisp.printer import address, define_printer, output_object, print_unreadable, write
+from cramhy_runtime.lisp.standard_printers import print_slots
 
-_environment = Symbol("*LAZY-LIST-ENVIRONMENT*")
-_environment.value = None
-_environment.special = True
+from .symbols import sym
+
+_environment = special(Symbol("*LAZY-LIST-ENVIRONMENT*"))
 
 
 class LazyTail:
@@ -154,10 +157,6 @@ def lazy_list(initial, body):
 # ---------------------------------------------------------------------------------------------------------------- functions
 
 
-def _callable(designator):
-    return designator.function if isinstance(designator, Symbol) else designator
-
-
 def lazy_car(ll):
     """The first element; ``nil`` for ``nil``."""
     return None if ll is None else ll.car
@@ -211,7 +210,7 @@ def elements(ll):
 
 def lazy_mapcar(fun, list_1, *more_lists):
     """Lazy ``mapcar``; ends with the shortest list. One call of ``fun`` per element, the first one now."""
-    function = _callable(fun)
+    function = function_of(fun)
 
     def step(lists):
         if any(ll is None for ll in lists):
@@ -223,7 +222,7 @@ def lazy_mapcar(fun, list_1, *more_lists):
 
 def lazy_mapcan(fun, list_1, *more_lists):
     """The lazy concatenation of the lists that ``fun`` returns; empty ones are skipped."""
-    function = _callable(fun)
+    function = function_of(fun)
 
     def step(lists):
         while not any(ll is None for ll in lists):
@@ -252,7 +251,7 @@ def _followed_by(part, generate_rest):
 
 def lazy_filter(pred, ll):
     """The elements for which ``pred`` is true; a true second value with it makes that element the last one."""
-    function = _callable(pred)
+    function = function_of(pred)
 
     def step(cell):
         while cell is not None:
@@ -270,7 +269,7 @@ def lazy_filter(pred, ll):
 
 def lazy_fold(fun, sequence, *, initial_value=UNSUPPLIED):
     """Left fold over the whole list; without ``initial_value`` it starts with the first element."""
-    function, result, cell = _callable(fun), initial_value, sequence
+    function, result, cell = function_of(fun), initial_value, sequence
     if result is UNSUPPLIED:
         result, cell = lazy_car(cell), lazy_cdr(cell)
     for element in elements(cell):
@@ -381,22 +380,32 @@ def force(obj):
 # ----------------------------------------------------------------------------------------------------------------- printing
 
 
-def _print_tail(obj, stream):
-    from cramhy_runtime.lisp.printer import write
+_ELEMENT = sym("CUT::LAZY-CONS-ELEM")
+_GENERATOR_NAME = lisp_list(sym("LAMBDA"), None, keyword("IN"), sym("CUT::LAZY-MAPCAR"))
 
-    if obj.generator is None:
-        write(obj.value, stream)
+
+class _ShownGenerator:
+    """A generator as the original shows it: the closure of the function that makes most of its lazy lists."""
+
+    def __init__(self, generator):
+        self.generator = generator
+
+
+def _print_tail(tail_, stream):
+    if tail_.generator is None:
+        write(tail_.value, stream)
     else:
-        stream.write(f"#S(CRAM-UTILITIES::LAZY-CONS-ELEM :GENERATOR #<FUNCTION (LAMBDA () :IN LAZY-LIST) {{{id(obj):010X}}}>)")
+        print_slots(_ELEMENT, [("GENERATOR", _ShownGenerator(tail_.generator))], stream)
 
 
-def install_printer():
-    """Tell the printer how an uncomputed tail looks."""
-    from cramhy_runtime.lisp.printer import define_printer
+def _print_generator(shown, stream):
+    def body():
+        stream.write("FUNCTION ")
+        output_object(_GENERATOR_NAME, stream)
+        stream.write(f" {{{address(shown.generator)}}}")
 
-    define_printer(LazyTail, _print_tail)
+    print_unreadable(shown, stream, body=body)
 
 
-def name_of(designator):
-    """The name of a function designator, for messages."""
-    return symbol_name(designator) if isinstance(designator, Symbol) else str(designator)
+define_printer(LazyTail, _print_tail)
+define_printer(_ShownGenerator, _print_generator)

@@ -10,15 +10,13 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import Error, StorageCondition, handler_bind, type_error, undefined_function, warn
 from cramhy_runtime.lisp.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, truth
-from cramhy_runtime.lisp.packages import Package, find_package, register, sym
+from cramhy_runtime.lisp.dynamic import special
 
 from .lazy_lists import force_ll
-from .patterns import CUT
-from .terms import TermTail, Var, import_term, raw, resolve, unify
+from .symbols import CUT, PROLOG, sym
+from .terms import TermTail, Var, import_term, raw, resolve, undo, unify
 
-PROLOG = find_package("CRAM-PROLOG") or register(Package("CRAM-PROLOG", ["PROLOG"]))
-BREAK_ON_LISP_ERRORS = PROLOG.intern("*BREAK-ON-LISP-ERRORS*")
-BREAK_ON_LISP_ERRORS.value, BREAK_ON_LISP_ERRORS.special = None, True
+BREAK_ON_LISP_ERRORS = special(PROLOG.intern("*BREAK-ON-LISP-ERRORS*"))
 
 
 class _CallFailed(BaseException):
@@ -107,8 +105,7 @@ def lisp_fun(m, function, arguments, result):
     height = len(trail)
     if unify(result, value, trail):
         return True
-    while len(trail) > height:
-        trail.pop().ref = Var.ref
+    undo(trail, height)
     return False
 
 

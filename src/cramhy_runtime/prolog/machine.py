@@ -115,6 +115,5 @@ def retry_iterator(m, k, iterator):
     for _ in iterator:
         m.choices.append((height, (_resume, k, iterator)))
         return k
-    while len(trail) > height:
-        trail.pop().ref = UNSET
+    undo(trail, height)
     return fail(m)

@@ -20,13 +20,13 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import wrong_argument_count
 from cramhy_runtime.lisp.data import Cons, list_from, one
-from cramhy_runtime.lisp.packages import sym
 
 from .database import changed, functor_entry
 from .facts import built_in_group
 from .lazy_lists import elements as lazy_elements
 from .machine import fail, retry_iterator
-from .terms import UNSET, Var, deref, import_term, raw, resolve, unify
+from .symbols import sym
+from .terms import UNSET, Var, deref, import_term, raw, resolve, undo, unify
 
 __all__ = ["define_handler", "deref", "predicate", "resolve", "step_predicate", "test"]
 
@@ -147,8 +147,7 @@ def _adopt(m, bindings, given):
     for pair in reversed(pairs):
         variable = import_term(pair.car, m.names)
         if not unify(variable, import_term(pair.cdr, m.names), m.trail):
-            while len(m.trail) > height:
-                m.trail.pop().ref = UNSET
+            undo(m.trail, height)
             return False
     return True
 

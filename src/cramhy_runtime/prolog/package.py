@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp.faces import define_face
 
-from . import builtins, compiler, lazy_lists, patterns, query, rete, utilities
+from . import builtins, lazy_lists, patterns, query, rete, utilities  # noqa: F401  the built-in predicates come along
 from .lisp_calls import BREAK_ON_LISP_ERRORS
 
 CUT = define_face(
@@ -54,13 +54,3 @@ PROLOG = define_face(
         def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers""",
 )
 
-INSTALLED = (builtins, compiler)
-
-
-def install_printers():
-    """Tell the printer about the objects of this room."""
-    lazy_lists.install_printer()
-    rete.install_printer()
-
-
-install_printers()

@@ -9,42 +9,30 @@ This is the library that plans call. The Prolog engine has terms of its own, see
 
 from __future__ import annotations
 
-import math
-
-from cramhy_runtime.lisp.conditions import error, style_warn, warn  # noqa: F401
+from cramhy_runtime.lisp import equality
+from cramhy_runtime.lisp.conditions import error, warn
 from cramhy_runtime.lisp.data import Cons, Keyword, LispString, MultipleValues, Symbol, list_from, one, truth
-from cramhy_runtime.lisp.packages import Package, find_package, register
+from cramhy_runtime.lisp.functions import function_of
 
 from .lazy_lists import LazyTail, lazy_cdr
+from .symbols import CUT
 
-CUT = find_package("CRAM-UTILITIES") or register(Package("CRAM-UTILITIES", ["CUT"]))
 ANONYMOUS = CUT.intern("?_")
 ANONYMOUS_SEGMENT = CUT.intern("!?_")
 
-_NUMBERS_AND_STRINGS = frozenset([int, float, str])
 _counter = 0
 
 
 def same_atom(a, b):
-    """CL ``equal`` for atoms: identity, but numbers by type and value, strings by content."""
+    """CL ``equal`` for atoms, as a Python bool; the engine's innermost test, so the common kinds come first."""
     if a is b:
         return True
     kind = a.__class__
     if kind is Symbol or kind is Cons:
         return False
-    if kind is not b.__class__:
-        if kind is LispString or b.__class__ is LispString:
-            return isinstance(a, (str, LispString)) and isinstance(b, (str, LispString)) and str(a) == str(b)
-        return False
-    if kind is int or kind is str:
+    if (kind is int or kind is str) and kind is b.__class__:
         return a == b
-    if isinstance(a, float):
-        return a == b and math.copysign(1.0, a) == math.copysign(1.0, b)
-    if kind is LispString:
-        return str(a) == str(b)
-    from fractions import Fraction
-
-    return isinstance(a, (Fraction, complex)) and a == b
+    return equality.equal(a, b) is not None
 
 
 def equal(a, b):
@@ -56,11 +44,6 @@ def equal(a, b):
             return False
         a, b = lazy_cdr(a), lazy_cdr(b)
     return same_atom(a, b)
-
-
-def eql(a, b):
-    """CL ``eql``: identity, but numbers by type and value."""
-    return a is b or (not isinstance(a, (str, LispString, Cons)) and same_atom(a, b))
 
 
 # ---------------------------------------------------------------------------------------------------------------- variables
@@ -212,7 +195,7 @@ def vars_in(pat):
 
 def map_tree(fun, tree):
     """``tree`` with ``fun`` applied to every atom but ``nil``, in car and in cdr position."""
-    function = fun.function if isinstance(fun, Symbol) else fun
+    function = function_of(fun)
 
     def walk(item):
         if isinstance(item, Cons):
@@ -243,7 +226,7 @@ def patterns_eq(pattern_1, pattern_2):
         if isinstance(a, Cons) and isinstance(b, Cons):
             if not patterns_eq(a, b):
                 return None
-        elif not ((variable(a) and variable(b)) or a is b or (isinstance(a, int) and eql(a, b))):
+        elif not ((variable(a) and variable(b)) or a is b or (isinstance(a, int) and same_atom(a, b))):
             return None
         pattern_1, pattern_2 = pattern_1.cdr, pattern_2.cdr
     return True if pattern_1 is pattern_2 else None
@@ -251,7 +234,7 @@ def patterns_eq(pattern_1, pattern_2):
 
 def bindings_equal(lhs, rhs, *, test=None):
     """Whether every binding of ``lhs`` has an equal value in ``rhs``; not the reverse."""
-    function = equal if test is None else test.function if isinstance(test, Symbol) else test
+    function = equal if test is None else function_of(test)
     for pair in lhs or ():
         other = entry(pair.car, rhs)
         if not truth(one(function(pair.cdr, None if other is None else other.cdr))):
@@ -299,11 +282,10 @@ def pat_match(pat, seq, *options):
     options, bdgs = list(options), None
     if options and not (isinstance(options[0], Keyword) and options[0].name == "TEST"):
         bdgs = options.pop(0)
-    test = eql
+    test = equality.eql
     for index in range(0, len(options) - 1, 2):
         if options[index].name == "TEST":
-            designator = options[index + 1]
-            test = designator.function if isinstance(designator, Symbol) else designator
+            test = function_of(options[index + 1])
     result = _match(pat, seq, bdgs, test)
     return MultipleValues((None, None)) if result is _FAIL else MultipleValues((result, True))
 

@@ -15,6 +15,9 @@ from __future__ import annotations
 from cramhy_runtime.lisp.conditions import type_error
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
 
+from cramhy_runtime.lisp.functions import function_of
+from cramhy_runtime.lisp.hooks import Hook
+
 from . import (
     builtins,  # noqa: F401  the predicates that every query may use
     control,
@@ -28,20 +31,10 @@ from .terms import UNSET, Var, import_term, resolve
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 
 
-class Hook:
-    """Functions to call at an event, newest first; the work of cut's ``define-hook`` for Python callers."""
-
-    def __init__(self, name):
-        self.name, self.functions = name, []
-
-    def __call__(self, *arguments):
-        return [function(*arguments) for function in self.functions]
-
-
-on_prepare_prolog_prove = Hook("ON-PREPARE-PROLOG-PROVE")
-"""Called with (query, binds) before a proof; the first result goes to `on_finish_prolog_prove`."""
-on_finish_prolog_prove = Hook("ON-FINISH-PROLOG-PROVE")
-"""Called with (log id, whether there is a solution)."""
+on_prepare_prolog_prove = Hook("CUT::ON-PREPARE-PROLOG-PROVE", "(query binds)")
+"""Called before a proof; the first result goes to `on_finish_prolog_prove`."""
+on_finish_prolog_prove = Hook("CUT::ON-FINISH-PROLOG-PROVE", "(log-id success)")
+"""Called when it is known whether there is a solution."""
 
 
 class Proof(Machine):
@@ -109,8 +102,8 @@ def prolog(query, binds=None):
     """
     if query is not None and query.__class__ is not Cons:
         return type_error(query, "LIST")
-    hooked = on_prepare_prolog_prove.functions or on_finish_prolog_prove.functions
-    log = (on_prepare_prolog_prove(query, binds) or [None])[0] if hooked else None
+    hooked = on_prepare_prolog_prove or on_finish_prolog_prove
+    log = on_prepare_prolog_prove.first(query, binds) if hooked else None
     proof = Proof(query, binds)
 
     def rest():
@@ -157,7 +150,7 @@ def ask(functor, *arguments):
 
 def query_var(var, function, query, *args):
     """The value of ``var`` in the first binding list that ``function`` (normally `prolog`) returns for ``query``."""
-    solutions = getattr(function, "function", function)(query, *args)
+    solutions = function_of(function)(query, *args)
     return None if solutions is None else var_value(var, solutions.car)
 
 

@@ -7,6 +7,7 @@ asked for; then answering means to walk the rows that fit and set the unknown ar
 from __future__ import annotations
 
 from cramhy_runtime.lisp.data import DoubleFloat, Keyword, Symbol
+from cramhy_runtime.lisp.equality import equal_key
 
 from .lazy_lists import LazyTail
 from .machine import fail
@@ -15,13 +16,12 @@ from .terms import UNSET, TermTail, Var, undo, unify
 _BY_VALUE = frozenset([int, str, float, DoubleFloat])
 
 
-def _key(value):
-    kind = value.__class__
-    if kind is Symbol or kind is Keyword or value is None or value is True:
-        return value
-    if kind in _BY_VALUE:
-        return kind, value
-    return NotImplemented
+def index_key(atom):
+    """The key of ``atom`` in an index, equal for atoms that are `same_atom`; ``NotImplemented`` for what is compared otherwise."""
+    kind = atom.__class__
+    if kind is Symbol or kind is Keyword or atom is None:
+        return atom
+    return equal_key(atom) if kind in _BY_VALUE or atom is True else NotImplemented  # `t` is Python's True, which is 1 in a dict
 
 
 def compile_relation(rows):
@@ -30,7 +30,7 @@ def compile_relation(rows):
     arity = len(rows[0])
     if not arity:
         return _constant(len(rows))
-    indexable = [all(_key(row[i]) is not NotImplemented for row in rows) for i in range(arity)]
+    indexable = [all(index_key(row[i]) is not NotImplemented for row in rows) for i in range(arity)]
     indexes = {}
     positions = range(arity)
     every = rows
@@ -56,7 +56,7 @@ def compile_relation(rows):
                 elif kind is LazyTail or kind is TermTail or not indexable[i]:
                     key = NotImplemented
                 else:
-                    key = _key(term)
+                    key = index_key(term)
                 if key is NotImplemented:
                     fuzzy = True
                     if indexable[i] and kind is not LazyTail and kind is not TermTail:
@@ -94,7 +94,7 @@ def _index(rows, mask, positions):
     unknown = [i for i in positions if not mask >> i & 1]
     index = {}
     for row in rows:
-        keys = [_key(row[i]) for i in known]
+        keys = [index_key(row[i]) for i in known]
         rest = row[unknown[0]] if len(unknown) == 1 else tuple(row[i] for i in unknown)
         index.setdefault(keys[0] if len(keys) == 1 else tuple(keys), []).append(rest)
     return index

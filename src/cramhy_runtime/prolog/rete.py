@@ -9,14 +9,18 @@ new fact, and a retraction takes back exactly those that used the old one. Eleme
 from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn
-from cramhy_runtime.lisp.data import Cons, DoubleFloat, Symbol, list_from, python_list
-from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.data import Cons, list_from, python_list
+from cramhy_runtime.lisp.dynamic import binding, special
+from cramhy_runtime.lisp.equality import eql, eql_key
+from cramhy_runtime.lisp.functions import function_of
 from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.lisp.printer import define_printer
+from cramhy_runtime.lisp.standard_printers import print_slots
 
 from .lazy_lists import from_iterator
-from .lisp_calls import PROLOG
 from .natives import predicate
-from .patterns import ANONYMOUS, eql, substitute_vars, variable, variables_of, vars_in
+from .patterns import ANONYMOUS, substitute_vars, variable, variables_of, vars_in
+from .symbols import PROLOG, sym
 from .terms import import_term, raw
 
 _object_ids: list = []
@@ -33,12 +37,6 @@ def object_id(obj):
 def define_object_id(cls, function):
     """Let ``function(obj)`` be the identity of objects of ``cls``."""
     _object_ids.append((cls, function))
-
-
-def _key(obj):
-    obj = object_id(obj)
-    kind = obj.__class__
-    return (kind, obj) if kind is int or kind is float or kind is DoubleFloat else id(obj)
 
 
 class Node:
@@ -98,8 +96,7 @@ class Production:
     def fire(self, operation, bindings):
         arguments = [item for v in self.variables for item in (keyword(v.name), bindings.get(v))]
         for callback in list(self.callbacks):
-            function = callback.function if isinstance(callback, Symbol) else callback
-            function(keyword(operation), *arguments)
+            function_of(callback)(keyword(operation), *arguments)
 
     def start(self):
         """Build the matches and deliver those that exist."""
@@ -128,8 +125,7 @@ class _Memory:
 
 
 _memory = _Memory()
-_definitions = PROLOG.intern("*PRODUCTION-DEFINITIONS*")
-_definitions.value, _definitions.special = {}, True
+_definitions = special(PROLOG.intern("*PRODUCTION-DEFINITIONS*"), {})
 
 
 def match_fact(pattern, fact, bindings):
@@ -152,7 +148,7 @@ def _element_matches(item, value, bindings):
             bindings[item] = value
             return True
         item = bindings[item]
-    return eql(object_id(item), object_id(value))
+    return eql(object_id(item), object_id(value)) is not None
 
 
 # -------------------------------------------------------------------------------------------------------------------- facts
@@ -161,7 +157,7 @@ def _element_matches(item, value, bindings):
 def _leaf(fact, create):
     node = _memory.root
     for element in fact:
-        key = _key(element)
+        key = eql_key(object_id(element))
         child = node.children.get(key)
         if child is None:
             if not create:
@@ -354,14 +350,10 @@ def with_production_handlers(handlers, body):
                 remove_production_handler(name, function)
 
 
-def install_printer():
-    """Tell the printer how a production definition looks."""
-    from cramhy_runtime.lisp.printer import define_printer, prin1_to_string
+def _print_production(production, stream):
+    print_slots(sym("CRAM-PROLOG::PRODUCTION-DEFINITION"), [
+        ("NAME", production.name), ("VAR-BINDINGS", list_from(production.variables)), ("BODY", list_from(production.patterns)),
+        ("NODE", None), ("CALLBACKS", list_from(production.callbacks))], stream)
 
-    def write_production(production, stream):
-        body = prin1_to_string(list_from(production.patterns))
-        names = prin1_to_string(list_from(production.variables))
-        stream.write(f"#S(PRODUCTION-DEFINITION :NAME {prin1_to_string(production.name)} :VAR-BINDINGS {names} :BODY {body} "
-                     ":NODE NIL :CALLBACKS NIL)")
 
-    define_printer(Production, write_production)
+define_printer(Production, _print_production)

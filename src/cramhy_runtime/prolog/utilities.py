@@ -11,15 +11,14 @@ import re
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, warn
-from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, Symbol, list_from, one, python_list, truth
+from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from, one, python_list, truth
+from cramhy_runtime.lisp.equality import eql
+from cramhy_runtime.lisp.functions import function_of, identity
 
-from .patterns import eql
 
 
-def _callable(designator, default=None):
-    if designator is None:
-        return default
-    return designator.function if isinstance(designator, Symbol) else designator
+def _or_default(designator, default):
+    return default if designator is None else function_of(designator)
 
 
 class DeprecationWarning_(SimpleStyleWarning):
@@ -53,7 +52,7 @@ _timestamp_function = [None]
 def current_timestamp(what_time=None):
     """Seconds as a double, from the function set by `set_timestamp_function`; with an argument always the clock of the kernel."""
     function = None if what_time is not None else _timestamp_function[0]
-    return DoubleFloat(kernel.now()) if function is None else one(_callable(function)())
+    return DoubleFloat(kernel.now()) if function is None else one(function_of(function)())
 
 
 def set_timestamp_function(fn):
@@ -72,8 +71,9 @@ def microsecond_timestamp_function(*, relative=None):
 
 
 def current_string_timestamp():
-    """The date and time of day as 14 digits."""
-    return datetime.datetime.now().strftime("%Y%m%d%H%M%S")
+    """The date and time of day (UTC) by the kernel's clock, as 14 digits."""
+    moment = datetime.datetime.fromtimestamp(kernel.active().epoch + kernel.now(), datetime.UTC)
+    return moment.strftime("%Y%m%d%H%M%S")
 
 
 # ---------------------------------------------------------------------------------------------------------------- functions
@@ -81,18 +81,18 @@ def current_string_timestamp():
 
 def flip(fun):
     """``fun`` with its first two arguments exchanged."""
-    function = _callable(fun)
+    function = function_of(fun)
     return lambda a, b, *rest: function(b, a, *rest)
 
 
 def compare(x, y, *, test=None, key=None):
     """``test`` of the ``key`` of both."""
-    key_of, same = _callable(key, lambda item: item), _callable(test, lambda a, b: True if eql(a, b) else None)
+    key_of, same = _or_default(key, identity), _or_default(test, eql)
     return same(one(key_of(x)), one(key_of(y)))
 
 
 def _extremum(seq, test, key):
-    key_of, best, best_key, started = _callable(key, lambda item: item), None, None, False
+    key_of, best, best_key, started = _or_default(key, identity), None, None, False
     for item in seq or ():
         value = one(key_of(item))
         if not started or truth(one(test(value, best_key))):
@@ -102,17 +102,17 @@ def _extremum(seq, test, key):
 
 def minimum(seq, *, test=None, key=None):
     """The least element; ``nil`` for an empty sequence."""
-    return _extremum(seq, _callable(test, lambda a, b: a < b), key)
+    return _extremum(seq, _or_default(test, lambda a, b: a < b), key)
 
 
 def maximum(seq, *, test=None, key=None):
     """The greatest element; ``nil`` for an empty sequence."""
-    return _extremum(seq, _callable(test, lambda a, b: a > b), key)
+    return _extremum(seq, _or_default(test, lambda a, b: a > b), key)
 
 
 def ensure_unused_string(base_string, used_p):
     """``base_string``, or with -1, -2, ... behind it, until ``used_p`` is false of it."""
-    used, candidate, number = _callable(used_p), base_string, 0
+    used, candidate, number = function_of(used_p), base_string, 0
     while truth(one(used(candidate))):
         number += 1
         candidate = f"{base_string}-{number}"

@@ -8,6 +8,7 @@ installed; from a pipe, lines are read and nothing is echoed but prompts and ans
 
 from __future__ import annotations
 
+import select
 import sys
 
 from cramhy_runtime import kernel
@@ -17,6 +18,7 @@ from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name,
 from cramhy_runtime.lisp.places_in_source import describe, excerpt
 
 from . import commands
+from . import session
 from .session import Interruption, condition_of, handle_interrupts, signalled_here
 
 
@@ -37,7 +39,7 @@ def explanation(condition):
     if position:
         lines.append(f"  at {describe(position)}")
     shown = getattr(condition, "excerpt", None) or excerpt(position)
-    if shown:
+    if shown.strip(" ^\n"):
         lines += [f"  {line}" for line in shown.splitlines()]
     hint = hint_for(condition)
     if hint:
@@ -47,6 +49,8 @@ def explanation(condition):
 
 def report(condition, file=None):
     """Print an error that ends a program."""
+    streams.CONSOLE_OUTPUT.fresh_line()
+    streams.CONSOLE_OUTPUT.flush()
     print(f"cramhy: {condition_type(condition)}\n{explanation(condition)}", file=file or sys.stderr)
 
 
@@ -56,6 +60,7 @@ class Input:
     def __init__(self):
         self.interactive = sys.stdin.isatty()
         self.editor = None
+        self.turn = 0  # counts the calls of `line`
         if self.interactive:
             try:
                 from prompt_toolkit import PromptSession
@@ -63,10 +68,7 @@ class Input:
 
                 self.editor = PromptSession(history=InMemoryHistory())
             except ImportError:
-                try:
-                    import readline  # noqa: F401  line editing for input()
-                except ImportError:
-                    pass
+                pass  # the terminal's own line editing will do
 
     def line(self, prompt):
         """The next line without its end; ``None`` at the end of input."""
@@ -77,9 +79,16 @@ class Input:
                 return self.editor.prompt(prompt)
             except EOFError:
                 return None
+        self.turn = mine = self.turn + 1
         sys.stdout.write(prompt)
         sys.stdout.flush()
         streams.CONSOLE_OUTPUT.column = 0
+        while self.interactive:
+            ready, _, _ = select.select([sys.stdin], [], [], 0.1)
+            if self.turn != mine:  # Ctrl-C broke this call off, but its thread waits on: the line is for the next call
+                return None
+            if ready:
+                break
         line = sys.stdin.readline()
         return line.rstrip("\n") if line else None
 
@@ -147,7 +156,9 @@ class Console:
     def wait_for_line(self, prompt):
         # In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait.
         if self.session.virtual:
-            return self.input.line(prompt)
+            with session.keyboard_interrupts():
+                kernel.settle()  # Ctrl-C that came too late for the last form is for the prompt
+                return self.input.line(prompt)
         return kernel.run_blocking(self.input.line, prompt)
 
     # ---------------------------------------------------------------------------------------------------------- evaluating

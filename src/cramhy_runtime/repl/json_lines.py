@@ -2,7 +2,7 @@
 
 In: ``{"form": "..."}``. Out: ``{"output": printed text, "values": [printed values], "error": null}``, or for a form that fails
 ``"error": {"type", "message", "restarts"}`` with ``"where"`` and ``"hint"`` when they are known. A line that is no such object
-gets an error answer, and the next line is read.
+gets an error answer, and the next line is read. For the forms standard input is empty: its lines are requests.
 """
 
 from __future__ import annotations
@@ -23,11 +23,22 @@ def serve(session, lines=None, out=None):
     """Answer every line of ``lines`` (default: standard input) on ``out``."""
     out = out or sys.stdout
     conditions.install_debugger(_note_restarts)
-    for line in sys.stdin if lines is None else lines:
+    lines = _standard_input() if lines is None else lines
+    nothing = streams.StringInputStream("")
+    streams.STANDARD_INPUT.value = nothing
+    streams.TERMINAL_IO.value = streams.TwoWayStream(nothing, streams.CONSOLE_ERROR)
+    for line in lines:
         if not line.strip():
             continue
         out.write(json.dumps(answer(session, line)) + "\n")
         out.flush()
+
+
+def _standard_input():
+    """Lines of standard input; what is no UTF-8 becomes signs that are no JSON, so it gets an error answer."""
+    if hasattr(sys.stdin, "reconfigure"):
+        sys.stdin.reconfigure(encoding="utf-8", errors="replace")
+    return sys.stdin
 
 
 def _note_restarts(condition):

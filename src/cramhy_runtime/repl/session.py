@@ -9,17 +9,32 @@ from __future__ import annotations
 
 import linecache
 import signal
+from contextlib import contextmanager
+from pathlib import Path
 
 from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import conditions, evaluator, systems
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values
+from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
 from cramhy_runtime.lisp.places_in_source import locate, user_position
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
 LAST_FORMS = [sym(name) for name in ("+", "++", "+++")]
+
+
+def leave(*, code=0, unix_status=0, abort=None, timeout=None, recklessly_p=None):
+    """``(quit)``, ``(exit :code 3)``: end the program, through the cleanup of its plans."""
+    raise SystemExit(code or unix_status)
+
+
+def define_leaving():
+    """``exit`` and ``quit`` of SB-EXT, present in CL-USER as in SBCL."""
+    package = define_face("SB-EXT", functions={"exit": leave, "quit": leave})
+    for name in ("EXIT", "QUIT"):
+        COMMON_LISP_USER.import_symbol(package.intern(name))
 
 
 class Interruption(Exception):
@@ -37,6 +52,7 @@ class Session:
     def __init__(self, time="wall", seed=None, backend="threads", time_limit=None, turtlesim=True):
         image.fresh_start(time, backend, seed, time_limit, turtlesim)
         evaluator.PACKAGE.value = COMMON_LISP_USER
+        define_leaving()
         for variables in (HISTORY, LAST_VALUES, LAST_FORMS):
             for variable in variables:
                 variable.value = None
@@ -57,15 +73,24 @@ class Session:
 
     def load(self, system):
         """Load a system by name, or a file by its path."""
+        try:
+            self._load(system)
+        except (kernel.Interrupted, kernel.Abandoned):
+            raise Interruption from None
+        finally:
+            kernel.interrupt_over()
+
+    def _load(self, system):
         from cramhy_runtime.lisp import loader
 
         if system.endswith((".lisp", ".hy")):
             loader.load_file(system)
         elif system.endswith(".asd"):
             systems.load_asd(system)
-            from pathlib import Path
-
             systems.load_system(Path(system).stem)
+        elif Path(system).is_file():
+            conditions.error(conditions.types.FileError(system, "Cannot load ~A: what is loaded is a .lisp, .hy or .asd file, or a system "
+                                                        "by its name.", system))
         else:
             systems.load_system(system)
 
@@ -133,3 +158,17 @@ def handle_interrupts():
     """Make Ctrl-C end the running form, through its cleanup, instead of raising KeyboardInterrupt anywhere."""
     signal.signal(signal.SIGINT, lambda number, frame: kernel.interrupt())
 
+
+
+@contextmanager
+def keyboard_interrupts():
+    """Within it Ctrl-C raises KeyboardInterrupt at once, as a wait for input needs it, which is no wait of the kernel's."""
+    try:
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    except ValueError:  # not in the main thread, where signals do not come anyway
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

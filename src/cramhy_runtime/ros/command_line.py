@@ -278,7 +278,11 @@ def rostopic_pub(words, seconds):
 
 
 class _BadArguments(Exception):
-    pass
+    """Arguments that do not fit the fields of a message; the text says how."""
+
+
+class _BadValue(_BadArguments):
+    """A value that its field cannot hold."""
 
 
 def _fill(cls, arguments):
@@ -322,10 +326,6 @@ def _value_for(field, value):
     if field.base in ("float32", "float64", "time", "duration") and not isinstance(value, (int, float)):
         raise _BadValue(f"field {field.name} must be float type")
     return value
-
-
-class _BadValue(Exception):
-    pass
 
 
 def _leaf_names(cls, prefix=""):
@@ -399,16 +399,16 @@ def rosservice_call(words, seconds):
         )
     try:
         request = _fill(service.type.request, arguments)
-    except _BadArguments as problem:
-        raise CommandError(
-            f"ERROR: Incompatible arguments to call service:\n{problem}\nProvided arguments are:\n * {arguments[0]!r} (type dict)\n\n"
-            f"Service arguments are: [{_arguments_of(service)}]",
-            2,
-        ) from None
     except _BadValue as problem:
         raise CommandError(
             f"ERROR: Unable to send request. One of the fields has an incorrect type:\n  {problem}\n\nsrv file:\n"
             f"{_service_text(service.type)}",
+            2,
+        ) from None
+    except _BadArguments as problem:
+        raise CommandError(
+            f"ERROR: Incompatible arguments to call service:\n{problem}\nProvided arguments are:\n * {arguments[0]!r} (type dict)\n\n"
+            f"Service arguments are: [{_arguments_of(service)}]",
             2,
         ) from None
     answer = services.Call(service, wire.transmit(request), kernel.current())
@@ -443,7 +443,10 @@ def rosparam_get(words, seconds):
 def rosparam_set(words, seconds):
     if len(words) < 2:
         raise CommandError("Usage: rosparam set [options] parameter value", 2)
-    graph.active().parameters.set(_global(words[0]), yaml_text.read(words[1]))
+    try:
+        graph.active().parameters.set(_global(words[0]), yaml_text.read(words[1]))
+    except TypeError as problem:  # the root takes dictionaries only
+        raise CommandError(f"ERROR: {problem}") from None
     return ""
 
 

@@ -8,8 +8,10 @@ they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the 
 from __future__ import annotations
 
 from ..lisp import conditions
-from ..lisp.condition_types import Condition, Error, SimpleError, shown
+from ..lisp.condition_types import Condition, Error, SimpleError
 from ..lisp.faces import define_face
+from ..lisp.format import format_to_string
+from ..lisp.printer import princ_to_string
 
 for _package in ("ROSLISP", "ROSLISP-UTILITIES"):
     define_face(_package)  # their tables are in package.py; modules that only need some symbol find the packages here
@@ -25,8 +27,6 @@ class RosRpcError(Condition):
         self.call, self.uri, self.code, self.message, self.result = call, uri, code, message, result
 
     def report(self):
-        from ..lisp.printer import princ_to_string
-
         return (
             f"ros-rpc call ({self.call}) to {princ_to_string(self.uri)} failed with code {self.code}, "
             f"message {self.message}, values {self.result}"
@@ -50,50 +50,8 @@ class ServiceCallError(Error):
         return f"service-call-error: {self.message}"
 
 
-class NoApplicableMethod(Error):
-    """A function of messages was called with something else."""
-
-    lisp_name = "SB-PCL::NO-APPLICABLE-METHOD-ERROR"
-    lead = "There is no applicable method"
-
-    def __init__(self, function="", arguments=(), **slots):
-        super().__init__(**slots)
-        self.function, self.arguments = function, arguments
-
-    def report(self):
-        given = " ".join(shown(argument) for argument in self.arguments)
-        return f"{self.lead} for the generic function\n  {self.function}\nwhen called with arguments\n  ({given})."
-
-
-class NoPrimaryMethod(NoApplicableMethod):
-    lisp_name = "SB-PCL::NO-PRIMARY-METHOD-ERROR"
-    lead = "There is no primary method"
-
-
-def no_applicable_method(name, count, *arguments):
-    """Signal that the generic function ``name`` (as printed) with ``count`` methods has none for ``arguments``."""
-    return conditions.error(NoApplicableMethod(f"#<STANDARD-GENERIC-FUNCTION {name} ({count})>", arguments))
-
-
-class MissingSlot(Error):
-    """A message was asked for a field that it does not have."""
-
-    lisp_name = "SB-PCL::MISSING-SLOT"
-
-    def __init__(self, slot="", instance=None, **slots):
-        super().__init__(**slots)
-        self.slot, self.instance = slot, instance
-
-    def report(self):
-        return (
-            f"When attempting to read the slot's value (slot-value), the slot {self.slot} is missing from the object "
-            f"{shown(self.instance)}."
-        )
-
-
 def ros_error(control, *arguments, topic=None):
     """Log the format control at level ERROR on ``topic`` (``nil``: the root), then signal it as a simple error."""
-    from ..lisp.format import format_to_string
     from . import logging
 
     logging.log_text(logging.ERROR, topic, format_to_string(control, *arguments))

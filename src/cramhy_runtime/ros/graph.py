@@ -17,9 +17,6 @@ from .. import kernel
 from .names import Naming
 from .parameters import ParameterTree
 
-SLIDE_EPOCH = 1292688669.674
-"""Where virtual time begins: the moment on the lecture's slide, in seconds since 1970."""
-
 _active = None
 
 
@@ -28,7 +25,6 @@ class Graph:
 
     def __init__(self, owner):
         self.kernel = owner
-        self.epoch = _epoch_of(owner)
         self.nodes = {}
         self.topics = {}
         self.services = {}
@@ -40,8 +36,9 @@ class Graph:
         self._ports = 0
 
     def now(self):
-        """Seconds since 1970 (in virtual time since the moment on the slide)."""
-        return self.epoch + self.kernel.clock.now()
+        """Seconds since 1970, by the kernel's clock."""
+        clock = self.kernel.clock
+        return clock.epoch + clock.now()
 
     def node(self, name, namespace="/", spins=False):
         """A new node called ``name``, relative to ``namespace``; one of the same name is shut down first, as ROS does."""
@@ -223,18 +220,6 @@ class Node:
         topic = self.graph.topics[name]
         if not topic.publications and not topic.subscriptions:
             del self.graph.topics[name]
-
-
-def _epoch_of(owner):
-    clock = owner.clock
-    if clock.virtual:
-        return SLIDE_EPOCH
-    epoch = getattr(clock, "epoch", None)
-    if epoch is None:
-        from datetime import datetime
-
-        epoch = datetime.now().timestamp() - clock.now()
-    return epoch
 
 
 def active():

@@ -10,8 +10,10 @@ from __future__ import annotations
 from ..lisp import conditions
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, LispString, Symbol, lisp_list, list_from
+from ..lisp.format import format_to_string
 from ..lisp.packages import intern, string_designator, sym, symbol_name
-from . import messages
+from ..lisp.printer import princ_to_string
+from . import graph, messages
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
 LEVEL_NAMES = {DEBUG: "DEBUG", INFO: "INFO", WARN: "WARN", ERROR: "ERROR", FATAL: "FATAL"}
@@ -30,8 +32,6 @@ def topic_path(topic):
 
 
 def _levels():
-    from . import graph
-
     return graph.active().debug_levels
 
 
@@ -56,8 +56,6 @@ def ros_log(level, topic, control, *arguments):
     """Log the format control with its arguments, if the level passes; the number of ``/rosout`` subscribers, or nil."""
     if not enabled(level, topic):
         return None
-    from ..lisp.format import format_to_string
-
     return _print(level, topic, format_to_string(control, *arguments))
 
 
@@ -81,8 +79,7 @@ def log_text(level, topic, text):
 
 
 def _print(level, topic, text):
-    from ..lisp.printer import princ_to_string
-    from . import graph, node, time
+    from . import node, time
 
     shown_topic = princ_to_string(topic if topic is None or isinstance(topic, Cons) else lisp_list(topic))
     stream = _standard_output.value
@@ -145,8 +142,6 @@ def level_code(level):
 
 def set_debug_level(name, level):
     """Set the level of a topic (list or symbol). With a node running the parameter ``~debug/…/level`` is set too: 0."""
-    from . import graph
-
     path, code = topic_path(name), level_code(level)
     _levels()[path] = code
     here = graph.active().lisp_node

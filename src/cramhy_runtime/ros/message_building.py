@@ -8,11 +8,14 @@ last to the first, so of two values for one field the first one counts (roslisp.
 from __future__ import annotations
 
 from ..lisp import conditions
+from ..lisp.classes import make_instance
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, Symbol, list_from, python_list
-from ..lisp.packages import sym, symbol_name, symbol_package
+from ..lisp.generic_errors import no_applicable_method
+from ..lisp.packages import COMMON_LISP, sym, symbol_name
+from ..lisp.printer import princ_to_string
+from ..lisp.slots import MissingSlot
 from . import messages
-from .errors import MissingSlot, no_applicable_method
 from .messages import RosMessage, lisp_attribute
 
 
@@ -46,8 +49,6 @@ def instance(cls, initargs):
 
 
 def _bad_initargs(cls, initargs):
-    from ..lisp.classes import make_instance
-
     return make_instance(cls, *initargs)  # the error is the one that every class gives
 
 
@@ -91,8 +92,6 @@ def _attribute(target, name, whole):
 
 
 def _no_field(name, target):
-    from ..lisp.printer import princ_to_string
-
     dump = princ_to_string(_as_deep_list(target))
     return conditions.error(SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}"))
 
@@ -117,24 +116,14 @@ def get_field(message, path):
     return message
 
 
-def get_fields(message, paths):
-    """The values at several paths, as a list."""
-    return [get_field(message, path) for path in paths]
-
-
 def msg_slot_value(message, slot):
     """``roslisp:msg-slot-value``: ``slot`` is a string in any case, a keyword or a symbol."""
     attribute = lisp_attribute(type(message), slot) if isinstance(message, RosMessage) else None
     if attribute is not None:
         return getattr(message, attribute)
-    if isinstance(message, RosMessage):
-        home = message.lisp_symbol.package
-        if symbol_package(message.lisp_symbol) is None:
-            home = None
-    else:
-        home = symbol_package(sym("NULL"))
+    home = message.lisp_symbol.package if isinstance(message, RosMessage) else COMMON_LISP
     name = symbol_name(slot) if isinstance(slot, Symbol) or slot is None else str(slot)
-    return conditions.error(MissingSlot(f"{home.name + '::' if home else ''}{name.upper()}", message))
+    return conditions.error(MissingSlot(home.intern(name.upper()), message))
 
 
 # ----------------------------------------------------------------------------------------------------- list form, constants

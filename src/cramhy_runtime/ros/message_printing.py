@@ -14,6 +14,8 @@ from ..lisp.pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
 from ..lisp.pretty import logical_block, pprint_indent, pprint_newline
 from ..lisp.print_controls import PRINT_PRETTY
 from ..lisp.printer import define_printer, output_object, print_unreadable
+from ..lisp.standard_printers import print_slots
+from ..lisp.streams import output_stream
 from .message_building import ros_message_to_list
 from .messages import RosMessage, ServiceType
 from .node import Uri
@@ -42,20 +44,7 @@ def pprint_ros_message(stream_or_message, message=None):
     if message is None:
         print_message(stream_or_message, sym("*STANDARD-OUTPUT*").value)
     else:
-        from ..lisp.streams import output_stream
-
         print_message(message, output_stream(stream_or_message))
-
-
-def print_structure(name, slots, stream):
-    """``#S(NAME :SLOT value …)``, one slot per line when it does not fit. ``slots``: (name, value) pairs."""
-    with logical_block(stream, "#S(", ")") as out:
-        output_object(sym(name), out)
-        for slot, value in slots:
-            out.write(" ")
-            pprint_newline("linear", out)
-            out.write(f":{slot} ")
-            output_object(value, out)
 
 
 class _Named:
@@ -71,8 +60,8 @@ def _print_named(obj, stream):
 
 def _print_publication(publication, stream):
     connections = list_from([_Named(f"CONNECTION to {subscription.node.name}") for subscription in publication.connections])
-    print_structure(
-        "ROSLISP::PUBLICATION",
+    print_slots(
+        sym("ROSLISP::PUBLICATION"),
         [
             ("PUB-TOPIC-TYPE", publication.type.ros_type),
             ("SUBSCRIBER-CONNECTIONS", connections),
@@ -87,8 +76,8 @@ def _print_subscription(subscription, stream):
     topic = subscription.node.graph.topics.get(subscription.name)
     publishers = [_Named(f"CONNECTION from {publication.node.name}") for publication in (topic.publications if topic else ())]
     queue = _Named(f"ROSLISP-QUEUE:QUEUE with {len(subscription.queue)} elements")
-    print_structure(
-        "ROSLISP::SUBSCRIPTION",
+    print_slots(
+        sym("ROSLISP::SUBSCRIPTION"),
         [
             ("SUB-TOPIC-TYPE", subscription.type.ros_type),
             ("BUFFER", queue),
@@ -101,23 +90,23 @@ def _print_subscription(subscription, stream):
 
 
 def _print_subscriber(subscriber, stream):
-    print_structure(
-        "ROSLISP::SUBSCRIBER",
+    print_slots(
+        sym("ROSLISP::SUBSCRIBER"),
         [("TOPIC", subscriber.topic), ("SUBSCRIPTION", subscriber.subscription), ("CALLBACK", subscriber.callback)],
         stream,
     )
 
 
 def _print_service(service, stream):
-    print_structure("ROSLISP::SERVICE", [("NAME", service.name), ("ROS-TYPE", service.type.name)], stream)
+    print_slots(sym("ROSLISP::SERVICE"), [("NAME", service.name), ("ROS-TYPE", service.type.name)], stream)
 
 
 def _print_uri(uri, stream):
-    print_structure("ROSLISP::URI", [("ADDRESS", uri.address), ("PORT", uri.port)], stream)
+    print_slots(sym("ROSLISP::URI"), [("ADDRESS", uri.address), ("PORT", uri.port)], stream)
 
 
 def _print_client(client, stream):
-    print_structure("ROSLISP::SERVICE-CLIENT", [("SERVICE-NAME", client.name), ("SERVICE-TYPE", client.type.name)], stream)
+    print_slots(sym("ROSLISP::SERVICE-CLIENT"), [("SERVICE-NAME", client.name), ("SERVICE-TYPE", client.type.name)], stream)
 
 
 define_printer(RosMessage, print_message)

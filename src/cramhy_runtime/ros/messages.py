@@ -11,8 +11,10 @@ from __future__ import annotations
 from inspect import Parameter, Signature
 
 from ..lisp import conditions
+from ..lisp.classes import find_class_or_error
 from ..lisp.condition_types import CaseFailure, SimpleError
 from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
+from ..lisp.generic_errors import no_applicable_method
 from ..lisp.packages import Package, find_package, intern, register, string_designator, sym
 from . import definition_text
 
@@ -265,8 +267,6 @@ def message_class(designator):
                 new = found.__name__ if found.fields and found.ros_type.endswith("/" + found.__name__) else found.lisp_symbol.name.title()
                 conditions.warn("~a", f"using old message class name {old}<{new}> is deprecated: use {old}{new} instead.")
             return found
-        from ..lisp.classes import find_class_or_error
-
         return find_class_or_error(designator)
     return conditions.error(CaseFailure(designator, "ETYPECASE", lisp_list(sym("STRING"), sym("SYMBOL"))))
 
@@ -333,8 +333,6 @@ def service_type(designator):
             return found
     found = named(designator)
     if not isinstance(found, ServiceType):
-        from .errors import no_applicable_method
-
         return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERVICE-RESPONSE-TYPE", len(_services), designator)
     return found
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import string
 
+from ..lisp import conditions
+
 _LETTERS = set(string.ascii_letters)
 _NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
 
@@ -63,8 +65,6 @@ def as_namespace(text):
 def qualify(name, namespace, node_name):
     """The global form of ``name``, without remapping. The empty name is an index error, as in roslisp."""
     if not name:
-        from ..lisp import conditions
-
         return conditions.error("Invalid index 0 for (SIMPLE-ARRAY CHARACTER (0)): the empty string is not a name in ROS.")
     first = name[0]
     if first == "/":

@@ -13,7 +13,9 @@ from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import LispString, python_list
+from ..lisp.dynamic import special
 from ..lisp.packages import sym
+from ..lisp.printer import princ_to_string
 from . import graph, logging, messages, names, parameters
 from .errors import ros_error
 
@@ -23,11 +25,9 @@ ROSOUT_DELAY = 0.05
 """Seconds until the log collector has connected to a new node: its first log calls reach nobody."""
 DEFAULT_MASTER = "http://127.0.0.1:11311"
 
-NODE_NAME = sym("ROSLISP::*ROS-NODE-NAME*")
-MASTER_URI = sym("ROSLISP::*MASTER-URI*")
-DEFAULT_MASTER_URI = sym("ROSLISP::*DEFAULT-MASTER-URI*")
-for _symbol in (NODE_NAME, MASTER_URI, DEFAULT_MASTER_URI):
-    _symbol.value, _symbol.special = None, True
+NODE_NAME = special("ROSLISP::*ROS-NODE-NAME*")
+MASTER_URI = special("ROSLISP::*MASTER-URI*")
+DEFAULT_MASTER_URI = special("ROSLISP::*DEFAULT-MASTER-URI*")
 
 _log_file = None
 
@@ -231,8 +231,6 @@ def standalone_exec_debug_hook(condition, hook=None):
 
 def print_status():
     """Print the node's name, state, master, and what it publishes and subscribes to."""
-    from ..lisp.printer import princ_to_string
-
     here = graph.active().lisp_node
     stream = sym("*STANDARD-OUTPUT*").value
     stream.fresh_line()

@@ -10,6 +10,7 @@ from operator import attrgetter
 from ..lisp import conditions
 from ..lisp.classes import register_class
 from ..lisp.faces import define_face
+from ..lisp.generic_errors import no_applicable_method_error
 from ..lisp.printer import define_printer
 from . import (
     definition_text,
@@ -25,7 +26,6 @@ from . import (
     topics,
     utilities,
 )
-from .errors import NoApplicableMethod
 from .messages import RosMessage
 
 
@@ -42,7 +42,7 @@ class FieldReader:
         if getter is None:
             if len(arguments) != 1:
                 return conditions.program_error("invalid number of arguments: ~S", len(arguments))
-            return conditions.error(NoApplicableMethod(repr(self), arguments))
+            return no_applicable_method_error(self, arguments)
         if self.warning:
             warning, self.warning = self.warning, None
             conditions.warn("~a", warning)

@@ -9,10 +9,11 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
+from ..lisp.condition_types import SimpleError, shown
 from ..lisp.data import UNSUPPLIED, Cons, LispString, Symbol, list_from
 from ..lisp.packages import symbol_name
 from . import names
+from .errors import ros_error, rpc_error
 
 
 class ParameterTree:
@@ -96,8 +97,6 @@ def encode(value):
         return [encode(element) for element in value]
     if isinstance(value, dict):
         return {str(key): encode(element) for key, element in value.items()}
-    from ..lisp.condition_types import shown
-
     return conditions.error(
         SimpleError("~a", f"A parameter can be a string, number, boolean, list or vector of these, but not {shown(value)}.")
     )
@@ -136,8 +135,6 @@ def get_param(key, default=UNSUPPLIED):
     except KeyError:
         if default is not UNSUPPLIED:
             return default
-    from .errors import ros_error
-
     return ros_error("Param ~a does not exist, and no default supplied", name)
 
 
@@ -158,8 +155,6 @@ def delete_param(key):
     try:
         _tree().delete(name)
     except KeyError:
-        from .errors import rpc_error
-
         return rpc_error(f"deleteParam {name}", -1, f"parameter [{name}] is not set", 0)
     return 0
 

@@ -11,12 +11,14 @@ from collections import deque
 
 from .. import kernel
 from ..lisp import conditions
-from ..lisp.condition_types import Error, SimpleError
+from ..lisp.condition_types import Error, SimpleError, SimpleTypeError, shown
 from ..lisp.data import LispString, Symbol
+from ..lisp.generic_errors import no_applicable_method
 from ..lisp.packages import sym, symbol_name
+from ..lisp.printer import princ_to_string
 from . import messages, wire
 from .errors import ServiceCallError, ServiceError, ros_error, rpc_error
-from .message_building import instance
+from .message_building import get_field, instance
 from .messages import RosMessage
 
 
@@ -102,7 +104,7 @@ class LispService(Service):
             logging.log_text(
                 logging.ERROR,
                 ("ROSLISP", "SERVICE", "TCP"),
-                f"Error processing request {shown(call.request)}:\n {condition.report()}",
+                f"Error processing request {princ_to_string(call.request)}:\n {condition.report()}",
             )
             call.finish(failure=f"error processing request: {condition.report()}")
 
@@ -114,7 +116,7 @@ class LispService(Service):
                     SimpleError(
                         "~a",
                         f"The callback of service {self.name} must return a {expected} (see make-response), "
-                        f"but it returned {shown(response)}.",
+                        f"but it returned {princ_to_string(response)}.",
                     )
                 )
             call.finish(wire.transmit(response))
@@ -149,12 +151,6 @@ def event_loop(node):
     if found is None:
         found = node.event_loop = EventLoop(node)
     return found
-
-
-def shown(obj):
-    from ..lisp.printer import princ_to_string
-
-    return princ_to_string(obj)
 
 
 # ------------------------------------------------------------------------------------------------------------------ clients
@@ -196,13 +192,10 @@ def make_service_client(service_name, service_type):
     """A client for `call_service` and `wait_for_service`; both arguments are strings."""
     for name, value in (("SERVICE-NAME", service_name), ("SERVICE-TYPE", service_type)):
         if not isinstance(value, (str, LispString)):
-            from ..lisp.condition_types import SimpleTypeError
-            from ..lisp.condition_types import shown as printed
-
             return conditions.error(
                 SimpleTypeError(
                     "~a",
-                    f"The value of ROSLISP::{name} is {printed(value)}, which is not of type STRING.",
+                    f"The value of ROSLISP::{name} is {shown(value)}, which is not of type STRING.",
                     datum=value,
                     expected_type="STRING",
                 )
@@ -221,8 +214,6 @@ def call_service(service, *rest_args):
     if isinstance(service, ServiceClient):
         name, service_type, arguments = service.name, service.type, rest_args
     elif not isinstance(service, (str, LispString)):
-        from .errors import no_applicable_method
-
         return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args)
     elif not rest_args:
         return conditions.error(
@@ -354,6 +345,4 @@ def call_named(service_name, service_symbol, return_field, *request):
     response = call_service(service_name, service_symbol, *request)
     if return_field is None:
         return response
-    from .message_building import get_field
-
     return get_field(response, (symbol_name(return_field),))

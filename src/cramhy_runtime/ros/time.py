@@ -7,13 +7,12 @@ here park, so in virtual time they take no time at all (law 5). Source: roslisp.
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp.data import DoubleFloat, MultipleValues, Symbol, truth
+from ..lisp.data import DoubleFloat, MultipleValues, Symbol, one, truth
+from . import graph
 
 
 def ros_time():
     """Seconds since the epoch, a double; under simulated time the last ``/clock``, or single 0.0 before the first."""
-    from . import graph
-
     here = graph.active()
     node = here.lisp_node
     if node is not None and getattr(node, "simulated_time", None) is not None:
@@ -35,8 +34,6 @@ def spin_until_ros_time_valid():
 
 def wait_duration(d):
     """Wait until ``d`` seconds of ROS time have passed; T."""
-    from . import graph
-
     seconds = float(d)
     node = graph.active().lisp_node
     if node is None or getattr(node, "simulated_time", None) is None:
@@ -66,7 +63,7 @@ def spin_until(test, increment, body=None, timeout=None):
     end = None if timeout is None else kernel.now() + float(timeout)
     while True:
         value = test()
-        if truth(value[0] if value.__class__ is MultipleValues and value else value):
+        if truth(one(value)):
             return value
         if end is not None and kernel.now() >= end:
             return MultipleValues((None, True))

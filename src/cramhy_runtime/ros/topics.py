@@ -12,10 +12,12 @@ from collections import deque
 
 from .. import kernel
 from ..lisp import conditions
-from ..lisp.condition_types import Condition, Error, SimpleError
+from ..lisp.condition_types import Condition, Error, SimpleError, SimpleTypeError, formatted, shown
 from ..lisp.data import NO_VALUES, LispString, Symbol
+from ..lisp.format import format_to_string
+from ..lisp.generic_errors import no_applicable_method, no_primary_method
 from . import wire
-from .errors import NoPrimaryMethod, ros_error
+from .errors import ros_error
 from .messages import RosMessage, topic_class
 
 
@@ -179,7 +181,6 @@ class Subscription:
         self.remaining = []
 
     def _failed(self, condition):
-        from ..lisp.format import format_to_string
         from . import logging
 
         logging.log_text(
@@ -235,7 +236,7 @@ def publish(pub, message):
     publication = pub
     if publication.__class__ is not Publication:
         if not isinstance(pub, (str, LispString)):
-            return conditions.error(NoPrimaryMethod("#<STANDARD-GENERIC-FUNCTION ROSLISP:PUBLISH (3)>", (pub, message)))
+            return no_primary_method("ROSLISP:PUBLISH", 3, pub, message)
         from . import node
 
         here = node.require_node()
@@ -249,8 +250,6 @@ def publish(pub, message):
         here = node.require_node()
         publication = here.publications.get(publication.name, publication)
     if not isinstance(message, RosMessage):
-        from .errors import no_applicable_method
-
         return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, message)
     return publication.publish(message)
 
@@ -259,8 +258,6 @@ def publication_type(pub):
     """The message class of a publication object (``publish-msg`` and ``make-publisher-msg`` build on it)."""
     if isinstance(pub, Publication):
         return pub.type
-    from ..lisp.condition_types import SimpleTypeError, shown
-
     return conditions.error(
         SimpleTypeError(
             "~a",
@@ -316,8 +313,6 @@ def subscribe(topic, topic_type, callback, *, max_queue_length=None):
 
 def _type_or_warning(topic, topic_type):
     def give_up(condition):
-        from ..lisp.condition_types import formatted
-
         shown_type = topic_type if isinstance(topic_type, str) else formatted("~a", (topic_type,))
         conditions.warn("~a", f"Couldn't lookup topic type {shown_type} for {topic}, so not subscribing.")
 

@@ -8,30 +8,21 @@ strings of Latin-1 characters. Errors are those of roslisp, signalled in the tas
 from __future__ import annotations
 
 import math
-import struct
 from fractions import Fraction
 
 from ..lisp import conditions
+from ..lisp.arithmetic import single
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, DoubleFloat, LispString, Symbol
+from ..lisp.generic_errors import no_applicable_method
 from ..lisp.packages import intern
+from ..lisp.printer import prin1_to_string
 from . import messages
 from .definition_text import INTEGERS
-from .errors import no_applicable_method
-
-_single = struct.Struct("<f")
 
 POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
     intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
 ]
-
-
-def round_single(value):
-    """``value`` rounded to 32 bits; beyond their range infinite, as in C++."""
-    try:
-        return _single.unpack(_single.pack(value))[0]
-    except OverflowError:
-        return math.copysign(math.inf, value)
 
 
 def as_float(value):
@@ -67,7 +58,7 @@ def _float64(value):
 
 
 def _float32(value):
-    return lisp_float(round_single(float(_real(value))))
+    return lisp_float(single(float(_real(value))))
 
 
 def _integer(bits, signed):
@@ -122,7 +113,6 @@ def _part(base):
             if value.ros_type == base:
                 return transmit(value)
             return conditions.type_error(value, messages.message_class_exact(base).lisp_name.replace("::", ":"))
-        from ..lisp.printer import prin1_to_string
         from . import logging
 
         logging.log_text(

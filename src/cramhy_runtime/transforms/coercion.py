@@ -11,6 +11,7 @@ from fractions import Fraction
 from cramhy_runtime.lisp.arithmetic import single
 from cramhy_runtime.lisp.conditions import SimpleTypeError, error, type_error
 from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.lisp.generic_errors import no_applicable_method
 from cramhy_runtime.lisp.vectors import LispArray
 
 
@@ -65,10 +66,20 @@ def instance(value, cls, parameter):
     return type_error(value, cls.lisp_name, f"\nwhen binding CL-TRANSFORMS::{parameter}")
 
 
+def component(index):
+    """A property: component ``index`` of an object with ``components``, a tuple of floats, as ``component(index)`` shows it to Lisp."""
+
+    def get(self):
+        return self.component(index)
+
+    def set_(self, value):
+        components = list(self.components)
+        components[index] = real(value)
+        self.components = tuple(components)
+
+    return property(get, set_, doc="A component, as the float that Lisp sees.")
+
+
 def no_method(function, *arguments):
     """Signal that a generic function has no method for ``arguments``."""
-    from cramhy_runtime.lisp.data import list_from
-
-    name = f"CL-TRANSFORMS:{function.upper()}"
-    return error("There is no applicable method for the generic function~%  #<STANDARD-GENERIC-FUNCTION ~A>~%"
-                 "when called with arguments~%  ~S.", name, list_from(arguments))
+    return no_applicable_method(f"CL-TRANSFORMS:{function.upper()}", None, *arguments)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import Symbol, truth
+from cramhy_runtime.lisp.data import DoubleFloat, truth
 from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.lisp.print_controls import PRINT_ESCAPE
+from cramhy_runtime.lisp.printer import define_printer, prin1_to_string, write
 
 from . import matrices, poses, quaternions, vectors
 
@@ -33,15 +35,11 @@ CL_TRANSFORMS = define_face(
 for _name in ("TRANSLATION", "ROTATION", "ORIGIN", "ORIENTATION"):
     CL_TRANSFORMS.intern(_name).setf_function = getattr(poses, f"set_{_name.lower()}")
 
-_ESCAPE = sym("*PRINT-ESCAPE*")
-
 
 def head(name, stream):
     """Write ``#<`` and the class name, with its package where the current one does not see it."""
-    from cramhy_runtime.lisp.printer import write
-
     stream.write("#<")
-    if truth(_ESCAPE.value) if not isinstance(_ESCAPE.value, Symbol) else True:
+    if truth(PRINT_ESCAPE.value):
         write(sym(name), stream, escape=True)
     else:
         stream.write(name.rpartition("::")[2])
@@ -49,14 +47,10 @@ def head(name, stream):
 
 def numbers(components, kind, stream):
     """Write components in parentheses."""
-    from cramhy_runtime.lisp.printer import prin1_to_string
-
     stream.write("(" + " ".join(prin1_to_string(kind(component)) for component in components) + ")")
 
 
 def _print_vector(obj, stream):
-    from cramhy_runtime.lisp.data import DoubleFloat
-
     head(obj.lisp_name, stream)
     stream.write(" ")
     numbers(obj.components, DoubleFloat, stream)
@@ -74,8 +68,6 @@ def parts_printer(*parts):
     """A printer for an object with parts: each on a line of its own, three spaces from the margin wherever the object stands."""
 
     def print_parts(obj, stream):
-        from cramhy_runtime.lisp.printer import write
-
         head(obj.lisp_name, stream)
         stream.write(" ")
         for attribute, label in parts:
@@ -86,16 +78,9 @@ def parts_printer(*parts):
     return print_parts
 
 
-def install_printers():
-    """Tell the printer how the objects of this room look."""
-    from cramhy_runtime.lisp.printer import define_printer
-
-    define_printer(vectors.Vector3, _print_vector)
-    define_printer(quaternions.Quaternion, _print_quaternion)
-    define_printer(poses.Transform, parts_printer(("translation", ""), ("rotation", "")))
-    define_printer(poses.Pose, parts_printer(("origin", ""), ("orientation", "")))
-    for cls in (poses.Twist, poses.Wrench):
-        define_printer(cls, parts_printer(("translation", "TRANSLATION "), ("rotation", "ROTATION ")))
-
-
-install_printers()
+define_printer(vectors.Vector3, _print_vector)
+define_printer(quaternions.Quaternion, _print_quaternion)
+define_printer(poses.Transform, parts_printer(("translation", ""), ("rotation", "")))
+define_printer(poses.Pose, parts_printer(("origin", ""), ("orientation", "")))
+for _class in (poses.Twist, poses.Wrench):
+    define_printer(_class, parts_printer(("translation", "TRANSLATION "), ("rotation", "ROTATION ")))

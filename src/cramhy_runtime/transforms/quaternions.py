@@ -12,23 +12,11 @@ from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, error,
 from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from
 from cramhy_runtime.lisp.packages import keyword
 
-from .coercion import check_type, elements, float_argument, instance, is_real, no_method, real
+from .coercion import check_type, component, elements, float_argument, instance, is_real, no_method, real
 from .vectors import Vector3, point
 
 TOLERANCE = 1e-6
 """How far the squared norm of a unit quaternion may be from 1."""
-
-
-def _component(index):
-    def get(self):
-        return self.component(index)
-
-    def set_(self, value):
-        components = list(self.components)
-        components[index] = real(value)
-        self.components = tuple(components)
-
-    return property(get, set_, doc="A component, as the float that Lisp sees.")
 
 
 class Quaternion:
@@ -36,9 +24,8 @@ class Quaternion:
 
     lisp_name = "CL-TRANSFORMS::QUATERNION"
     initargs = {"X": "x", "Y": "y", "Z": "z", "W": "w"}
-    quaternion = True
     kind = DoubleFloat
-    x, y, z, w = _component(0), _component(1), _component(2), _component(3)
+    x, y, z, w = component(0), component(1), component(2), component(3)
 
     def __init__(self, x=0.0, y=0.0, z=0.0, w=1.0):
         self.components = (float(x), float(y), float(z), float(w))

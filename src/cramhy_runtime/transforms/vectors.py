@@ -10,19 +10,7 @@ import math
 from cramhy_runtime.lisp.conditions import DivisionByZero, error, type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import DoubleFloat
 
-from .coercion import check_type, elements, instance, is_real, no_method, real
-
-
-def _component(index):
-    def get(self):
-        return DoubleFloat(self.components[index])
-
-    def set_(self, value):
-        components = list(self.components)
-        components[index] = real(value)
-        self.components = tuple(components)
-
-    return property(get, set_, doc="A component, as the double-float that Lisp sees.")
+from .coercion import check_type, component, elements, instance, is_real, no_method, real
 
 
 class Vector3:
@@ -30,10 +18,13 @@ class Vector3:
 
     lisp_name = "CL-TRANSFORMS::3D-VECTOR"
     initargs = {"X": "x", "Y": "y", "Z": "z"}
-    x, y, z = _component(0), _component(1), _component(2)
+    x, y, z = component(0), component(1), component(2)
 
     def __init__(self, x=0.0, y=0.0, z=0.0):
         self.components = (float(x), float(y), float(z))
+
+    def component(self, index):
+        return DoubleFloat(self.components[index])
 
     def __iter__(self):
         return iter(self.components)
@@ -69,9 +60,7 @@ def copy_3d_vector(v, *, x=None, y=None, z=None):
 
 def _reader(index, letter):
     def read(obj):
-        if isinstance(obj, Vector3):
-            return DoubleFloat(obj.components[index])
-        if hasattr(obj, "quaternion"):
+        if hasattr(obj, "components"):  # a vector or a quaternion
             return obj.component(index)
         for size in (3, 4):
             items = elements(obj, size)

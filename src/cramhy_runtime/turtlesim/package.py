@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..lisp import conditions
 from ..lisp.faces import define_face
 from ..lisp.packages import string_designator
+from ..lisp.streams import STANDARD_OUTPUT
 from ..ros import graph
 from .node import running_simulator, start_turtlesim
 from .teleop import KEYS, NAMED_KEYS, Teleop
@@ -46,9 +47,7 @@ def save_paper(path):
 
 def log():
     """Print the simulator's log, which the original prints in its own terminal."""
-    from ..lisp.packages import sym
-
-    sym("*STANDARD-OUTPUT*").value.write("".join(line + "\n" for line in _simulator().lines))
+    STANDARD_OUTPUT.value.write("".join(line + "\n" for line in _simulator().lines))
 
 
 TURTLESIM = define_face("TURTLESIM", functions={"start": start, "press": press, "save-paper": save_paper, "log": log})

@@ -11,19 +11,11 @@ from __future__ import annotations
 import math
 import struct
 
+from ..lisp.arithmetic import single
 from .canvas import METRE, SIZE
 
-_single = struct.Struct("<f")
 _five_singles = struct.Struct("<5f")
 _cos, _sin, _floor, _sqrt = math.cos, math.sin, math.floor, math.sqrt
-
-
-def single(value):
-    """``value`` rounded to 32 bits."""
-    try:
-        return _single.unpack(_single.pack(value))[0]
-    except OverflowError:
-        return math.copysign(math.inf, value)
 
 
 TICK = 0.016

@@ -6,10 +6,7 @@ other's lock, wait on one's own. No dispatcher thread stands between, so a hand-
 Threads are taken from a pool that all kernels share, and return to it when their task is dead; a run that starts and
 ends tasks all the time starts no threads. The pool keeps `KEEP` idle threads; they are daemons and hold up no exit.
 
-The size of a stack is a matter of life and death: Python code that calls Python code uses none of it, but each call
-that goes through C (`f(*args)`, `sorted(key=...)`, `map`) takes 0.4 to 8 KiB, and at its end the process dies without a
-word. So a task may recurse as deep as the main thread, and more: 16 MiB. That much is reserved, not used: ten thousand
-parked tasks take 100 MB of memory with stacks of 1 MiB and with stacks of 16 MiB (measured on Linux, 64 bit).
+A task may recurse as deep as the main thread: `depth` says how large a stack is, and why.
 """
 
 import _thread
@@ -19,10 +16,10 @@ import threading
 from collections import deque
 
 from ..clocks import LONGEST_WAIT
+from ..depth import STACK_SIZE
 from . import NoStack
 from .nearness import nearness
 
-STACK_SIZE = 16 << 20 if sys.maxsize > 2**32 else 1 << 20  # bytes
 KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
 
 _idle = deque()

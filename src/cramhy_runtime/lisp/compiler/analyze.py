@@ -90,6 +90,9 @@ class Analyzer:
                 special = SPECIAL_FORMS.get(head)
                 if special is not None:
                     return special(self, form, env)
+            if head is DECLARE:
+                return self.fail("~S stands where a form must stand: declarations belong at the beginning of a body, before all forms.",
+                                 form)
             if isinstance(local, LocalFunction):
                 return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
             expansion, expanded = self.expand(form, env)
@@ -105,7 +108,7 @@ class Analyzer:
         try:
             expansion, expanded = macroexpand_1(form, env)
         except Condition as problem:
-            if getattr(problem, "position", self) is None:
+            if getattr(problem, "position", None) is None:
                 problem.position = self.place()
             raise
         if expanded and isinstance(expansion, Cons) and id(expansion) not in self.positions and self._at is not None:
@@ -118,9 +121,13 @@ class Analyzer:
         self.positions.setdefault("kept", []).append(form)
 
     def arguments(self, form, env):
-        if form.cdr is not None and not isinstance(form.cdr, Cons):
+        nodes, cell = [], form.cdr
+        while isinstance(cell, Cons):
+            nodes.append(self.form(cell.car, env))
+            cell = cell.cdr
+        if cell is not None:
             return self.fail("The form ~S ends in a dot.", form)
-        return [self.form(argument, env) for argument in form.cdr or ()]
+        return nodes
 
     def _call(self, form, env):
         node = Call(form.car, self.arguments(form, env))
@@ -199,12 +206,13 @@ class Analyzer:
         def parameter(symbol):
             if not isinstance(symbol, Symbol) or isinstance(symbol, Keyword):
                 return self.fail("~S cannot be a parameter of a function.", symbol)
-            if self.binds_special(symbol, specials):
-                inner.variables[symbol] = SpecialVariable(symbol)
-                variable = Variable(symbol, scope)
-                dynamic.append((symbol, variable))
-                return variable
+            if symbol in inner.variables:
+                return self.fail("The variable ~S occurs more than once in the lambda list.", symbol)
+            special = self.binds_special(symbol, specials)
+            # a special parameter is bound when all parameters have their values; the defaults of later ones see the argument
             variable = inner.variables[symbol] = Variable(symbol, scope)
+            if special:
+                dynamic.append((symbol, variable))
             return variable
 
         parameters.required = [parameter(symbol) for symbol in parsed.required]
@@ -219,13 +227,14 @@ class Analyzer:
             variable = parameter(symbol)
             parameters.keys.append((variable, node, parameter(supplied) if supplied is not None else None, key))
         bindings = [(symbol, LocalVariable(variable)) for symbol, variable in dynamic]
+        for symbol in [*(symbol for symbol, _ in dynamic), *specials]:
+            inner.variables[symbol] = SpecialVariable(symbol)
         if parsed.aux:
-            let_star = SPECIAL_FORMS[sym("LET*")]
             aux = lisp_list(*(lisp_list(symbol, form) for symbol, form in parsed.aux))
-            body_form = Cons(sym("LET*"), Cons(aux, lisp_list(*forms)))
-            body_node = let_star(self, body_form, inner)
-        elif block is not None or block is None and name is None:
-            body_node = self._blocked(block, forms, inner)
+            declared = [Cons(DECLARE, lisp_list(*specifiers))] if specifiers else []
+            if block is not None:
+                forms = [Cons(sym("BLOCK"), Cons(block, lisp_list(*forms)))]
+            body_node = SPECIAL_FORMS[sym("LET*")](self, lisp_list(sym("LET*"), aux, *declared, *forms), inner)
         else:
             body_node = self._blocked(block, forms, inner)
         if bindings:

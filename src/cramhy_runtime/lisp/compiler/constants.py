@@ -36,6 +36,7 @@ class Constants:
         self.alive = []  # ids are keys: the objects must live as long
         self.fresh = []
         self.made = set()
+        self.statements = []
         self.count = 0
 
     def name(self, kind, obj):
@@ -56,15 +57,20 @@ class Constants:
 
     def take_forms(self):
         """Statements (Hy models) that make the entries made since the last call."""
-        fresh, self.fresh = self.fresh, []
-        statements = []
+        fresh, self.fresh, self.statements = self.fresh, [], []
         for name, kind, obj in fresh:
+            if name in self.made:
+                continue
             value = self.builder(obj, top=True)
             if kind == "function":
                 value = expression(symbol_model("."), value, symbol_model("function"))
-            statements.append(expression(symbol_model("setv"), symbol_model(name), value))
-            self.made.add(name)
-        return statements
+            self.make(name, value)
+        self.fresh = []
+        return self.statements
+
+    def make(self, name, value):
+        self.statements.append(expression(symbol_model("setv"), symbol_model(name), value))
+        self.made.add(name)
 
     def builder(self, obj, top=False):
         """A Hy expression that makes ``obj``. Inside a list, symbols that have a name already are referred to by it."""
@@ -77,7 +83,12 @@ class Constants:
         kind = type(obj)
         if isinstance(obj, Symbol):
             if obj.package is None:
-                return expression(symbol_model("Lgensym"), models.String(obj.name))
+                maker = expression(symbol_model("Lgensym"), models.String(obj.name))
+                if top:
+                    return maker
+                name = self.name("object", obj)  # the same symbol wherever it occurs in the text
+                self.make(name, maker)
+                return symbol_model(name)
             return expression(symbol_model("Lintern"), models.String(obj.name), models.String(obj.package.name))
         if kind is Cons:
             items, cell = [], obj

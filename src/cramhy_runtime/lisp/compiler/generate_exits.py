@@ -78,6 +78,7 @@ class ExitGenerator:
             return
         code = self.jump_codes.setdefault(target, len(self.jump_codes) + 1)
         self.scope.uses_exit = True
+        self.exits_set += 1
         self.assign("Lexit", models.Integer(code))
         inner.exits[target] = code
         self.emit(symbol_model("break"))
@@ -117,7 +118,12 @@ class ExitGenerator:
                                 self.call("block_value", symbol_model(exit_name), self.reference(tagbody.variable)))
             parts = [expression(symbol_model("try"), *parts, expression(
                 symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), target))]
-        self.emit(symbol_model("while"), TRUE, *parts)
+        loop = expression(symbol_model("while"), TRUE, *parts)
+        if tagbody.escapes:
+            self.emit(symbol_model("try"), loop, expression(symbol_model("finally"), self.call("end_block", self.reference(tagbody.variable))))
+        else:
+            self.out.append(loop)
+            self.effects += 1
         self.continue_exits(frame)
         return self.finish(NONE, node, destination, pure=True)
 
@@ -128,15 +134,25 @@ class ExitGenerator:
                                nodes.Constant(None), destination)
         frame = next(frame for frame in self.frames if frame.target is tagbody)
         if node.index <= frame.segment:
-            self.emit(symbol_model("Lcheckpoint"))
+            self.checkpoint()
         self.assign(tagbody.counter, models.Integer(node.index))
         self.jump(tagbody)
         return NONE if destination.kind == "value" else None
 
+    def checkpoint(self):
+        """`kernel.checkpoint` of a loop, its counting done in place."""
+        left = expression(symbol_model("."), symbol_model("Lbudget"), symbol_model("left"))
+        self.emit(symbol_model("setv"), left, expression(symbol_model("-"), left, models.Integer(1)))
+        self.emit(symbol_model("when"), expression(symbol_model("<"), left, models.Integer(0)), self.call("checkpoint"))
+
     def UnwindProtect(self, node, destination):
         def produce(inner):
             statements, _ = self.captured(lambda: self.gen(node.body, inner))
+            before = self.exits_set
             cleanup, _ = self.captured(lambda: self.gen(node.cleanup, EFFECT))
+            if self.exits_set != before:  # the cleanup must not forget the exit that it was entered by
+                saved = self.temporary("Lsaved")
+                cleanup = [self.setting(saved, symbol_model("Lexit")), *cleanup, self.setting("Lexit", symbol_model(saved))]
             shielded = expression(symbol_model("with"), models.List([symbol_model("_"), self.call("shield")]), *(cleanup or [NONE]))
             self.emit(symbol_model("try"), *(statements or [NONE]), expression(symbol_model("finally"), shielded))
 

@@ -31,11 +31,14 @@ class FunctionGenerator:
         saved = self.out, self.frames, self.scope
         self.out, self.frames, self.scope = [], [], node.scope
         node.scope.uses_exit = False
+        outer_before, self.before = self.before, []
         parameters = self.parameters(node)
+        before, self.before = self.before, outer_before
         self.gen(node.body, RETURN)
         statements = self.out
         scope = node.scope
         self.out, self.frames, self.scope = saved
+        self.out.extend(before)
         header = []
         names = [symbol_model(variable.name) for variable in scope.nonlocals if not variable.boxed]
         if names:
@@ -64,14 +67,15 @@ class FunctionGenerator:
             parameters.append(symbol_model("*"))
         parameters += [models.List([symbol_model(variable.name), symbol_model(variable.name)]) for variable in frozen]
         if spec.has_keys:
-            keywords = self.temporary("Lpython")
+            keywords, parser = self.temporary("Lpython"), self.temporary("Lparse")
             parameters.append(expression(symbol_model("unpack-mapping"), symbol_model(keywords)))
         for variable, default, supplied in spec.optional:
             self.default(variable, default, supplied)
         if spec.has_keys:
             table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
-            values = self.call("keywords", symbol_model(rest), symbol_model(keywords), self.constant_keys(table),
-                               TRUE if spec.allow_other_keys else NONE)
+            values = expression(symbol_model(parser), symbol_model(rest), symbol_model(keywords))
+            self.before.append(self.setting(parser, self.call("key_parser", self.constant_keys(table),
+                                                              TRUE if spec.allow_other_keys else NONE)))
             if spec.keys:
                 self.emit(symbol_model("setv"), models.List([symbol_model(variable.name) for variable, *_ in spec.keys]), values)
             else:

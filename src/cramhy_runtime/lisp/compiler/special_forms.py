@@ -38,8 +38,20 @@ def _parts(analyzer, form, least, most=None):
         cell = cell.cdr
     if cell is not None or len(parts) < least or (most is not None and len(parts) > most):
         wanted = str(least) if least == most else f"at least {least}" if most is None else f"{least} to {most}"
-        analyzer.fail("~S takes ~A part~:P, but here it is ~S.", form.car, wanted, form)
+        parts = "part" if wanted.endswith("1") else "parts"
+        analyzer.fail("~S takes ~A ~A, but here it is ~S.", form.car, wanted, parts, form)
     return parts
+
+
+def _items(analyzer, form, value):
+    """The elements of ``value``, a part of ``form`` that must be a list."""
+    items, cell = [], value
+    while isinstance(cell, Cons):
+        items.append(cell.car)
+        cell = cell.cdr
+    if cell is not None:
+        analyzer.fail("~S needs a list where it has ~S.", form.car, value)
+    return items
 
 
 @special("QUOTE")
@@ -121,6 +133,14 @@ def _binding(analyzer, item):
     return item, None
 
 
+def _distinct(analyzer, symbols, operator):
+    seen = set()
+    for symbol in symbols:
+        if symbol in seen:
+            analyzer.fail("The variable ~S occurs more than once in the ~A.", symbol, operator)
+        seen.add(symbol)
+
+
 def _bound(body_node, node):
     node.single, node.boolean = body_node.single, body_node.boolean
     return node
@@ -138,7 +158,8 @@ def _let(analyzer, form, env):
     parts = _parts(analyzer, form, 1)
     specifiers, _, forms = analyzer.declarations(parts[1:], env)
     specials = analyzer.specials(specifiers)
-    pairs = [_binding(analyzer, item) for item in parts[0] or ()]
+    pairs = [_binding(analyzer, item) for item in _items(analyzer, form, parts[0])]
+    _distinct(analyzer, [symbol for symbol, _ in pairs], "LET")
     values = [analyzer.form(value, env) for _, value in pairs]
     inner = env.child()
     bindings = [(analyzer.bind(symbol, inner, specials), value) for (symbol, _), value in zip(pairs, values)]
@@ -153,7 +174,7 @@ def _let_star(analyzer, form, env):
     specifiers, _, forms = analyzer.declarations(parts[1:], env)
     specials = analyzer.specials(specifiers)
     bindings, inner = [], env
-    for item in parts[0] or ():
+    for item in _items(analyzer, form, parts[0]):
         symbol, value = _binding(analyzer, item)
         node = analyzer.form(value, inner)
         inner = inner.child()
@@ -177,10 +198,12 @@ def _locally(analyzer, form, env):
 def _definitions(analyzer, form):
     parts = _parts(analyzer, form, 1)
     definitions = []
-    for item in parts[0] or ():
+    for item in _items(analyzer, form, parts[0]):
         if not isinstance(item, Cons) or not isinstance(item.cdr, Cons):
             analyzer.fail("A local function is (name lambda-list . body), not ~S.", item)
         name = item.car
+        if not is_symbol(name) and not (isinstance(name, Cons) and name.car is SETF and isinstance(name.cdr, Cons)):
+            analyzer.fail("~S is no name of a function.", name)
         key = ("setf", name.cdr.car) if isinstance(name, Cons) else name
         symbol = name.cdr.car if isinstance(name, Cons) else name
         definitions.append((key, symbol, item.cdr.car, item.cdr.cdr))
@@ -229,7 +252,9 @@ def _macrolet(analyzer, form, env):
 def _symbol_macrolet(analyzer, form, env):
     parts = _parts(analyzer, form, 1)
     inner = env.child()
-    for item in parts[0] or ():
+    for item in _items(analyzer, form, parts[0]):
+        if not isinstance(item, Cons) or not isinstance(item.cdr, Cons):
+            analyzer.fail("A symbol macro is (name expansion), not ~S.", item)
         symbol, expansion = _binding(analyzer, item)
         inner.variables[symbol] = SymbolMacro(expansion)
     return _locally(analyzer, Cons(sym("LOCALLY"), list_from(parts[1:])), inner)
@@ -338,7 +363,7 @@ def _the(analyzer, form, env):
 def _eval_when(analyzer, form, env):
     situations, *forms = _parts(analyzer, form, 1)
     wanted = {sym(":EXECUTE"), sym(":LOAD-TOPLEVEL"), sym("EVAL"), sym("LOAD")}
-    if wanted.isdisjoint(situations or ()):
+    if wanted.isdisjoint(_items(analyzer, form, situations)):
         return Constant(None)
     return analyzer.body(forms, env)
 
@@ -370,8 +395,9 @@ def _multiple_value_bind(analyzer, form, env):
     specifiers, _, forms = analyzer.declarations(body, env)
     specials = analyzer.specials(specifiers)
     inner = env.child()
-    variables = [analyzer.bind(symbol, inner, specials) for symbol in symbols or ()]
-    _free_specials(specials, inner, set(symbols or ()))
+    symbols = _items(analyzer, form, symbols)
+    variables = [analyzer.bind(symbol, inner, specials) for symbol in symbols]
+    _free_specials(specials, inner, set(symbols))
     body_node = analyzer.body(forms, inner)
     return _bound(body_node, MultipleValueBind(variables, node, body_node))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.budget import budget
 
 from .. import arithmetic
 from ..backquote import Comma
@@ -149,28 +150,41 @@ def spread(value, count):
     return value + (None,) * (count - len(value))
 
 
-def keywords(rest, python, table, allow_others):
-    """The values of &key parameters, in the order of ``table``, a tuple of (keyword, value when missing).
+def key_parser(table, allow_others):
+    """The function that sorts the &key arguments of a call; made once for each function with &key.
 
-    rest: the arguments after the positional ones, keyword objects and values. python: keyword arguments of a Python caller.
+    table: pairs of (keyword, value when missing). It takes the arguments after the positional ones, keyword objects and values,
+    and the keyword arguments of a Python caller, and gives the values in the order of ``table``; of equal keys the first counts.
     """
-    if not rest and not python:
-        return [missing for _, missing in table]
-    if len(rest) % 2:
-        return program_error("odd number of &KEY arguments")
-    given = {}
-    for index in range(0, len(rest), 2):
-        given.setdefault(rest[index], rest[index + 1])
-    for name, value in python.items():
-        given.setdefault(keyword(name.upper().replace("_", "-")), value)
-    values = [given.pop(key, missing) for key, missing in table]
-    if given and not allow_others:
-        allow = keyword("ALLOW-OTHER-KEYS")
-        if not truth(given.pop(allow, None)):
-            for key in given:
+    slots = {key: index for index, (key, _) in enumerate(table)}
+    missing = [value for _, value in table]
+    slot_of = slots.get
+    allow = keyword("ALLOW-OTHER-KEYS")
+
+    def parse(rest, python):
+        values = missing.copy()
+        for name, value in python.items():
+            rest = (*rest, keyword(name.upper().replace("_", "-")), value)
+        unknown = None
+        for index in range(len(rest) - 2, -1, -2):
+            try:
+                slot = slot_of(rest[index])
+            except TypeError:  # something that is no keyword and has no hash
+                slot = None
+            if slot is not None:
+                values[slot] = rest[index + 1]
+            elif rest[index] is not allow:
+                unknown = index
+        if len(rest) % 2:
+            return program_error("odd number of &KEY arguments")
+        if unknown is not None and not allow_others:
+            allowed = next((value for key, value in zip(rest[::2], rest[1::2]) if key is allow), None)
+            if not truth(allowed):
                 known = ", ".join(repr(key) for key, _ in table) or "none"
-                return program_error(f"unknown &KEY argument: ~S (the function takes {known})", key)
-    return values
+                return program_error(f"unknown &KEY argument: ~S (the function takes {known})", rest[unknown])
+        return values
+
+    return parse
 
 
 def dotted(*items):
@@ -190,8 +204,9 @@ NAMESPACE = {
     "Lone": one, "Ltruth": truth, "Lnot": not_, "Lvalue": value_of, "Lfdefinition": fdefinition, "Lsetf_function": setf_function,
     "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
-    "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield, "Lkeywords": keywords,
+    "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield, 
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
+    "Lunbound": UNBOUND, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
     "Lcharacter": Character, "Lfloat": float, "Lcomma": Comma,
     "Ladd2": arithmetic.add2, "Lsub2": arithmetic.sub2, "Lmul2": arithmetic.mul2, "Ldiv2": arithmetic.div2, "Llt2": arithmetic.lt2,

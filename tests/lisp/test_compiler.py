@@ -1,0 +1,173 @@
+"""What the compiler says to a wrong program, and what it keeps for tasks, tracebacks and deep recursion.
+
+What right programs mean is compared with SBCL in ``test_compiler_against_sbcl.py``.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from cramhy_runtime.lisp.conditions import CompileError, Condition
+from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.repl.session import condition_of
+
+
+@pytest.fixture
+def evaluate(session):
+    session.package = "CL-USER"
+
+    def run(text):
+        return " ; ".join(" ".join(prin1_to_string(value).split()) for value in session.evaluate_text(text))
+
+    return run
+
+
+MALFORMED = [
+    ("(let x 1)", "LET needs a list where it has X."),
+    ("(let (x . y) 1)", "LET needs a list where it has (X . Y)."),
+    ("(let ((x 1 2)) x)", "A binding is a variable or (variable value), not (X 1 2)."),
+    ("(let ((x 1) (x 2)) x)", "The variable X occurs more than once in the LET."),
+    ("(let ((nil 1)) 1)", "NIL cannot be bound: a variable must be a symbol that is no constant."),
+    ("(let ((:a 1)) 1)", ":A cannot be bound: a variable must be a symbol that is no constant."),
+    ("(let ((pi 3)) pi)", "The constant PI cannot be bound."),
+    ("(setq pi 3)", "PI cannot be assigned."),
+    ("(setq 5 1)", "5 cannot be assigned."),
+    ("(setq x)", "SETQ takes pairs of a variable and a value, but here it is (SETQ X)."),
+    ("(setf x)", "SETF takes pairs of a place and a value, but the last place of (SETF X) has no value."),
+    ("(setf 5 1)", "5 is no place that SETF can assign."),
+    ("(if)", "IF takes 2 to 3 parts, but here it is (IF)."),
+    ("(quote 1 2)", "QUOTE takes 1 part, but here it is (QUOTE 1 2)."),
+    ("(return-from nowhere 1)", "return for unknown block: NOWHERE"),
+    ("(return 1)", "return for unknown block: NIL"),
+    ("(go nowhere)", "attempt to GO to nonexistent tag: NOWHERE"),
+    ("(flet ((f)) 1)", "A local function is (name lambda-list . body), not (F)."),
+    ("(flet ((5 () 1)) 1)", "5 is no name of a function."),
+    ("(function when)", "WHEN names a macro, not a function, so #' cannot refer to it."),
+    ("(function 5)", "5 is no name of a function."),
+    ("(1 2)", "1 cannot be called: the head of a form must be a symbol or a lambda expression."),
+    ("((f) 2)", "(F) cannot be called: the head of a form must be a symbol or a lambda expression."),
+    ("(list . 5)", "The form (LIST . 5) ends in a dot."),
+    ("(list 1 . 5)", "The form (LIST 1 . 5) ends in a dot."),
+    ("(progn (declare (fixnum x)) 1)", None),
+    ("(lambda (a a) 1)", "The variable A occurs more than once in the lambda list."),
+    ("(lambda (&key a &optional b) 1)", "The lambda list (&KEY A &OPTIONAL B) is malformed: &OPTIONAL is misplaced or occurs twice."),
+    ("(lambda (&rest) 1)", "The lambda list (&REST) is malformed: a variable must follow &REST."),
+    ("(lambda (&rest a b) 1)", "The lambda list (&REST A B) is malformed: only one variable may follow &REST."),
+    ("(lambda ((a)) 1)", "The lambda list ((A)) is malformed: a parameter must be a symbol."),
+    ("(lambda (a . b) 1)", "The lambda list (A . B) is malformed: it ends in a dot."),
+    ("(symbol-macrolet ((x)) 1)", "A symbol macro is (name expansion), not (X)."),
+    ("(macrolet 5 1)", "MACROLET needs a list where it has 5."),
+    ("(eval-when 5 5)", "EVAL-WHEN needs a list where it has 5."),
+    ("(block 5 1)", "A block must be named by a symbol, not 5."),
+    ("(dolist (x) 1)", "The DOLIST form (DOLIST (X) 1) is malformed: it has the wrong number of parts, or a part is not a list."),
+    ("(push 1)", "The PUSH form (PUSH 1) is malformed: it has the wrong number of parts, or a part is not a list."),
+    ("(handler-case 1 2)", "The HANDLER-CASE form (HANDLER-CASE 1 2) is malformed: it has the wrong number of parts, or a part is not a list."),
+    ("(defun car (x) x)", "CAR belongs to Common Lisp and cannot be redefined as a function. Choose another name, or shadow the symbol with "
+                          "(:shadow #:car) in the package definition."),
+]
+
+
+@pytest.mark.parametrize(("text", "report"), MALFORMED)
+def test_a_malformed_form_is_a_compile_error_with_its_place(session, text, report):
+    session.package = "CL-USER"
+    with pytest.raises(CompileError) as caught:
+        session.evaluate_text(text)
+    assert caught.value.position[1:] == (1, 1) or report is None
+    assert report is None or " ".join(caught.value.report().split()) == report
+
+
+def test_the_place_is_that_of_the_innermost_form(session):
+    session.package = "CL-USER"
+    with pytest.raises(CompileError) as caught:
+        session.evaluate_text("(defun f (x)\n  (when x\n    (list 1\n          (return-from g 2))))")
+    assert caught.value.position[1:] == (4, 11)
+
+
+def test_a_compile_error_costs_nothing(evaluate):
+    with pytest.raises(CompileError):
+        evaluate("(defun broken (x) (let ((x 1 2)) x))")
+    assert evaluate("(fboundp 'broken)") == "NIL"
+    assert evaluate("(handler-case (eval '(let ((x 1 2)) x)) (program-error () 'caught))") == "CAUGHT"
+
+
+COUNTS = [
+    ("(defun two (a b) (list a b))", "(two 1)", "1", "two takes 2 arguments."),
+    ("(defun two (a b) (list a b))", "(two 1 2 3)", "3", "two takes 2 arguments."),
+    ("(defun opt (a &optional b) (list a b))", "(opt)", "0", "opt takes 1 to 2 arguments."),
+    ("(defun more (a &rest b) (list a b))", "(more)", "0", "more takes at least 1 argument."),
+    ("(defun none () 1)", "(none 1)", "1", "none takes 0 arguments."),
+]
+
+
+@pytest.mark.parametrize(("definition", "call", "given", "hint"), COUNTS)
+def test_a_wrong_number_of_arguments(evaluate, definition, call, given, hint):
+    evaluate(definition)
+    with pytest.raises((TypeError, Condition)) as caught:
+        evaluate(call)
+    condition = condition_of(caught.value)
+    assert (condition.report(), condition.hint.lower()) == (f"invalid number of arguments: {given}", hint)
+    assert evaluate(f"(handler-case {call} (program-error (c) (princ-to-string c)))") == f'"invalid number of arguments: {given}"'
+
+
+@pytest.mark.parametrize("call", ["(funcall (lambda (a b) a) 1)", "(flet ((loc (a b) (list a b))) (loc 1))", "(mapcar (lambda (a b) a) '(1))",
+                                  "(apply #'cons '(1))", "(let ((f (lambda (a b) a))) (block nil (funcall f 1)))"])
+def test_a_wrong_number_of_arguments_of_functions_without_a_name(evaluate, call):
+    assert evaluate(f"(handler-case {call} (program-error (c) (princ-to-string c)))") == '"invalid number of arguments: 1"'
+
+
+def test_recursion_is_as_deep_as_a_student_needs(evaluate):
+    evaluate("(defun deep (n) (if (= n 0) 0 (+ 1 (deep (- n 1)))))")
+    assert evaluate("(deep 4000)") == "4000"
+
+
+def test_endless_recursion_is_a_storage_condition(evaluate):
+    evaluate("(defun endless (n) (+ 1 (endless n)))")
+    assert evaluate("(handler-case (endless 1) (storage-condition () 'exhausted))") == "EXHAUSTED"
+    assert evaluate("(handler-case (endless 1) (error () 'error) (serious-condition () 'serious))") == "SERIOUS"
+    assert evaluate("(+ 1 1)") == "2"
+
+
+def test_a_special_variable_belongs_to_the_task_that_bound_it(session):
+    session.package = "CRAM-USER"
+    values = session.evaluate_text("""
+      (progn
+        (defvar *mine* 'global)
+        (let ((seen nil))
+          (top-level
+            (let ((*mine* 'outer))
+              (par
+                (let ((*mine* 'first)) (sleep 1) (push (list 1 *mine*) seen))
+                (let ((*mine* 'second)) (sleep 2) (push (list 2 *mine*) seen))
+                (progn (sleep 3) (push (list 3 *mine*) seen))))
+            (push *mine* seen))
+          (reverse seen)))""")
+    assert " ".join(prin1_to_string(values[0]).split()) == "((1 FIRST) (2 SECOND) (3 GLOBAL) GLOBAL)"
+
+
+def test_definitions_in_a_scope_at_top_level_are_known_to_the_next_form(evaluate):
+    assert evaluate("(macrolet ((def (n) `(defmacro ,n () ''hello))) (def greet) (greet))") == "HELLO"
+    assert evaluate("(locally (declare (optimize speed)) (defmacro five () 5) (five))") == "5"
+    assert evaluate("(symbol-macrolet ((a 1)) (defmacro six () 6) (list a (six)))") == "(1 6)"
+
+
+def test_a_lisp_name_may_be_any_name_of_python(evaluate):
+    assert evaluate("(let ((class 1) (def 2) (import 3) (none 5) (true 6) (lone 7) (k1 8) (int 9)) "
+                    "(list class def import none true lone k1 (+ int 1)))") == "(1 2 3 5 6 7 8 10)"
+    assert evaluate("(let ((|Lone| 1) (|K1| 2) (|Lpc| 3) (|Lexit| 4) (|Lint| 5)) "
+                    "(list |Lone| |K1| |Lpc| |Lexit| (+ |Lint| 1) (car (list (floor 7 2)))))") == "(1 2 3 4 6 3)"
+    assert evaluate("(let ((a-b 1) (a_b 2) (|a-b| 3)) (list a-b a_b |a-b|))") == "(1 2 3)"
+
+
+def test_eval_of_an_eval_when_for_the_compiler_only_does_nothing(evaluate):
+    assert evaluate("(eval-when (:compile-toplevel) (error \"no\"))") == "NIL"
+
+
+def test_python_sees_the_lines_of_lisp_in_a_traceback(session):
+    import traceback
+
+    session.package = "CL-USER"
+    session.evaluate_text("(defun outer (x)\n  (inner x))\n(defun inner (x)\n  (car x))")
+    with pytest.raises(Condition) as caught:
+        session.evaluate_text("(outer 5)")
+    lines = [(frame.name, frame.lineno) for frame in traceback.extract_tb(caught.value.__traceback__) if frame.filename.startswith("<repl")]
+    assert ("outer", 2) in lines and ("inner", 4) in lines

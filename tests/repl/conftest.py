@@ -1,0 +1,77 @@
+"""A REPL to type into: the console with scripted lines, in virtual time, in this process or as a program of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+class Script:
+    """Input for a console: the lines of a text."""
+
+    interactive = False
+
+    def __init__(self, text):
+        self.lines = text.splitlines()
+
+    def line(self, prompt):
+        from cramhy_runtime.lisp import streams
+
+        if not self.lines:
+            return None
+        line = self.lines.pop(0)
+        streams.CONSOLE_OUTPUT.fresh_line()
+        streams.CONSOLE_OUTPUT.write(f"{prompt}{line}\n")
+        return line
+
+
+@pytest.fixture
+def type_in(capsys):
+    """``type_in(lines)``: what the console shows, the typed lines included. It begins in CRAM-USER, without the turtle."""
+    from cramhy_runtime.lisp import streams
+    from cramhy_runtime.repl.console import Console
+    from cramhy_runtime.repl.session import Session
+
+    def type_in(text, **options):
+        def session():
+            made = Session(time="virtual", **{"turtlesim": False, **options})
+            made.package = "CRAM-USER"
+            return made
+
+        errors = streams.ERROR_OUTPUT.value
+        try:
+            type_in.status = Console(session, Script(text)).run()
+        finally:
+            streams.ERROR_OUTPUT.value = errors
+        return capsys.readouterr().out
+
+    return type_in
+
+
+@pytest.fixture
+def cramhy(tmp_path):
+    """``cramhy("run", "x.lisp")``: the finished process of that command in a folder of its own."""
+    def cramhy(*arguments, input="", text=True):
+        done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", *arguments], cwd=tmp_path, input=input, text=text,
+                              capture_output=True, env=environment(), timeout=120)
+        return done
+
+    return cramhy
+
+
+def environment():
+    kept = {key: value for key, value in os.environ.items() if key != "ROS_PACKAGE_PATH"}
+    return {**kept, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}"}
+
+
+@pytest.fixture(params=["threads", "greenlet"])
+def backend(request):
+    if request.param == "greenlet":
+        pytest.importorskip("greenlet")
+    return request.param

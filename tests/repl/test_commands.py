@@ -1,0 +1,173 @@
+"""``cramhy run``, ``cramhy eval`` and ``cramhy ros-shims`` as programs: their answers, messages and exit statuses."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+
+import pytest
+
+BAD_REQUEST = {"output": "", "values": [], "error": {
+    "type": "CRAMHY::BAD-REQUEST", "message": 'Not understood: a line must be a JSON object {"form": "..."}.', "restarts": ["ABORT"]}}
+
+
+class TestRun:
+    def test_a_file_that_runs_has_status_0(self, cramhy, tmp_path):
+        (tmp_path / "good.lisp").write_text('(format t "hello~%")')
+        done = cramhy("run", "good.lisp", "--time", "virtual", "--eval", "(print 5)")
+        assert (done.returncode, done.stdout, done.stderr) == (0, "hello\n\n5 ", "")
+
+    def test_an_unhandled_error_has_status_1_and_a_message(self, cramhy, tmp_path):
+        (tmp_path / "bad.lisp").write_text('(princ "first")\n(list\n  (car 5))\n(princ "never")')
+        done = cramhy("run", "bad.lisp", "--time", "virtual")
+        assert (done.returncode, done.stdout) == (1, "first\n")
+        assert done.stderr == ("cramhy: TYPE-ERROR\n  The value\n    5\n  is not of type\n    LIST\n  when binding LIST\n  at bad.lisp:3:3\n"
+                               "      (car 5))\n      ^\n")
+
+    def test_a_failed_plan_has_status_1_and_a_message(self, cramhy, tmp_path):
+        (tmp_path / "bad.lisp").write_text('(in-package :cram-user)\n(top-level (fail "Lost."))')
+        done = cramhy("run", "bad.lisp", "--time", "virtual")
+        assert done.returncode == 1
+        assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at bad.lisp:2:12\n")
+
+    def test_hy_files_and_systems_run_too(self, cramhy, tmp_path):
+        (tmp_path / "plan.hy").write_text("(require cramhy *)\n(in-package :cram-user)\n(print (top-level (par 1 2)))")
+        (tmp_path / "my-system.asd").write_text('(defsystem my-system :components ((:file "plan")))')
+        (tmp_path / "plan.lisp").write_text("(print :loaded)")
+        assert cramhy("run", "plan.hy", "--time", "virtual").stdout == "\n1 "
+        assert cramhy("run", "my-system.asd", "--time", "virtual").stdout == "\n:LOADED "
+
+    def test_exit_gives_the_status(self, cramhy, tmp_path):
+        (tmp_path / "leave.lisp").write_text("(exit :code 7)")
+        assert cramhy("run", "leave.lisp").returncode == 7
+
+    @pytest.mark.parametrize(("name", "message"), [
+        ("none.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/none.lisp: No such file or directory.\n"),
+        ("folder.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/folder.lisp: Is a directory.\n"),
+        ("note.txt", "cramhy: FILE-ERROR\n  Cannot load note.txt: what is loaded is a .lisp, .hy or .asd file, or a system by its name.\n"),
+        ("latin.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/latin.lisp: it is no UTF-8 text (line 2, byte 9 of the file). "
+                       "Save it as UTF-8.\n"),
+    ])
+    def test_what_cannot_be_loaded(self, cramhy, tmp_path, name, message):
+        (tmp_path / "folder.lisp").mkdir()
+        (tmp_path / "note.txt").write_text("hello")
+        (tmp_path / "latin.lisp").write_bytes(b'1\n(print "\xe9")')
+        done = cramhy("run", name)
+        assert (done.returncode, done.stdout, done.stderr) == (1, "", message.format(folder=tmp_path))
+
+    def test_files_from_windows_are_read(self, cramhy, tmp_path):
+        (tmp_path / "bom.lisp").write_bytes(b'\xef\xbb\xbf(princ "a\r\nb")\r\n; end\r\n')
+        assert cramhy("run", "bom.lisp").stdout == "a\nb"
+
+    def test_a_file_with_nul_bytes_is_an_error(self, cramhy, tmp_path):
+        (tmp_path / "nul.lisp").write_bytes(b"(princ 1)\n\0\0\n(princ 2)")
+        done = cramhy("run", "nul.lisp")
+        assert done.returncode == 1 and "is unbound" in done.stderr
+
+    def test_a_run_that_never_ends_is_ended_by_its_time_limit(self, cramhy, tmp_path):
+        (tmp_path / "endless.lisp").write_text("(in-package :cram-user)\n(top-level (loop (sleep 1)))")
+        done = cramhy("run", "endless.lisp", "--time", "virtual", "--time-limit", "60")
+        assert done.returncode == 1
+        assert done.stderr.startswith("cramhy: CRAMHY::TIME-LIMIT\n  The run reached its time limit of 60 s.\n")
+
+
+@pytest.fixture
+def answers(cramhy):
+    """The answers of ``cramhy eval`` to lines; a line that is no text of JSON is wrapped into a request."""
+    def answers(*forms, options=()):
+        lines = [form if form[:1] in ("{", "[", '"') and form[-1:] in "}]\"" and "form" in form[:8] else json.dumps({"form": form})
+                 for form in forms]
+        done = cramhy("eval", *options, input="\n".join(lines))
+        assert done.returncode == 0, done.stderr
+        return [json.loads(line) for line in done.stdout.splitlines()]
+
+    return answers
+
+
+class TestEval:
+    @pytest.mark.parametrize("line", ["nonsense", '{"form": 3}', '{"from": "3"}', "[1]", '"x"', "null", '{"form": "1"', "[" * 100000])
+    def test_a_line_that_is_no_request_gets_an_error_and_the_next_is_read(self, cramhy, line):
+        done = cramhy("eval", input=f'{line}\n\n{{"form": "(+ 1 2)"}}\n')
+        assert [json.loads(answer) for answer in done.stdout.splitlines()] == [
+            BAD_REQUEST, {"output": "", "values": ["3"], "error": None}]
+        assert (done.returncode, done.stderr) == (0, "")
+
+    def test_binary_garbage_gets_an_error_too(self, cramhy):
+        done = cramhy("eval", input=b'\xff\xfe\x00\x80 garbage\n{"form": "(+ 1 2)"}\n', text=False)
+        assert [json.loads(answer)["values"] for answer in done.stdout.splitlines()] == [[], ["3"]]
+
+    def test_the_values_of_the_last_form_and_all_output(self, answers):
+        assert answers('(princ "a") (princ "b") (values 1 :two)', "", ";only a comment") == [
+            {"output": "ab", "values": ["1", ":TWO"], "error": None}] + [{"output": "", "values": [], "error": None}] * 2
+
+    def test_a_form_that_prints_and_fails(self, answers):
+        (answer,) = answers('(progn (princ "before") (/ 1 0))')
+        assert answer["error"]["type"] == "DIVISION-BY-ZERO" and answer["error"]["output"] == "before"
+        assert answer["error"]["restarts"] == ["ABORT"] and answer["values"] == []
+
+    def test_the_end_inside_a_string_or_a_list(self, answers):
+        first, second = answers('(list "abc', "(list 1 (list 2)")
+        assert first["error"]["type"] == second["error"]["type"] == "END-OF-FILE"
+        assert second["error"]["hint"] == "The ( at line 1, column 1 is never closed."
+
+    def test_forms_do_not_read_the_requests(self, answers):
+        first, second = answers("(read-line)", "(+ 1 2)")
+        assert first["error"]["type"] == "END-OF-FILE" and second["values"] == ["3"]
+
+    def test_huge_forms(self, answers):
+        text = "x" * 5_000_000
+        length, nested, deep, after = answers(f'(length "{text}")', "'" + "(" * 20000 + ")" * 20000, "(+ 1 " * 20000 + ")" * 20000, "5")
+        assert length["values"] == ["5000000"] and after["values"] == ["5"]
+        assert nested["error"]["type"] == "STORAGE-CONDITION"
+        assert deep["error"]["message"] == "The form is nested too deeply to be compiled."
+
+    def test_a_form_that_never_ends_and_the_next(self, answers):
+        first, second, third = answers("(loop)", "(loop (sleep 1))", "(+ 1 2)", options=("--time-limit", "10", "--package", "cram-user"))
+        assert first["error"]["type"] == second["error"]["type"] == "CRAMHY::TIME-LIMIT" and third["values"] == ["3"]
+        assert "main waits for the time 1" in second["error"]["message"]
+
+    def test_a_seed_makes_random_numbers_the_same(self, answers):
+        forms = ["(list (random 1000000) (random 1000000))"]
+        assert answers(*forms, options=("--seed", "5")) == answers(*forms, options=("--seed", "5"))
+        assert answers(*forms, options=("--seed", "5")) != answers(*forms, options=("--seed", "6"))
+
+    @pytest.mark.parametrize(("options", "message"), [
+        (("--load", "no-such-system"), 'cramhy: ASDF::MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
+        (("--package", "no-such-package"), 'cramhy: SB-EXT:PACKAGE-DOES-NOT-EXIST\n  The name "NO-SUCH-PACKAGE" does not designate any package'),
+        (("--eval", "(+ 1"), "cramhy: END-OF-FILE\n"),
+        (("--eval", '(cpl:fail "x")'), "cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n"),
+    ])
+    def test_options_that_cannot_be_followed(self, cramhy, options, message):
+        done = cramhy("eval", *options, input='{"form": "1"}')
+        assert (done.returncode, done.stdout) == (1, "") and done.stderr.startswith(message)
+
+
+class TestShims:
+    def test_the_functions_are_shell(self, cramhy, tmp_path):
+        done = cramhy("ros-shims")
+        assert done.returncode == 0 and "roscd() {" in done.stdout and "rosservice() {" in done.stdout
+        for shell in ("bash", "dash"):
+            if shutil.which(shell):
+                assert subprocess.run([shell, "-n"], input=done.stdout, text=True, capture_output=True).stderr == ""
+
+    def test_they_are_installed_into_a_folder(self, cramhy, tmp_path):
+        assert cramhy("ros-shims", "--install", str(tmp_path / "bin")).returncode == 0
+        roscore = tmp_path / "bin" / "roscore"
+        assert os.access(roscore, os.X_OK)
+        from .conftest import environment
+
+        done = subprocess.run([roscore], capture_output=True, text=True, env=environment())
+        assert (done.returncode, done.stdout) == (0, "No master is needed: the ROS graph lives in the process of roslisp_repl.\n")
+        assert cramhy("ros-shims", "--install", str(tmp_path / "bin")).returncode == 0  # over our own, once more
+
+    def test_a_real_ros_on_the_path_is_left_alone(self, cramhy, tmp_path, monkeypatch):
+        real = tmp_path / "real"
+        real.mkdir()
+        (real / "roscore").write_text("#!/bin/sh\necho real\n")
+        (real / "roscore").chmod(0o755)
+        monkeypatch.setenv("PATH", f"{real}{os.pathsep}{os.environ['PATH']}")
+        done = cramhy("ros-shims")
+        assert "a ROS is installed here" in done.stderr and "roscore" in done.stderr
+        assert "roscore()" not in done.stdout and "catkin_make()" in done.stdout

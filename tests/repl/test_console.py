@@ -1,0 +1,184 @@
+"""The console: prompts, values, and the debugger, as they are shown."""
+
+from __future__ import annotations
+
+ABORT = """\
+restarts (type a number to choose one, or a form to evaluate):
+  0: [ABORT] Exit debugger, returning to top level.
+"""
+
+
+def shown(expected, transcript):
+    assert transcript.rstrip("\n") == expected.rstrip("\n")
+
+
+def test_the_prompt_is_the_shortest_name_of_the_package(type_in):
+    shown("""\
+CPL-USER> (in-package :cl-user)
+#<PACKAGE "COMMON-LISP-USER">
+CL-USER> (defpackage :my-plans (:nicknames :mine) (:use :cpl))
+#<PACKAGE "MY-PLANS">
+CL-USER> (in-package :my-plans)
+#<PACKAGE "MY-PLANS">
+MINE>""", type_in("(in-package :cl-user)\n(defpackage :my-plans (:nicknames :mine) (:use :cpl))\n(in-package :my-plans)\n") + "MINE>")
+
+
+def test_values_come_one_a_line(type_in):
+    shown("""\
+CPL-USER> (values 1 "two" #\\3)
+1
+"two"
+#\\3
+CPL-USER> (values)
+; No value
+CPL-USER> (list cl:* 'nil)
+(1 NIL)""", type_in('(values 1 "two" #\\3)\n(values)\n(list cl:* \'nil)\n'))
+
+
+def test_a_form_may_have_many_lines_and_comments(type_in):
+    shown("""\
+CPL-USER> (+ 1 ; one
+   #| two
+      (( |#
+   2)
+3
+CPL-USER> ; nothing
+CPL-USER> "a (
+b"
+"a (
+b\"""", type_in('(+ 1 ; one\n   #| two\n      (( |#\n   2)\n; nothing\n"a (\nb"\n'))
+
+
+def test_several_forms_on_a_line_are_evaluated_in_turn(type_in):
+    shown("CPL-USER> 1 (+ 1 1) :three\n1\n2\n:THREE", type_in("1 (+ 1 1) :three"))
+
+
+def test_what_is_printed_and_warnings_stand_in_the_transcript(type_in):
+    shown("""\
+CPL-USER> (progn (format t "no newline") (warn "careful with ~a" 3) 5)
+no newline
+WARNING: careful with 3
+5""", type_in('(progn (format t "no newline") (warn "careful with ~a" 3) 5)'))
+
+
+def test_an_unmatched_parenthesis_is_a_warning(type_in):
+    shown("""\
+CPL-USER> (+ 1 2))
+3
+STYLE-WARNING: unmatched close parenthesis at <repl 1>:1:8, ignored
+CPL-USER> 4
+4""", type_in("(+ 1 2))\n4"))
+
+
+def test_an_error_opens_the_debugger_and_a_number_leaves_it(type_in):
+    shown(f"""\
+CPL-USER> (list 1 (car 2))
+
+debugger invoked on a TYPE-ERROR:
+  The value
+    2
+  is not of type
+    LIST
+  when binding LIST
+  at <repl 1>:1:9
+    (list 1 (car 2))
+            ^
+
+{ABORT}0] 1
+There is no choice 1; they go from 0 to 0.
+0] 0
+CPL-USER> 5
+5""", type_in("(list 1 (car 2))\n1\n0\n5"))
+
+
+def test_restarts_are_chosen_by_name_too(type_in):
+    text = type_in('(restart-case (error "stuck") (go-round (n) :report "Go round." :interactive (lambda () (list 9)) n))\n:go-round\n'
+                   '(cerror "Go on." "stopped")\n:continue\n(no-such-function)\n:return-nothing\n')
+    assert "  0: [GO-ROUND] Go round.\n  1: [ABORT   ] Exit debugger, returning to top level.\n0] :go-round\n9\n" in text
+    assert "  0: [CONTINUE] Go on.\n" in text and "0] :continue\nNIL\n" in text
+    assert text.endswith("0] :return-nothing\n; No value\n")
+
+
+def test_forms_are_evaluated_in_the_debugger_and_errors_there_nest(type_in):
+    text = type_in("(car 1)\n(+ 40 2)\n(car 2)\n:abort\n(list 'still 'here)\n0\n5")
+    assert "0] (+ 40 2)\n42\n0] (car 2)\n" in text
+    assert ("  0: [ABORT] Return to debugger level 0.\n  1: [ABORT] Exit debugger, returning to top level.\n1] :abort\n"
+            "0] (list 'still 'here)\n(STILL HERE)\n0] 0\nCPL-USER> 5\n5\n") in text
+
+
+def test_the_outermost_restart_leaves_all_levels(type_in):
+    assert type_in("(car 1)\n(car 2)\n(car 3)\n2\n5").endswith("2] 2\nCPL-USER> 5\n5\n")
+
+
+def test_the_debugger_runs_before_anything_unwinds(type_in):
+    text = type_in('(defvar *n* 1)\n(unwind-protect (let ((*n* 2)) (error "stop")) (print :unwound))\n*n*\n0\n*n*')
+    assert "0] *n*\n2\n0] 0\n\n:UNWOUND \nCPL-USER> *n*\n1\n" in text
+
+
+def test_the_end_of_input_leaves_the_debugger_and_the_console(type_in):
+    assert type_in("(car 1)\n(car 2)").endswith("  1: [ABORT] Exit debugger, returning to top level.\n")
+    assert type_in.status == 0
+
+
+def test_the_end_of_input_inside_a_form_is_an_error_with_its_place(type_in):
+    shown(f"""\
+CPL-USER> (list 1
+  (list 2)
+
+debugger invoked on a END-OF-FILE:
+  end of file on #<SB-SYS:FD-STREAM {{1001000043}}>
+  at <repl 1>:1:1
+  (list 1
+  ^
+  The ( at line 1, column 1 is never closed.
+
+{ABORT}""", type_in("(list 1\n  (list 2)"))
+
+
+def test_a_failure_of_a_branch_is_shown_with_its_own_place(type_in, backend):
+    shown(f"""\
+CPL-USER> (top-level
+  (par (sleep 1)
+       (fail "No ~a." 'cup)))
+
+debugger invoked on a CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE:
+  No CUP.
+  at <repl 1>:3:8
+           (fail "No ~a." 'cup)))
+           ^
+
+{ABORT}0] 0""", type_in('(top-level\n  (par (sleep 1)\n       (fail "No ~a." \'cup)))\n0', backend=backend))
+
+
+def test_a_plan_form_outside_of_a_plan_says_what_to_write(type_in):
+    shown(f"""\
+CPL-USER> (par 1)
+
+debugger invoked on a SIMPLE-ERROR:
+  'PAR' form not inside a plan.
+  at <repl 1>:1:1
+    (par 1)
+    ^
+  Plan forms run inside of a plan: write (top-level (par ...)).
+
+{ABORT}0] 0""", type_in("(par 1)\n0"))
+
+
+def test_a_plan_that_waits_for_ever_says_what_it_waits_for(type_in, backend):
+    text = type_in("(defvar *door* (make-fluent :name :door))\n(top-level (wait-for *door*))\n0\n5", backend=backend)
+    assert "debugger invoked on a CRAMHY::DEADLOCK:" in text
+    assert "waits for the fluent #<FLUENT DOOR [NIL]>\n        at <repl 2>:1:12\n" in text
+    assert text.endswith("CPL-USER> 5\n5\n")
+
+
+def test_quit_leaves_with_a_status(type_in):
+    assert type_in("(cl-user::exit :code 3)\n5") == "CPL-USER> (cl-user::exit :code 3)\n"
+    assert type_in.status == 3
+    type_in("(in-package :cl-user)\n(quit)")
+    assert type_in.status == 0
+
+
+def test_the_same_seed_gives_the_same_random_numbers(type_in):
+    first = type_in("(list (random 1000000) (random 1000000))", seed=5)
+    assert type_in("(list (random 1000000) (random 1000000))", seed=5) == first
+    assert type_in("(list (random 1000000) (random 1000000))", seed=6) != first
