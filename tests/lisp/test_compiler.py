@@ -22,6 +22,7 @@ def evaluate(session):
     return run
 
 
+SHAPE = "malformed: it has the wrong number of parts, or a part is not a list."
 MALFORMED = [
     ("(let x 1)", "LET needs a list where it has X."),
     ("(let (x . y) 1)", "LET needs a list where it has (X . Y)."),
@@ -59,11 +60,11 @@ MALFORMED = [
     ("(macrolet 5 1)", "MACROLET needs a list where it has 5."),
     ("(eval-when 5 5)", "EVAL-WHEN needs a list where it has 5."),
     ("(block 5 1)", "A block must be named by a symbol, not 5."),
-    ("(dolist (x) 1)", "The DOLIST form (DOLIST (X) 1) is malformed: it has the wrong number of parts, or a part is not a list."),
-    ("(push 1)", "The PUSH form (PUSH 1) is malformed: it has the wrong number of parts, or a part is not a list."),
-    ("(handler-case 1 2)", "The HANDLER-CASE form (HANDLER-CASE 1 2) is malformed: it has the wrong number of parts, or a part is not a list."),
-    ("(defun car (x) x)", "CAR belongs to Common Lisp and cannot be redefined as a function. Choose another name, or shadow the symbol with "
-                          "(:shadow #:car) in the package definition."),
+    ("(dolist (x) 1)", f"The DOLIST form (DOLIST (X) 1) is {SHAPE}"),
+    ("(push 1)", f"The PUSH form (PUSH 1) is {SHAPE}"),
+    ("(handler-case 1 2)", f"The HANDLER-CASE form (HANDLER-CASE 1 2) is {SHAPE}"),
+    ("(defun car (x) x)", "CAR belongs to Common Lisp and cannot be redefined as a function. Choose another name, or shadow the "
+                          "symbol with (:shadow #:car) in the package definition."),
 ]
 
 
@@ -109,8 +110,10 @@ def test_a_wrong_number_of_arguments(evaluate, definition, call, given, hint):
     assert evaluate(f"(handler-case {call} (program-error (c) (princ-to-string c)))") == f'"invalid number of arguments: {given}"'
 
 
-@pytest.mark.parametrize("call", ["(funcall (lambda (a b) a) 1)", "(flet ((loc (a b) (list a b))) (loc 1))", "(mapcar (lambda (a b) a) '(1))",
-                                  "(apply #'cons '(1))", "(let ((f (lambda (a b) a))) (block nil (funcall f 1)))"])
+@pytest.mark.parametrize("call", [
+    "(funcall (lambda (a b) a) 1)", "(flet ((loc (a b) (list a b))) (loc 1))", "(mapcar (lambda (a b) a) '(1))", "(apply #'cons '(1))",
+    "(let ((f (lambda (a b) a))) (block nil (funcall f 1)))",
+])
 def test_a_wrong_number_of_arguments_of_functions_without_a_name(evaluate, call):
     assert evaluate(f"(handler-case {call} (program-error (c) (princ-to-string c)))") == '"invalid number of arguments: 1"'
 

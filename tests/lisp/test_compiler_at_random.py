@@ -39,8 +39,8 @@ def programs(draw, names=Names(), depth=4):
     if depth <= 0:
         kind = draw(st.sampled_from(simple))
     else:
-        kinds = simple + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and or
-            remember values tagbody < do""".split()
+        kinds = simple + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and
+            or remember values tagbody < do""".split()
         kinds += ["setq"] * 4 * bool(names.variables) + ["return-from"] * 3 * bool(names.blocks)
         kinds += ["call"] * 2 * bool(names.functions) + ["throw"] * bool(names.tags)
         kind = draw(st.sampled_from(kinds))
@@ -70,9 +70,8 @@ def programs(draw, names=Names(), depth=4):
             return ("dolist", (new, ("list", *body())), *body(names.plus(variables=(new,), blocks=("nil",))))
         case "do":
             inner = names.plus(variables=("i",), blocks=("nil",))
-            free = Names(names.variables, names.blocks, names.functions, names.tags)
-            return ("let", (("k", 0),), ("do", (("i", 0, ("setq", "k", ("+", "k", 1))),), ((">=", "k", 2), expression(inner)), *body(inner)),
-                    draw(programs(free, 0)))
+            counting = ("i", 0, ("setq", "k", ("+", "k", 1)))
+            return ("let", (("k", 0),), ("do", (counting,), ((">=", "k", 2), expression(inner)), *body(inner)), draw(programs(names, 0)))
         case "block":
             name = draw(st.sampled_from("pq"))
             return ("block", name, *body(names.plus(blocks=(name,))))
@@ -97,9 +96,11 @@ def programs(draw, names=Names(), depth=4):
         case "values":
             return ("multiple-value-bind", (new, "d"), ("values", *body()), *body(names.plus(variables=(new, "d"))))
         case "tagbody":
-            return ("let", (("e", 0),), ("tagbody", ("setq", "e", ("+", "e", 1)), expression(), "again", ("setq", "e", ("+", "e", 1)), expression(),
-                                         ("if", ("<", "e", draw(st.integers(0, 4))), ("go", "again")),
-                                         ("if", expression(), ("funcall", ("lambda", (), ("go", "end")))), expression(), "end"), "e")
+            step = ("setq", "e", ("+", "e", 1))
+            back = ("if", ("<", "e", draw(st.integers(0, 4))), ("go", "again"))
+            onward = ("if", expression(), ("funcall", ("lambda", (), ("go", "end"))))
+            parts = (step, expression(), "again", step, expression(), back, onward, expression(), "end")
+            return ("let", (("e", 0),), ("tagbody", *parts), "e")
 
 
 # --------------------------------------------------------------------------------------------------------- the interpreter

@@ -23,7 +23,8 @@ def module(tmp_path, session, monkeypatch):
     home = tmp_path / name
     home.mkdir()
     (home / f"{name}.asd").write_text(f'(defsystem {name} :components ((:file "package") (:file "code")))')
-    (home / "package.lisp").write_text(f'(defpackage {name} (:nicknames {name}-short) (:use :cl) (:documentation "A package.") (:export #:area))')
+    (home / "package.lisp").write_text(
+        f'(defpackage {name} (:nicknames {name}-short) (:use :cl) (:documentation "A package.") (:export #:area))')
     (home / "code.lisp").write_text(f"""
 (in-package :{name})
 (defvar *speed* 1.5)

@@ -180,7 +180,8 @@ def test_definitions_of_all_kinds_work_from_a_kept_file(folder, compiled):
           (block nil (mapc (lambda (x) (when (= x 2) (return x))) '(1 2 3))))))
 (defparameter *result* (result))
 """)
-    wanted = ('((1 5 2 NIL 10 1) (2 5 3 T 10 1) #S(KEPT-TEST::POINT :X 1 :Y 2) (KEPT-TEST::NEW 2) T NIL (:THING 1 2) "bad 3" "documented" 2)')
+    wanted = ('((1 5 2 NIL 10 1) (2 5 3 T 10 1) #S(KEPT-TEST::POINT :X 1 :Y 2) (KEPT-TEST::NEW 2) T NIL (:THING 1 2) "bad 3" '
+              '"documented" 2)')
     loader.load_file(path)
     assert " ".join(prin1_to_string(sym("KEPT-TEST::*RESULT*").value).split()) == wanted
     before = compiled[0]

@@ -179,9 +179,10 @@ def test_circles_of_files_and_of_systems(workspace):
     assert workspace.load("one") == ["x"]
 
 
-@pytest.mark.parametrize("options", [':components', ':components ("x")', ':components ((:file))', ':components ((:file "a" :depends-on ("q")))',
-                                     ':components 5', ':depends-on 5', ':depends-on "text"', ':components ((:file "a" . 5))', '5 5',
-                                     ':components ((5 5))', ':components ((:file 5))'])
+@pytest.mark.parametrize("options", [
+    ":components", ':components ("x")', ":components ((:file))", ':components ((:file "a" :depends-on ("q")))', ":components 5",
+    ":depends-on 5", ':depends-on "text"', ':components ((:file "a" . 5))', "5 5", ":components ((5 5))", ":components ((:file 5))",
+])
 def test_malformed_definitions_are_errors_of_the_user(workspace, options):
     workspace.system("broken", options, ["a.lisp"])
     problem = text_of(lambda: workspace.load("broken"))

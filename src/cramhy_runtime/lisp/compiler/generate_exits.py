@@ -77,8 +77,7 @@ class ExitGenerator:
             self.emit(symbol_model("continue" if again else "break"))
             return
         code = self.jump_codes.setdefault(target, len(self.jump_codes) + 1)
-        self.scope.uses_exit = True
-        self.exits_set += 1
+        self.scope.exits_set += 1
         self.assign("Lexit", models.Integer(code))
         inner.exits[target] = code
         self.emit(symbol_model("break"))
@@ -120,7 +119,8 @@ class ExitGenerator:
                 symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), target))]
         loop = expression(symbol_model("while"), TRUE, *parts)
         if tagbody.escapes:
-            self.emit(symbol_model("try"), loop, expression(symbol_model("finally"), self.call("end_block", self.reference(tagbody.variable))))
+            end = self.call("end_block", self.reference(tagbody.variable))
+            self.emit(symbol_model("try"), loop, expression(symbol_model("finally"), end))
         else:
             self.out.append(loop)
             self.effects += 1
@@ -148,9 +148,9 @@ class ExitGenerator:
     def UnwindProtect(self, node, destination):
         def produce(inner):
             statements, _ = self.captured(lambda: self.gen(node.body, inner))
-            before = self.exits_set
+            before = self.scope.exits_set
             cleanup, _ = self.captured(lambda: self.gen(node.cleanup, EFFECT))
-            if self.exits_set != before:  # the cleanup must not forget the exit that it was entered by
+            if self.scope.exits_set != before:  # the cleanup must not forget the exit that it was entered by
                 saved = self.temporary("Lsaved")
                 cleanup = [self.setting(saved, symbol_model("Lexit")), *cleanup, self.setting("Lexit", symbol_model(saved))]
             shielded = expression(symbol_model("with"), models.List([symbol_model("_"), self.call("shield")]), *(cleanup or [NONE]))

@@ -30,7 +30,6 @@ class FunctionGenerator:
             name = self.scope.unique(python_name(symbol_name(base)) if base is not None else "Lfunction")
         saved = self.out, self.frames, self.scope
         self.out, self.frames, self.scope = [], [], node.scope
-        node.scope.uses_exit = False
         outer_before, self.before = self.before, []
         parameters = self.parameters(node)
         before, self.before = self.before, outer_before
@@ -43,7 +42,7 @@ class FunctionGenerator:
         names = [symbol_model(variable.name) for variable in scope.nonlocals if not variable.boxed]
         if names:
             header.append(expression(symbol_model("nonlocal"), *names))
-        if scope.uses_exit:
+        if scope.exits_set:
             header.append(self.setting("Lexit", models.Integer(0)))
         simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == symbol_model("return")
         if simple:

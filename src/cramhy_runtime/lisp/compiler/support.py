@@ -204,7 +204,7 @@ NAMESPACE = {
     "Lone": one, "Ltruth": truth, "Lnot": not_, "Lvalue": value_of, "Lfdefinition": fdefinition, "Lsetf_function": setf_function,
     "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
-    "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield, 
+    "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
