@@ -23,7 +23,8 @@ class TestRun:
         (tmp_path / "bad.lisp").write_text('(princ "first")\n(list\n  (car 5))\n(princ "never")')
         done = cramhy("run", "bad.lisp", "--time", "virtual")
         assert (done.returncode, done.stdout) == (1, "first\n")
-        assert done.stderr == ("cramhy: TYPE-ERROR\n  The value\n    5\n  is not of type\n    LIST\n  when binding LIST\n  at bad.lisp:3:3\n"
+        assert done.stderr == ("cramhy: TYPE-ERROR\n  The value\n    5\n  is not of type\n    LIST\n  when binding LIST\n"
+                               "  at bad.lisp:3:3\n"
                                "      (car 5))\n      ^\n")
 
     def test_a_failed_plan_has_status_1_and_a_message(self, cramhy, tmp_path):
@@ -135,7 +136,7 @@ class TestEval:
 
     @pytest.mark.parametrize(("options", "message"), [
         (("--load", "no-such-system"), 'cramhy: ASDF::MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
-        (("--package", "no-such-package"), 'cramhy: SB-EXT:PACKAGE-DOES-NOT-EXIST\n  The name "NO-SUCH-PACKAGE" does not designate any package'),
+        (("--package", "no-such-package"), 'cramhy: SB-EXT:PACKAGE-DOES-NOT-EXIST\n  The name "NO-SUCH-PACKAGE" does not designate any'),
         (("--eval", "(+ 1"), "cramhy: END-OF-FILE\n"),
         (("--eval", '(cpl:fail "x")'), "cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n"),
     ])

@@ -14,7 +14,8 @@ BUSY = "a plan of which one branch is busy and one sleeps"
 FORMS = {
     "a loop": "(unwind-protect (progn (print :running) (loop)) (print :cleaned))",
     BUSY: "(top-level (unwind-protect (par (progn (print :running) (loop)) (sleep 1000000)) (print :cleaned)))",
-    "a plan that waits": "(top-level (unwind-protect (par (progn (print :running) (loop (sleep 0.01))) (wait-for (make-fluent))) (print :cleaned)))",
+    "a plan that waits": "(top-level (unwind-protect (par (progn (print :running) (loop (sleep 0.01))) (wait-for (make-fluent))) "
+                         "(print :cleaned)))",
 }
 
 

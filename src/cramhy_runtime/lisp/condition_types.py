@@ -12,6 +12,7 @@ import re
 from cramhy_runtime import kernel
 
 from .data import UNBOUND, Cons
+from .late import late
 from .packages import is_symbol, printed, symbol_name
 
 __all__ = []
@@ -26,16 +27,13 @@ def formatted(control, arguments):
     """The text of a format control (string or function) with ``arguments``."""
     if not arguments and isinstance(control, str) and "~" not in control:
         return control
-    from .format import format_to_string
 
-    return format_to_string(control, *arguments)
+    return late.format_to_string(control, *arguments)
 
 
 def shown(obj):
     """``obj`` as ``prin1`` prints it, for messages."""
-    from .printer import prin1_to_string
-
-    return prin1_to_string(obj)
+    return late.prin1_to_string(obj)
 
 
 def shown_with(obj, package):
@@ -63,9 +61,7 @@ class Condition(BaseException):
 
     def report(self):
         """The text for the user."""
-        from .classes import class_name
-
-        return f"Condition {printed(class_name(type(self)))} was signalled."
+        return f"Condition {printed(late.class_name(type(self)))} was signalled."
 
     def __str__(self):
         try:
@@ -398,9 +394,7 @@ class TimeLimit(RunEnded):
 
 
 def _class_symbol(cls):
-    from .classes import class_name
-
-    return class_name(cls)
+    return late.class_name(cls)
 
 
 _ARITY = re.compile(r"^(?P<name>.*)\(\) (?:takes (?:from )?\d+(?: to \d+)? positional arguments? but (?P<given>\d+) (?:was|were) given"

@@ -19,6 +19,7 @@ from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .data import Symbol, UNBOUND, truth
 from .dynamic import binding
+from .late import late
 from .packages import is_symbol, printed, sym
 
 _handlers = Symbol("*HANDLER-CLUSTERS*")
@@ -52,9 +53,8 @@ def matches(condition, specifier):
         return True
     if specifier is None:
         return False
-    from .types import typep
 
-    return typep(condition, specifier) is not None
+    return late.typep(condition, specifier) is not None
 
 
 def signal_condition(condition):
@@ -144,9 +144,7 @@ def make_condition(datum, arguments=(), default=types.SimpleError):
     if isinstance(datum, str) or datum.__class__.__name__ == "LispString" or callable(datum) and not is_symbol(datum):
         return default(datum if callable(datum) else str(datum), *arguments)
     if is_symbol(datum):
-        from .classes import find_class
-
-        cls = find_class(datum, None)
+        cls = late.find_class(datum, None)
         if not (isinstance(cls, type) and issubclass(cls, types.Condition)):
             return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum,
                                                expected_type=sym("CONDITION")))
@@ -155,9 +153,7 @@ def make_condition(datum, arguments=(), default=types.SimpleError):
 
 
 def _instance(cls, arguments):
-    from .classes import make_instance
-
-    return make_instance(cls, *arguments)
+    return late.make_instance(cls, *arguments)
 
 
 def signal(datum, *arguments):
@@ -187,9 +183,8 @@ def warn(datum, *arguments):
 
     def report_it():
         signal_condition(condition)
-        from .streams import warning_line
 
-        warning_line(condition)
+        late.warning_line(condition)
 
     with_simple_restart(sym("MUFFLE-WARNING"), "Skip warning.", report_it)
 
@@ -397,9 +392,7 @@ def _values(items):
 
 
 def _ask_value():
-    from .streams import ask_for_form
-
-    return (ask_for_form("Enter a form to be evaluated: "),)
+    return (late.ask_for_form("Enter a form to be evaluated: "),)
 
 
 def package_error(package, text):

@@ -13,6 +13,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from .late import late
+
 
 class _Marker:
     """A named object that is nothing but itself."""
@@ -58,9 +60,7 @@ class Symbol:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
 
     def __reduce__(self):
-        from . import packages
-
-        return (packages.intern, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
+        return (late.intern, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
 
 
 class Keyword(Symbol):
@@ -89,9 +89,7 @@ class UndefinedFunction:
         self.symbol = symbol
 
     def __call__(self, *arguments, **keywords):
-        from .conditions import undefined_function
-
-        return undefined_function(self.symbol, arguments, keywords)
+        return late.undefined_function(self.symbol, arguments, keywords)
 
 
 class Cons:

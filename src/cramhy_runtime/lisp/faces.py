@@ -16,6 +16,7 @@ import sys
 
 from .data import Keyword, Symbol
 from .dynamic import special
+from .late import late
 from .packages import Package, find_package, find_package_or_error, intern, keyword, register
 
 
@@ -56,9 +57,7 @@ def lispify(function):
             return function(*arguments, **keywords)
         rest = arguments[positional:]
         if len(rest) % 2:
-            from .conditions import program_error
-
-            return program_error("odd number of &KEY arguments")
+            return late.program_error("odd number of &KEY arguments")
         unknown = []
         for index in range(0, len(rest), 2):
             key = rest[index]
@@ -70,9 +69,7 @@ def lispify(function):
             elif key is not allow:
                 unknown.append(key)
         if unknown and not (allow in rest[::2] and rest[rest.index(allow) + 1] is not None):
-            from .conditions import program_error
-
-            return program_error("unknown &KEY argument: ~S", unknown[0])
+            return late.program_error("unknown &KEY argument: ~S", unknown[0])
         return function(*(arguments if takes_rest else arguments[:positional]), **keywords)
 
     lisp_function.python = function

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from . import cl_names
 from .data import Keyword, Symbol
+from .late import late
 
 
 class Package:
@@ -66,10 +67,8 @@ class Package:
         name = symbol_name(symbol)
         found, status = self.lookup(name)
         if status and found is not symbol:
-            from .conditions import package_error
-
-            package_error(self, f"Importing {printed(symbol)} into {self.name} would conflict with {printed(found)}, which is "
-                                f"already there. Shadow one of them with :shadow or :shadowing-import-from.")
+            late.package_error(self, f"Importing {printed(symbol)} into {self.name} would conflict with {printed(found)}, which is "
+                                     f"already there. Shadow one of them with :shadow or :shadowing-import-from.")
         if not self.present(name):
             self.internal[name] = symbol
             if isinstance(symbol, Symbol) and symbol.package is None:
@@ -119,10 +118,8 @@ class Package:
         for name, symbol in other.external.items():
             found, status = self.lookup(name)
             if status and found is not symbol and name not in self.shadowing:
-                from .conditions import package_error
-
-                package_error(self, f"{self.name} cannot use {other.name}: both {printed(symbol)} and {printed(found)} would be "
-                                    f"called {name} in it. Shadow one of them with (:shadowing-import-from PACKAGE #:{name}).")
+                late.package_error(self, f"{self.name} cannot use {other.name}: both {printed(symbol)} and {printed(found)} would be "
+                                         f"called {name} in it. Shadow one of them with (:shadowing-import-from PACKAGE #:{name}).")
         self.use.append(other)
         other.used_by.append(self)
 
@@ -139,9 +136,7 @@ def register(package):
     """Enter ``package`` under its name and nicknames. A name that is taken is a package-error."""
     for name in package.names:
         if _packages.get(name, package) is not package:
-            from .conditions import package_error
-
-            package_error(package, f"A package named {name} already exists.")
+            late.package_error(package, f"A package named {name} already exists.")
     for name in package.names:
         _packages[name] = package
     return package
@@ -218,9 +213,7 @@ def find_package(designator):
 def find_package_or_error(designator):
     package = find_package(designator)
     if package is None:
-        from .conditions import package_does_not_exist
-
-        return package_does_not_exist(designator)
+        return late.package_does_not_exist(designator)
     return package
 
 

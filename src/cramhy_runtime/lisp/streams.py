@@ -15,6 +15,7 @@ import sys
 import weakref
 
 from .dynamic import special
+from .late import late
 from .packages import Package, find_package, register
 
 for _package, _external in (("SB-SYS", "FD-STREAM"), ("SB-IMPL", ""), ("SB-PRETTY", ""), ("SB-FORMAT", "FORMAT-ERROR")):
@@ -74,12 +75,9 @@ class OutputStream(Stream):
 
 
 def _complain_closed(stream):
-    from .conditions import StreamError, error
-    from .printer import prin1_to_string
-
-    condition = StreamError(stream)
-    condition.report = lambda: f"{prin1_to_string(stream)} is closed"
-    error(condition)
+    condition = late.StreamError(stream)
+    condition.report = lambda: f"{late.prin1_to_string(stream)} is closed"
+    late.error(condition)
 
 
 class StringOutputStream(OutputStream):
@@ -446,9 +444,8 @@ def output_stream(designator):
         if designator not in _wrapped:
             _wrapped[designator] = FileOutput(designator)
         return _wrapped[designator]
-    from .conditions import type_error
 
-    return type_error(designator, "STREAM")
+    return late.type_error(designator, "STREAM")
 
 
 def input_stream(designator):
@@ -459,32 +456,27 @@ def input_stream(designator):
         return STANDARD_INPUT.value
     if designator is True:
         return TERMINAL_IO.value
-    from .conditions import type_error
 
-    return type_error(designator, "STREAM")
+    return late.type_error(designator, "STREAM")
 
 
 def warning_line(condition):
     """Print ``condition`` to ``*error-output*`` as ``warn`` does: ``WARNING: `` and its report on a line of its own."""
-    from .conditions import StyleWarning
-    from .format import format_
 
-    badness = "STYLE-WARNING" if isinstance(condition, StyleWarning) else "WARNING"
-    format_(ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
+    badness = "STYLE-WARNING" if isinstance(condition, late.StyleWarning) else "WARNING"
+    late.format_(ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
     output_stream(ERROR_OUTPUT.value).flush()
 
 
 def ask_for_form(prompt):
     """Print ``prompt`` to ``*query-io*``, read a form from there and return the value of it."""
-    from . import evaluator
     from .data import one
-    from .reader import read_from_stream
 
     stream = QUERY_IO.value
     stream.fresh_line()
     stream.write(prompt)
     stream.flush()
-    return one(evaluator.evaluate(read_from_stream(stream)))
+    return one(late.evaluate(late.read_from_stream(stream)))
 
 
 def standard_output():

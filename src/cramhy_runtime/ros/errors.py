@@ -26,7 +26,8 @@ class RosRpcError(Condition):
         super().__init__(**slots)
         self.call, self.uri, self.code, self.message, self.result = call, uri, code, message, result
         if message == "no provider":
-            self.hint = 'No node offers this service. (ros:rosservice "list") shows those that there are; (wait-for-service name) waits for one.'
+            self.hint = ('No node offers this service. (ros:rosservice "list") shows those that there are; '
+                         "(wait-for-service name) waits for one.")
 
     def report(self):
         return (
