@@ -31,11 +31,12 @@ def seconds(*arguments, text=""):
 
 def main():
     cli = ("-m", "cramhy_runtime.cli")
+    picture = str(Path(tempfile.gettempdir()) / "cramhy-bench.png")
     rows = [
         ("import hy alone", seconds("-c", "import hy"), "-", "0.073"),
         ("roslisp_repl until the prompt, and its end", seconds(*cli, "repl"), "0.4", "0.3"),
         ("the same with the tutorial loaded, unchanged", seconds(*cli, "repl", "--load", "cram-my-beginner-tutorial"), "2.37", "0.5"),
-        ("both lectures in virtual time", seconds("tutorials/lectures.py", "--png", str(Path(tempfile.gettempdir()) / "cramhy-bench.png")), "-", "2"),
+        ("both lectures in virtual time", seconds("tutorials/lectures.py", "--png", picture), "-", "2"),
     ]
     print(f"{'whole process, median of 5, seconds':48} {'cramhy':>8} {'CRAM':>8} {'goal':>8}")
     for name, figure, peer, goal in rows:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import pytest
 
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp.compiler import support
 from cramhy_runtime.lisp.conditions import CompileError, Condition
 from cramhy_runtime.lisp.printer import prin1_to_string
 from cramhy_runtime.repl.session import condition_of
@@ -174,3 +176,19 @@ def test_python_sees_the_lines_of_lisp_in_a_traceback(session):
         session.evaluate_text("(outer 5)")
     lines = [(frame.name, frame.lineno) for frame in traceback.extract_tb(caught.value.__traceback__) if frame.filename.startswith("<repl")]
     assert ("outer", 2) in lines and ("inner", 4) in lines
+
+
+def test_progv_of_no_symbols_in_a_task_that_never_bound_anything():
+    """A task gets its stack of bindings with its first binding, so here is none to take anything from."""
+    kernel.start()
+    try:
+        assert kernel.current().dynamic is None
+        assert support.progv(None, None, lambda: 42) == 42
+    finally:
+        kernel.stop()
+
+
+def test_progv_that_meets_no_variable_leaves_nothing_bound(evaluate):
+    assert evaluate("(defparameter *kept* 1) (list (ignore-errors (progv '(*kept* 5) '(2 3) 4)) *kept*)").endswith("(NIL 1)")
+    assert "PROGV cannot bind 5" in evaluate("(handler-case (progv '(5) '(1) 2) (error (e) (princ-to-string e)))")
+    assert evaluate("(progv '(*kept* *other*) '(7) (list *kept* (boundp '*other*)))") == "(7 NIL)"

@@ -108,7 +108,8 @@ def test_a_surplus_parenthesis_is_a_warning_with_its_place(workspace):
 
 def test_an_error_names_the_form_in_the_students_file(workspace):
     control_package(workspace)
-    transcript = workspace.repl(*LOAD, '(start-ros-node "a")', '(init-ros-turtle "turtle1")', '(send-vel-cmd "fast" 1)', "0", "(send-vel-cmd 1)", "0")
+    transcript = workspace.repl(
+        *LOAD, '(start-ros-node "a")', '(init-ros-turtle "turtle1")', '(send-vel-cmd "fast" 1)', "0", "(send-vel-cmd 1)", "0")
     wrong_value, wrong_count = transcript.answers[4], transcript.answers[6]
     assert 'The value\n    "fast"\n  is not of type\n    REAL' in wrong_value
     assert "at src/cram_my_beginner_tutorial/src/control-turtlesim.lisp:41:3\n      (publish *cmd-vel-pub*\n      ^" in wrong_value

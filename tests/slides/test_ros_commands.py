@@ -66,7 +66,8 @@ def test_without_a_repl_the_command_says_what_to_start(private):
 
 
 def test_the_prompt_takes_ros_commands_too(workspace):
-    transcript = workspace.repl('(roslisp:start-ros-node "a")', "rosservice call /clear", "rosservice type /spawn", "rosnode list", "(+ 1 2)")
+    commands = "rosservice call /clear", "rosservice type /spawn", "rosnode list"
+    transcript = workspace.repl('(roslisp:start-ros-node "a")', *commands, "(+ 1 2)")
     assert transcript.answers[2] == "turtlesim/Spawn"
     assert "/turtlesim" in transcript.answers[3]
     assert transcript.answers[4] == "3"

@@ -7,6 +7,7 @@ The names that generated code uses begin with ``L``: no Lisp name becomes such a
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import zip_longest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import budget
@@ -90,13 +91,17 @@ def throw(tag, value):
 
 def progv(symbols, values, thunk):
     """``progv``: bind specials computed at run time; symbols without a value become unbound."""
-    symbols, values = list(symbols or ()), list(values or ())
-    for index, symbol in enumerate(symbols):
-        bind(symbol, values[index] if index < len(values) else UNBOUND)
+    symbols, values, bound = list(symbols or ()), list(values or ()), 0
     try:
+        for symbol, value in zip_longest(symbols, values[: len(symbols)], fillvalue=UNBOUND):
+            if not isinstance(symbol, Symbol) or symbol.constant:
+                program_error("PROGV cannot bind ~S: a variable must be a symbol that is no constant.", symbol)
+            bind(symbol, value)
+            bound += 1
         return thunk()
     finally:
-        unbind(len(symbols))
+        if bound:
+            unbind(bound)
 
 
 def value_of(symbol):
