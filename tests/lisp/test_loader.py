@@ -203,6 +203,7 @@ def test_the_package_is_the_same_after_loading(folder, session):
     ("(setq 5 1)", (1, 1)),
     ("(list 1 2)\n(car 5)", (2, 1)),
     ("(defun f ()\n  (car 5))\n\n(f)", (2, 3)),
+    ("(list 1 2)\n ; why\n  nowhere\n(list 2)", (3, 3)),
 ])
 def test_an_error_says_where_in_the_file_it_arose(folder, text, place, session):
     from cramhy_runtime.lisp.places_in_source import exception_position

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from . import reader_errors, tokens
 from .backquote import QUASIQUOTE, Comma
-from .data import NO_VALUES, UNBOUND, Character, Cons, MultipleValues, one
+from .data import NO_VALUES, UNBOUND, Character, Cons, MultipleValues, Symbol, one
 from .packages import COMMON_LISP_USER, KEYWORD, find_package, sym
 from .reader_errors import LineIndex, fail
 from .readtables import READTABLE, UPCASE, DispatchTable, call
@@ -35,8 +35,8 @@ _DOT = object()  # the tail of a list frame just after the dot
 class Reader(InputStream):
     """Reads ``text``, of the file ``filename``, whose first character is at ``line`` and ``column`` (counted from 1).
 
-    ``positions`` maps ``id(cons)`` of every form read that is a list to (line, column, end line, end column), the end being that
-    of its last character. The conses are kept alive, so an id stays valid as long as the reader.
+    ``positions`` maps ``id(form)`` of every list read, and of the last symbol read at top level, to (line, column, end line, end
+    column), the end being that of its last character. The forms are kept alive, so an id stays valid as long as the reader.
 
     strict: an unmatched ``)`` is an error, as for programs that call ``read``; otherwise it is warned about and ignored.
     A reader is an input stream of Lisp, because reader macro functions get it as one.
@@ -106,11 +106,11 @@ class Reader(InputStream):
         """(line, column) of the next character."""
         return self.place(self.offset)
 
-    def remember(self, cons, start):
-        """Note that ``cons`` was read from ``start`` up to here."""
+    def remember(self, form, start):
+        """Note that ``form`` was read from ``start`` up to here."""
         place = self.lines.place
-        self.positions[id(cons)] = place(start) + place(self.offset - 1)
-        self._kept.append(cons)
+        self.positions[id(form)] = place(start) + place(self.offset - 1)
+        self._kept.append(form)
 
     def __repr__(self):
         return f'#<READER for "{self.filename}">'
@@ -125,7 +125,11 @@ class Reader(InputStream):
             self.backquotes, self.labels = 0, {}
             self.is_reading = True
             try:
+                self.skip_blank()
+                start = self.offset
                 found = self.next_object()
+                if isinstance(found, Symbol):  # an unbound variable at top level has a place too; a symbol read again gets a new one
+                    self.remember(found, start)
             except RecursionError:
                 found = fail(self, min(self.offset, len(self.text)), "The text is nested too deeply to be read.",
                              hint="Reader macros such as #( and #+ can be some hundred levels deep.")
