@@ -13,7 +13,7 @@ ERRORS = sym("*ERROR-OUTPUT*")
 def session():
     """A fresh kernel; the output of the test in a stream with the attribute ``text``."""
     kernel.start(clock="virtual")
-    import cramhy_runtime.ros.package  # noqa: F401
+    import cramhy_runtime.image  # noqa: F401
     from cramhy_runtime.lisp.streams import StringOutputStream
     from cramhy_runtime.ros import node, utilities
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ros import graph, services, wire
+from cramhy_runtime.ros import graph, services
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 from cramhy_runtime.turtlesim.node import start_turtlesim
 
@@ -35,9 +35,7 @@ class Probe:
         """Call a service and return the response; a refusal is raised as `services.Refusal`."""
         service = graph.active().services[service_name]
         request = service_type_exact(kind).request(**fields)
-        answer = services.Call(service, wire.transmit(request), kernel.current())
-        service.submit(answer)
-        answer.wait()
+        answer = services.exchange(service, request)
         if answer.failure is not None:
             raise services.Refusal(answer.failure)
         return answer.response

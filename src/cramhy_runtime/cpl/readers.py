@@ -15,10 +15,6 @@ def parameters(policy):
     return policy.parameters
 
 
-def description(policy):
-    return policy.description
-
-
 def code_sexp(code):
     return code.sexp
 

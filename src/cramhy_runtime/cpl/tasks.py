@@ -198,16 +198,8 @@ class Task:
         wait_for(fl_and(*self.constraints))
         # If a predecessor failed, that may end the form around us before our body begins. A failure climbs one level of the
         # tree per turn, so it gets as many turns as the tree is deep.
-        for _ in range(len(self.ancestors())):
+        for _ in range(self.depth):
             kernel.yield_()
-
-    def ancestors(self):
-        """Its parent, the parent of that, and so on up to the top-level."""
-        found, task = [], self.parent
-        while task is not None:
-            found.append(task)
-            task = task.parent
-        return found
 
     def _outcome(self, exception):
         """The status and result of a task that ``exception`` ended."""

@@ -60,7 +60,7 @@ def _reference(designator, role=UNSUPPLIED):
         if designator.resolver is me:
             return error("Recursive lock attempt: designator ~a is needed to resolve itself.", designator)
         other = designator.resolver
-        designator.waiting = [*getattr(designator, "waiting", ()), me]
+        designator.__dict__.setdefault("waiting", []).append(me)
         kernel.park(lambda other=other: f"the designator that {other.name} resolves")
     designator.resolver = me
     try:
@@ -71,9 +71,8 @@ def _reference(designator, role=UNSUPPLIED):
         return result
     finally:
         designator.resolver = None
-        if "waiting" in designator.__dict__:
-            for task in designator.__dict__.pop("waiting"):
-                kernel.unpark(task)
+        for task in designator.__dict__.pop("waiting", ()):
+            kernel.unpark(task)
 
 
 def _groundings(designator, predicate):

@@ -9,6 +9,7 @@ Source: ANSI 15.2; texts are SBCL's.
 
 from __future__ import annotations
 
+import math
 from itertools import product
 
 from .arrays import array_element_type, dimensions_of
@@ -64,9 +65,7 @@ def make_array(dimensions, *, element_type=True, initial_element=UNSUPPLIED, ini
     dimensions = _dimensions(dimensions)
     element_type = upgraded_element_type(element_type)
     adjustable = adjustable is not None and adjustable is not False
-    size = 1
-    for dimension in dimensions:
-        size *= dimension
+    size = math.prod(dimensions)
     if len(dimensions) != 1 and fill_pointer is not None and fill_pointer is not False:
         error("Only vectors can have fill pointers.")
     fill_pointer = _fill_pointer(fill_pointer, size)
@@ -169,9 +168,7 @@ def adjust_array(array, dimensions, *, element_type=UNSUPPLIED, initial_element=
     if len(old_dimensions) != len(dimensions):
         error("Expected ~D new dimension~:P for array, but received ~D.", len(old_dimensions), len(dimensions))
     kind = array_element_type(array)
-    size = 1
-    for dimension in dimensions:
-        size *= dimension
+    size = math.prod(dimensions)
     if displaced_to is not None:
         pointer = None if fill_pointer is UNSUPPLIED else _fill_pointer(fill_pointer, size)
         return _became(array, _displaced(dimensions, size, kind, True, pointer, displaced_to, displaced_index_offset))

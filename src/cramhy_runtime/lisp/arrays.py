@@ -10,6 +10,8 @@ elements beyond the fill pointer can still be reached by ``aref``. Source: ANSI 
 
 from __future__ import annotations
 
+import math
+
 from .condition_types import SimpleTypeError, TypeError_, formatted
 from .conditions import error, type_error
 from .data import Character, LispString, MultipleValues, list_from
@@ -218,10 +220,7 @@ def array_dimension(array, axis):
 
 def array_total_size(array):
     """``array-total-size``: the number of elements, those beyond a fill pointer included."""
-    size = 1
-    for dimension in dimensions_of(array, ""):
-        size *= dimension
-    return size
+    return math.prod(dimensions_of(array, ""))
 
 
 def array_in_bounds_p(array, *subscripts):

@@ -10,6 +10,7 @@ import os
 import re
 
 from . import tokens
+from .arithmetic import is_real
 from .backquote import Comma
 from .conditions import Condition, style_warn
 from .data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
@@ -240,15 +241,9 @@ def sharp_c(stream, sub, argument):
     if _suppressed():
         return None
     items = _proper(parts)
-    if not items or len(items) != 2 or not all(_is_real(item) for item in items):
+    if not items or len(items) != 2 or not all(map(is_real, items)):
         return fail(reader, start, "illegal complex number format: #C~S", parts, hint="It is written #c(real imaginary).")
     return _call(reader, start, sym("COMPLEX"), *items)
-
-
-def _is_real(obj):
-    from .arithmetic import realp
-
-    return realp(obj) is not None
 
 
 def sharp_colon(stream, sub, argument):

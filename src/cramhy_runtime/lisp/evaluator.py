@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from .compiler.support import NAMESPACE
 from .conditions import CompileError, Condition, error
-from .data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
+from .data import Cons, Keyword, Symbol, lisp_list, list_from, one
 from .lambda_lists import destructure, gensym
 from .packages import COMMON_LISP, sym
 
@@ -243,8 +243,3 @@ def macro_expander(name, lambda_list, body, environment=None):
     function, _ = macro_lambda(name, lambda_list, body)
     compiled = compile_lambda(function, environment)
     return lambda form, env: one(compiled(form, env))
-
-
-def values_of(result):
-    """The values of a form as a Python list."""
-    return list(result) if isinstance(result, MultipleValues) else [result]

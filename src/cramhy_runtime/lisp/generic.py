@@ -30,6 +30,7 @@ from .methods import EqlSpecializer, Method, Shape
 from .packages import is_symbol, keyword, sym, symbol_name
 
 _all = weakref.WeakSet()
+ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
 
 
 @when_classes_change
@@ -60,7 +61,6 @@ class GenericFunction(FunctionObject):
         self.combination: Combination = STANDARD
         self.combination_options: tuple = ()
         self.precedence = None
-        self.default_function = None
         self.from_defgeneric: list = []
         self.forget()
         _all.add(self)
@@ -153,8 +153,7 @@ class GenericFunction(FunctionObject):
     def applicable_methods(self, arguments):
         """The methods that apply to ``arguments``, most specific first."""
         required = arguments[:self.shape.required]
-        mros = [lisp_mro(argument.__class__) for argument in required]
-        mros = [_mro_of_value(argument, mro) for argument, mro in zip(required, mros)]
+        mros = [lisp_mro(type(None) if argument is False else argument.__class__) for argument in required]
         keys = [eql_key(argument) if index in self.eql_positions else None for index, argument in enumerate(required)]
         order = self.precedence or range(len(required))
         found = [method for method in self.methods if method.applies(mros, keys)]
@@ -165,7 +164,7 @@ class GenericFunction(FunctionObject):
         """The callable for arguments of these classes; ``None`` when no method applies."""
         methods = self.applicable_methods(arguments)
         if not methods and not self.combination.accepts_none:
-            return self.default_function
+            return None
         effective = self.combination.effective(self, methods, tuple(argument.__class__ for argument in arguments))
         if self.shape.has_keys and methods:
             return self._checking_keys(effective, methods)
@@ -177,7 +176,6 @@ class GenericFunction(FunctionObject):
             return effective
         allowed = list(dict.fromkeys(key for shape in shapes for key in shape.keys))
         first = self.shape.required + self.shape.optional
-        allow = keyword("ALLOW-OTHER-KEYS")
 
         def check(*arguments, **keywords):
             if len(arguments) > first:
@@ -185,7 +183,7 @@ class GenericFunction(FunctionObject):
                 if len(given) % 2:
                     return program_error("odd number of &KEY arguments")
                 for key in given[::2]:
-                    if key not in allowed and key is not allow and not _other_keys_allowed(given, allow):
+                    if key not in allowed and key is not ALLOW_OTHER_KEYS and not other_keys_allowed(given):
                         return program_error("invalid keyword argument: ~S (valid keys are ~{~S~^, ~}).", key, list_from(allowed))
             return effective(*arguments, **keywords)
 
@@ -211,15 +209,10 @@ class GenericFunction(FunctionObject):
         return define
 
 
-def _mro_of_value(argument, mro):
-    if argument is False:
-        return lisp_mro(type(None))
-    return mro
-
-
-def _other_keys_allowed(given, allow):
+def other_keys_allowed(given):
+    """Whether keyword arguments, key by key, hold a true ``:allow-other-keys``; the first one counts."""
     for index in range(0, len(given), 2):
-        if given[index] is allow:
+        if given[index] is ALLOW_OTHER_KEYS:
             return given[index + 1] is not None
     return False
 
@@ -449,7 +442,6 @@ def add_method(generic_function, qualifiers, specializers, function, *, lambda_l
         generic_function.methods.remove(old)
     elif user:
         generic_function.user_methods += 1
-    method.replaced = old
     generic_function.methods.append(method)
     generic_function.combination.check(generic_function, method)
     if hasattr(function, "__dict__"):

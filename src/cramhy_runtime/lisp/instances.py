@@ -18,7 +18,7 @@ from .classes import StructureClass, class_name, class_of, find_class_or_error, 
 from .condition_types import Condition, Error, shown
 from .conditions import SimpleError, error, program_error
 from .data import UNBOUND, list_from, one, python_list
-from .generic import when_methods_change
+from .generic import ALLOW_OTHER_KEYS, other_keys_allowed, when_methods_change
 from .packages import is_symbol, keyword, symbol_name
 
 
@@ -40,7 +40,6 @@ class InitargError(Error):
 
 
 _plans: dict = {}
-ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
 
 
 @when_classes_change
@@ -87,7 +86,7 @@ class Plan:
         if self.valid is None:
             return
         wrong = [key for key in initargs[::2] if key not in self.valid]
-        if wrong and not _allows_others(initargs):
+        if wrong and not other_keys_allowed(initargs):
             error(InitargError(self.cls, list(reversed(dict.fromkeys(wrong)))))
 
     def allocate(self, initargs):
@@ -133,13 +132,6 @@ class Plan:
         for slot, initfunction in self.initforms:
             if slot.name not in given and (wanted is True or slot.name in wanted) and slot.attribute not in obj.__dict__:
                 setattr(obj, slot.attribute, one(initfunction()))
-
-
-def _allows_others(initargs):
-    for index in range(0, len(initargs), 2):
-        if initargs[index] is ALLOW_OTHER_KEYS:
-            return initargs[index + 1] is not None
-    return False
 
 
 def _check_finalized(cls):
@@ -240,7 +232,7 @@ def default_reinitialize_instance(instance, *initargs):
     if plan.valid is not None:
         keys = {key for method in applicable_user_methods(reinitialize_instance, type(instance)) for key in method.shape.keys}
         wrong = [key for key in initargs[::2] if key not in plan.valid and key not in keys]
-        if wrong and not _allows_others(initargs):
+        if wrong and not other_keys_allowed(initargs):
             error(InitargError(type(instance), list(reversed(wrong))))
     shared_initialize(instance, None, *initargs)
     return instance

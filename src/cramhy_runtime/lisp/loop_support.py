@@ -7,7 +7,7 @@ that collects is linear; the list under construction hangs behind a header cell.
 from __future__ import annotations
 
 from .conditions import type_error
-from .data import Cons, LispString, list_from
+from .data import Cons, list_from
 from .packages import Package, find_package, find_package_or_error, intern, register
 
 if find_package("CRAMHY") is None:
@@ -45,15 +45,9 @@ def collect_nconc(tail, items):
 
 def loop_vector(vector):
     """``vector``, which must be one."""
-    if isinstance(vector, (list, str, LispString)) or _is_vector(vector):
-        return vector
-    return type_error(vector, "VECTOR")
+    from .arrays import vectorp
 
-
-def _is_vector(obj):
-    from .vectors import Vector
-
-    return isinstance(obj, Vector)
+    return vector if vectorp(vector) else type_error(vector, "VECTOR")
 
 
 def table_entries(table):

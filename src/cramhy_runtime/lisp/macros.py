@@ -61,7 +61,6 @@ def define_operator(package, name, function):
             return malformed(form, symbol, problem)
         return from_hy(expansion, home)
 
-    expander.hy_function = function
     symbol.macro = expander
     if short not in owner.external:
         owner.export(symbol)

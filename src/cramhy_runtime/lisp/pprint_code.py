@@ -69,22 +69,21 @@ def pprint_call(stream, form, *_):
     _block(stream, form, _call)
 
 
-def _call(out, block):
-    _first(out, block)
-    out.write(" ")
-    _newline(out, "fill")
-    _indent(out, 0, "current")
-    _output(block.pop(), out)
-    _each(out, block, "fill")
+def _aligned(first, others):
+    """The head, then the rest below each other right of it: newlines of the kinds ``first`` and ``others``."""
+    def body(out, block):
+        _first(out, block)
+        out.write(" ")
+        _newline(out, first)
+        _indent(out, 0, "current")
+        _output(block.pop(), out)
+        _each(out, block, others)
+
+    return body
 
 
-def _spread_call(out, block):
-    _first(out, block)
-    out.write(" ")
-    _newline(out, "fill")
-    _indent(out, 0, "current")
-    _output(block.pop(), out)
-    _each(out, block, "mandatory")
+_call, _spread_call = _aligned("fill", "fill"), _aligned("fill", "mandatory")
+_do_binding, _dolist_binding = _aligned("miser", "linear"), _aligned("fill", "linear")
 
 
 def pprint_call_form(stream, form, *_):
@@ -489,22 +488,10 @@ def pprint_destructuring_bind(stream, form, *_):
     _block(stream, form, body)
 
 
-def _stepped_binding(kind):
-    def body(out, block):
-        _first(out, block)
-        out.write(" ")
-        _newline(out, kind)
-        _indent(out, 0, "current")
-        _output(block.pop(), out)
-        _each(out, block, "linear")
-
-    return body
-
-
 def pprint_do(stream, form, *_):
     def bindings(out, block):
         while not block.exhausted:
-            _block(out, block.pop(), _stepped_binding("miser"))
+            _block(out, block.pop(), _do_binding)
             block.exit_if_exhausted()
             _newline(out, "mandatory")
 
@@ -528,7 +515,7 @@ def pprint_dolist(stream, form, *_):
         _indent(out, 3)
         out.write(" ")
         _newline(out, "fill")
-        _block(out, block.pop(), _stepped_binding("fill"))
+        _block(out, block.pop(), _dolist_binding)
         _tagbody_rest(out, block)
 
     _block(stream, form, body)

@@ -5,6 +5,8 @@ Vectors are Python lists or the classes of ``vectors.py``. Source: ANSI 22.1.3.7
 
 from __future__ import annotations
 
+import math
+
 from .pretty import NO_OBJECT, call_logical_block
 from .print_controls import PRINT_ARRAY, PRINT_PRETTY, PRINT_READABLY, deeper, length_limit, too_deep
 from .vectors import LispArray, Vector, is_bit_vector
@@ -72,7 +74,7 @@ def _print_dimension(elements, dimensions, index, stream, output_object):
         return
     if too_deep(stream):
         return
-    limit, step = length_limit(), _product(dimensions[1:])
+    limit, step = length_limit(), math.prod(dimensions[1:])
     with deeper():
         stream.write("(")
         for position in range(dimensions[0]):
@@ -83,13 +85,6 @@ def _print_dimension(elements, dimensions, index, stream, output_object):
                 break
             _print_dimension(elements, dimensions[1:], index + position * step, stream, output_object)
         stream.write(")")
-
-
-def _product(numbers):
-    product = 1
-    for number in numbers:
-        product *= number
-    return product
 
 
 def pprint_array(stream, array, *_):
@@ -128,7 +123,7 @@ def _pprint_dimension(stream, elements, dimensions, index):
         output_object(elements[index], stream)
         return
     rest = dimensions[1:]
-    step = _product(rest)
+    step = math.prod(rest)
 
     def body(out, block):
         for position in range(dimensions[0]):

@@ -11,6 +11,7 @@ from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_objects import direct_slots, effective_slots, when_classes_change
 from .classes import class_name
+from .condition_types import shown
 from .conditions import SimpleError, error, type_error
 from .data import NO_VALUES, MultipleValues, Symbol, lisp_list, list_from, python_list
 from .generic import EqlSpecializer, GenericFunction, find_method_or_none, generic, specializer_of, when_methods_change
@@ -188,15 +189,9 @@ def find_method(generic_function, qualifiers, specializers, errorp=True):
     wanted = [specializer_of(specializer) for specializer in python_list(specializers)]
     method = find_method_or_none(generic_function, python_list(qualifiers), wanted)
     if method is None and errorp is not None:
-        which = f"the qualifiers {_shown(qualifiers)}" if qualifiers is not None else "no qualifiers"
+        which = f"the qualifiers {shown(qualifiers)}" if qualifiers is not None else "no qualifiers"
         return error(SimpleError("There is no method on ~S with ~A and specializers ~S.", generic_function, which, specializers))
     return method
-
-
-def _shown(obj):
-    from .printer import prin1_to_string
-
-    return prin1_to_string(obj)
 
 
 def compute_applicable_methods(generic_function, function_arguments):

@@ -8,6 +8,8 @@ pointer and may grow. A displaced array shares the storage of its target.
 
 from __future__ import annotations
 
+import math
+
 from .data import LispString, lisp_list, list_from
 from .packages import sym
 
@@ -51,10 +53,7 @@ class LispArray:
 
     @property
     def total_size(self):
-        size = 1
-        for dimension in self.dimensions:
-            size *= dimension
-        return size
+        return math.prod(self.dimensions)
 
     def active(self):
         """The elements as a Python list, in row-major order."""

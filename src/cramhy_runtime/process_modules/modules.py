@@ -30,7 +30,7 @@ from ..lisp.class_definition import define_class
 from ..lisp.classes import class_name, find_class_or_error, make_instance
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import DEBUGGER_HOOK, Error, error, handler_bind, invoke_debugger, restart_case, warn
-from ..lisp.data import MultipleValues, Symbol, all_values, lisp_list, list_from, python_list, truth, values
+from ..lisp.data import Symbol, all_values, lisp_list, list_from, python_list, truth, values
 from ..lisp.dynamic import binding
 from ..lisp.generic import generic
 from ..lisp.hooks import Hook
@@ -318,7 +318,7 @@ def _execute(module, input_, *, task=None):
         return error(request.failure)
     if request.cancelled:
         return error(SimplePlanFailure("The execution of ~a by process module ~a was cancelled.", input_, module.name))
-    return values(*request.values) if len(request.values) != 1 else request.values[0]
+    return values(*request.values)
 
 
 def await_online(module):
@@ -376,5 +376,5 @@ def _monitor(module, *, designators=None):
         results = module.unprocessed_results
         for designator in wanted or list(results):
             if designator in results:
-                return MultipleValues(found) if len(found := results.pop(designator)) != 1 else found[0]
+                return values(*results.pop(designator))
         wait_for(fl_pulsed(module.status_fluent, handle_missed_pulses=keyword("NEVER")))

@@ -149,9 +149,3 @@ def wait_for_process_module_running(process_module, *, timeout=None):
     finally:
         registry.waiters.remove(me)
     return True
-
-
-def check_process_module_running(process_module, *, throw_error=True):
-    if process_module in running().modules or process_module in running().modules.values():
-        return True
-    return error(ProcessModuleNotRunning("Process module `~a' not running.", process_module)) if throw_error is not None else None

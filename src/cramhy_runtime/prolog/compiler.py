@@ -216,7 +216,7 @@ class _Code:
             self.emit("return fail(m)")
         elif len(numbers) == 1 and len(self.fitting) <= _INLINE_LIMIT:
             patterns, clause = self.fitting[numbers[0]]
-            if any(_uses_barrier(goal) for goal in _flat(clause.goals)):
+            if not all(_direct(goal) for goal in _flat(clause.goals)):
                 self.emit("b = len(m.choices)")
             self._clause(patterns, clause, True)
         else:
@@ -445,7 +445,7 @@ class _Code:
         for goal in goals:
             _variables(goal, needed)
         live = [name for name in needed if name in names]
-        barrier = any(_uses_barrier(goal) for goal in goals)
+        barrier = not all(_direct(goal) for goal in goals)
         function = self.fresh("then_")
         held = ["k", *(["b"] if barrier else []), *(f"v_{i}" for i in range(len(live)))]
         passed = ["k", *(["b"] if barrier else []), *(names[name] for name in live)]
@@ -457,10 +457,6 @@ class _Code:
 
         self._define(f"{function}(m, step)", body)
         return f"({function}, {', '.join(passed)})"
-
-
-def _uses_barrier(goal):
-    return not isinstance(goal, Cons) or goal.car in control.CONTROL or not _proper(goal) or not valid_functor(goal.car)
 
 
 def _proper(goal):

@@ -11,14 +11,12 @@ from cramhy_runtime.lisp.conditions import types
 from cramhy_runtime.lisp.data import Symbol, UNBOUND, UndefinedFunction
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.evaluator import PACKAGE
-from cramhy_runtime.lisp.packages import all_packages, near_names, sym, symbol_name
-
-DISPATCH = sym("*PRINT-PPRINT-DISPATCH*")
+from cramhy_runtime.lisp.packages import all_packages, near_names, symbol_name
 
 
 def report_text(condition):
     """The text of ``condition``, with messages and other long objects in their short form, as SBCL's debugger shows them."""
-    with binding(DISPATCH, pprint_dispatch.INITIAL):
+    with binding(pprint_dispatch.PRINT_PPRINT_DISPATCH, pprint_dispatch.INITIAL):
         return str(condition)
 
 

@@ -22,7 +22,7 @@ from .session import Interruption, condition_of, signalled_here
 def serve(session, lines=None, out=None):
     """Answer every line of ``lines`` (default: standard input) on ``out``."""
     out = out or sys.stdout
-    conditions.install_debugger(_note_restarts)
+    conditions.install_debugger(signalled_here)
     lines = _standard_input() if lines is None else lines
     nothing = streams.StringInputStream("")
     streams.STANDARD_INPUT.value = nothing
@@ -39,10 +39,6 @@ def _standard_input():
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(encoding="utf-8", errors="replace")
     return sys.stdin
-
-
-def _note_restarts(condition):
-    signalled_here(condition)
 
 
 def answer(session, line):

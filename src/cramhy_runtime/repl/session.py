@@ -15,7 +15,7 @@ from pathlib import Path
 from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import conditions, evaluator, systems
 from cramhy_runtime.lisp.conditions import Condition, from_python
-from cramhy_runtime.lisp.data import all_values
+from cramhy_runtime.lisp.data import all_values, list_from
 from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
 from cramhy_runtime.lisp.places_in_source import locate, user_position
@@ -124,8 +124,6 @@ class Session:
             kernel.interrupt_over()
         if values:
             HISTORY[0].value, HISTORY[1].value, HISTORY[2].value = values[0], HISTORY[0].value, HISTORY[1].value
-        from cramhy_runtime.lisp.data import list_from
-
         LAST_VALUES[0].value, LAST_VALUES[1].value, LAST_VALUES[2].value = list_from(values), LAST_VALUES[0].value, LAST_VALUES[1].value
         return list(values)
 

@@ -411,9 +411,7 @@ def rosservice_call(words, seconds):
             f"Service arguments are: [{_arguments_of(service)}]",
             2,
         ) from None
-    answer = services.Call(service, wire.transmit(request), kernel.current())
-    service.submit(answer)
-    answer.wait()
+    answer = services.exchange(service, request)
     if answer.lost:
         raise CommandError(
             "ERROR: transport error completing service call: unable to receive data from sender, check sender's logs for details",

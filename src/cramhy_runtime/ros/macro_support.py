@@ -68,16 +68,6 @@ def spin_until(test, increment, timeout, body):
     return time.spin_until(test, increment, body, timeout)
 
 
-def register_init_function(symbol, rank):
-    utilities.register_ros_init_function(symbol, rank if isinstance(rank, (int, float)) else 0)
-    return symbol.function
-
-
-def register_cleanup_function(symbol):
-    utilities.register_ros_cleanup_function(symbol)
-    return symbol.function
-
-
 def call_named_service(service_name, service_symbol, return_field, request):
     return services.call_named(service_name, service_symbol, return_field, *python_list(request))
 
@@ -97,8 +87,8 @@ define_face(
         "ros-spin-until": spin_until,
         "loop-at-most-every": time.loop_at_most_every,
         "with-parallel-thread": time.with_parallel_thread,
-        "register-init-function": register_init_function,
-        "register-cleanup-function": register_cleanup_function,
+        "register-init-function": utilities.register_ros_init_function,
+        "register-cleanup-function": utilities.register_ros_cleanup_function,
         "register-service-of": services.register_service,
         "make-service-response": message_building.make_response,
         "call-named-service": call_named_service,

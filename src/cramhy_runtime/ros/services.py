@@ -156,13 +156,18 @@ def event_loop(node):
 # ------------------------------------------------------------------------------------------------------------------ clients
 
 
+def exchange(service, request):
+    """Send ``request`` to the `Service` and wait; the finished `Call`."""
+    answer = Call(service, wire.transmit(request), kernel.current())
+    service.submit(answer)
+    return answer.wait()
+
+
 def call(service, request):
     """Send ``request`` to the `Service` and wait; the response, or the client's error."""
     if request.ros_type != service.type.request.ros_type:
         return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
-    answer = Call(service, wire.transmit(request), kernel.current())
-    service.submit(answer)
-    answer.wait()
+    answer = exchange(service, request)
     if answer.lost:
         return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
     if answer.failure is not None:
@@ -308,9 +313,7 @@ def call_persistent_service(service, *request):
     while True:
         connection = service.connection
         if connection is not None and here.graph.services.get(connection.name) is connection:
-            answer = Call(connection, wire.transmit(message), kernel.current())
-            connection.submit(answer)
-            answer.wait()
+            answer = exchange(connection, message)
             if not answer.lost and answer.failure is None:
                 return answer.response
             problem = answer.failure or "The server closed the connection."

@@ -126,17 +126,13 @@ class Subscription:
         self.queue = deque(maxlen=limit)
         self.callbacks = []
         self.closed = False
-        self.dropped = 0
         self.message, self.remaining = None, []
         self.task = None
         self.task_name = f"Subscriber thread for topic {name}"
         self._handlers = [(Error, self._failed)]
 
     def receive(self, message):
-        queue = self.queue
-        if len(queue) == queue.maxlen:
-            self.dropped += 1
-        queue.append(message)
+        self.queue.append(message)
         if self.task is None:
             owner = self.node.graph.kernel
             self.task = owner.spawn(self._run, name=self.task_name, parent=owner.main)

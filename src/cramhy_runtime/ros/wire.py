@@ -8,10 +8,9 @@ strings of Latin-1 characters. Errors are those of roslisp, signalled in the tas
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 
 from ..lisp import conditions
-from ..lisp.arithmetic import single
+from ..lisp.arithmetic import is_real, single
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, DoubleFloat, LispString, Symbol
 from ..lisp.generic_errors import no_applicable_method
@@ -44,7 +43,7 @@ def lisp_float(value):
 
 
 def _real(value):
-    if isinstance(value, (int, float, Fraction)) and value is not True and value is not False:
+    if is_real(value):
         return value
     if isinstance(value, Symbol) and value in NONFINITE:
         return as_float(value)

@@ -15,11 +15,6 @@ from cramhy_runtime.lisp.generic_errors import no_applicable_method
 from cramhy_runtime.lisp.vectors import LispArray
 
 
-def is_real(value):
-    """Whether ``value`` is a Lisp real; Python's booleans are none."""
-    return isinstance(value, (int, float, Fraction)) and value is not True and value is not False
-
-
 def real(value, context=""):
     """The real ``value`` as a Python float at double precision."""
     kind = value.__class__

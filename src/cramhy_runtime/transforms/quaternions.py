@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.arithmetic import single
+from cramhy_runtime.lisp.arithmetic import is_real, single
 from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, error, type_error
 from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from
 from cramhy_runtime.lisp.packages import keyword
 
-from .coercion import check_type, component, elements, float_argument, instance, is_real, no_method, real
+from .coercion import check_type, component, elements, float_argument, instance, no_method, real
 from .vectors import Vector3, point
 
 TOLERANCE = 1e-6

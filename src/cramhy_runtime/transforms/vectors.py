@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 
+from cramhy_runtime.lisp.arithmetic import is_real
 from cramhy_runtime.lisp.conditions import DivisionByZero, error, type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import DoubleFloat
 
-from .coercion import check_type, component, elements, instance, is_real, no_method, real
+from .coercion import check_type, component, elements, instance, no_method, real
 
 
 class Vector3:
@@ -154,11 +155,12 @@ def v_dist(v_1, v_2):
 
 def normalize_vector(v):
     """The vector of length 1 in the same direction; a zero vector is a division by zero."""
-    length = math.sqrt(sum(component * component for component in point(v)))
+    components = point(v)
+    length = math.sqrt(sum(component * component for component in components))
     if length == 0.0:
         return error(DivisionByZero())
     factor = 1 / length
-    return Vector3(*(component * factor for component in point(v)))
+    return Vector3(*(component * factor for component in components))
 
 
 def interpolate_vector(v_0, v_1, ratio):

@@ -9,7 +9,6 @@ from __future__ import annotations
 from ..ros import graph
 from ..ros.messages import message_class_exact
 
-BANNER = "Reading from keyboard\n---------------------------\nUse arrow keys to move the turtle. 'q' to quit.\n"
 KEYS = {"A": (1, 0), "B": (-1, 0), "C": (0, -1), "D": (0, 1)}
 NAMED_KEYS = {"up": "A", "down": "B", "right": "C", "left": "D"}
 
