@@ -1,0 +1,88 @@
+"""Each symbol of Common Lisp answers as in SBCL 2.2.9: one test a symbol, over the chapters in ``symbols/``.
+
+``symbols/record.lisp`` says how the files are written and made. The sections run by the compiler and the whole image, each in a
+package of its own that uses only COMMON-LISP.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp.condition_types import ProgramError
+from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.packages import COMMON_LISP, Package, sym
+from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.streams import StringInputStream, StringOutputStream
+from cramhy_runtime.repl.session import Session, condition_of
+
+FOLDER = Path(__file__).parent / "symbols"
+ANSWERS = ("=>", "!! ", "|")
+PROGRAM_ERROR = "!! PROGRAM-ERROR"
+SBCL_PROGRAM_ERRORS = ("!! ARG-COUNT-ERROR", "!! SIMPLE-PROGRAM-ERROR", "!! COMPILED-PROGRAM-ERROR", "!! INPUT-ERROR-IN",
+                       "!! DEFMACRO-LAMBDA-LIST-BIND-ERROR")
+PACKAGE, PRINT_PRETTY = sym("*PACKAGE*"), sym("*PRINT-PRETTY*")
+STANDARD_INPUT, STANDARD_OUTPUT, TRACE_OUTPUT = sym("*STANDARD-INPUT*"), sym("*STANDARD-OUTPUT*"), sym("*TRACE-OUTPUT*")
+
+
+def sections(path):
+    """(symbol, [(form, answer)]) for each section of the file; an answer is a list of lines."""
+    found, form, answer = [], [], []
+    for line in [*path.read_text().splitlines(), ""]:
+        if line.startswith(ANSWERS):
+            answer.append(line)
+            continue
+        if answer:
+            found[-1][1].append(("\n".join(form), answer))
+            form, answer = [], []
+        if line.startswith(";; "):
+            found.append((line[3:].strip(), []))
+        elif line and not line.startswith(";"):
+            form.append(line)
+    assert not form, f"{path.name}: no answer is recorded for {form[0]}"
+    return found
+
+
+SECTIONS = [pytest.param(questions, id=name) for path in sorted(FOLDER.glob("*.txt")) for name, questions in sections(path)]
+
+
+@pytest.fixture(scope="module")
+def session():
+    yield Session(time="virtual", turtlesim=False)
+    kernel.stop()
+
+
+def words(text):
+    return " ".join(text.split())
+
+
+def answer(session, text):
+    """The lines that we would write into the file behind the form ``text``."""
+    output = StringOutputStream()
+    with binding(STANDARD_OUTPUT, output, TRACE_OUTPUT, output, STANDARD_INPUT, StringInputStream("")):
+        try:
+            values = session.evaluate_text(text)
+        except (Condition, Exception) as problem:
+            condition = condition_of(problem)
+            with binding(PRINT_PRETTY, None):
+                line = words(f"!! {condition.lisp_name.rpartition(':')[2]} {condition.report()}")
+            if isinstance(condition, ProgramError):
+                line = PROGRAM_ERROR
+        else:
+            with binding(PRINT_PRETTY, None):
+                line = words("=> " + " ; ".join(prin1_to_string(value) for value in values))
+    return [*(f"| {shown}".rstrip() for shown in output.text().splitlines()), line]
+
+
+def recorded(line):
+    """Malformed calls are program errors in both, each in its own words."""
+    return PROGRAM_ERROR if line.startswith(SBCL_PROGRAM_ERRORS) else line.rstrip()
+
+
+@pytest.mark.parametrize("questions", SECTIONS)
+def test_the_symbol_answers_as_in_sbcl(session, questions):
+    package = Package("SECTION", use=[COMMON_LISP])
+    with binding(PACKAGE, package):
+        for form, wanted in questions:
+            assert answer(session, form) == [recorded(line) for line in wanted], form
