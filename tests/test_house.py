@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -28,8 +29,8 @@ def room_of(path):
     return path.relative_to(SOURCE).parts[0].removesuffix(".py")
 
 
-def imported_rooms(path):
-    """The rooms of cramhy_runtime that a file imports, wherever in it the import stands."""
+def imported_names(path):
+    """The dotted names of modules, or of things in them, that a file imports, wherever in it the import stands."""
     package = ["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts[:-1]]
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
@@ -40,10 +41,15 @@ def imported_rooms(path):
             names = [".".join(module)] + [".".join([*module, alias.name]) for alias in node.names]
         else:
             continue
-        for name in names:
-            parts = name.split(".")
-            if parts[0] == "cramhy_runtime" and len(parts) > 1 and parts[1] in FLOOR:
-                yield parts[1]
+        yield from names
+
+
+def imported_rooms(path):
+    """The rooms of cramhy_runtime that a file imports."""
+    for name in imported_names(path):
+        parts = name.split(".")
+        if parts[0] == "cramhy_runtime" and len(parts) > 1 and parts[1] in FLOOR:
+            yield parts[1]
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
@@ -51,6 +57,15 @@ def test_a_room_imports_only_from_floors_below_its_own(path):
     room = room_of(path)
     for other in set(imported_rooms(path)) - {room}:
         assert FLOOR[other] < FLOOR[room] or (room, other) in ALLOWED_UPWARDS, f"{room} imports {other}"
+
+
+@pytest.mark.parametrize("room", ["lisp", "transforms", "turtlesim", "process_modules", "repl"])
+def test_the_modules_of_a_room_import_each_other_without_circles(room):
+    """Not even within functions: what a lower module needs of a higher one goes through one seam, as ``lisp/late.py``."""
+    modules = {".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__"): path
+               for path in FILES if room_of(path) == room}
+    TopologicalSorter({name: {other for other in imported_names(path) if other in modules and other != f"cramhy_runtime.{room}"} - {name}
+                       for name, path in modules.items()}).prepare()
 
 
 @pytest.mark.parametrize("path", [path for path in FILES if room_of(path) != "kernel"], ids=lambda path: str(path.relative_to(SOURCE)))

@@ -19,6 +19,7 @@ from fractions import Fraction
 
 from .conditions import DivisionByZero, FloatingPointOverflow, error, type_error
 from .data import DoubleFloat, lisp_list
+from .late import late
 from .packages import sym
 
 LISP_NAMES = """max min abs gcd lcm signum mod rem numberp realp rationalp integerp floatp complexp zerop plusp minusp evenp oddp
@@ -418,16 +419,12 @@ def mod(number, divisor):
     """The rest of ``floor``: has the sign of ``divisor``."""
     if number.__class__ is int and divisor.__class__ is int and divisor:
         return number % divisor
-    from .rounding import floor
-
-    return floor(number, divisor)[1]
+    return late.floor(number, divisor)[1]
 
 
 def rem(number, divisor):
     """The rest of ``truncate``: has the sign of ``number``."""
-    from .rounding import truncate
-
-    return truncate(number, divisor)[1]
+    return late.truncate(number, divisor)[1]
 
 
 def numerator(rational):

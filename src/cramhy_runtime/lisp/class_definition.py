@@ -23,7 +23,10 @@ from .condition_types import Condition
 from .conditions import SimpleError, error
 from .data import UNBOUND, Symbol, list_from, one, python_list
 from .faces import python_name
+from .generic import add_method, ensure_generic_function, remove_method
 from .packages import is_symbol, sym, symbol_name
+from .slots import reader_for, writer_for
+from .streams import StringOutputStream
 
 
 def slot_spec(name, *, initargs=None, initform=None, initform_source=None, readers=None, writers=None, accessors=None,
@@ -170,9 +173,6 @@ def _install_class_slots(cls, slots):
 
 
 def _define_accessors(cls, slots):
-    from .generic import add_method, ensure_generic_function
-    from .slots import reader_for, writer_for
-
     cls.lisp_accessors = []
     for slot in slots:
         for reader in slot.readers:
@@ -186,8 +186,6 @@ def _define_accessors(cls, slots):
 
 
 def _remove_accessors(cls):
-    from .generic import remove_method
-
     for gf, method in vars(cls).get("lisp_accessors", ()):
         remove_method(gf, method)
 
@@ -226,8 +224,6 @@ def _report_method(report):
         return lambda self: str(report)
 
     def text(self):
-        from .streams import StringOutputStream
-
         stream = StringOutputStream()
         function = report.function if isinstance(report, Symbol) else report
         function(self, stream)

@@ -18,6 +18,7 @@ from . import builtin_classes
 from .conditions import SimpleError, error
 from .data import UNBOUND, Symbol
 from .faces import python_name
+from .late import late
 from .packages import keyword, printed, sym
 
 
@@ -117,9 +118,7 @@ class ClassSlot:
         if instance is None:
             return self
         if self.value is UNBOUND:
-            from .slots import slot_unbound
-
-            return slot_unbound(type(instance), instance, self.name)
+            return late.slot_unbound(type(instance), instance, self.name)
         return self.value
 
     def __set__(self, instance, value):
@@ -139,9 +138,7 @@ class StandardObject(metaclass=StandardClass):
         slot = slot_of_attribute(type(self), attribute)
         if slot is None:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {attribute!r}")
-        from .slots import missing_value
-
-        return missing_value(self, slot)
+        return late.missing_value(self, slot)
 
 
 builtin_classes.set_standard_object(StandardObject)

@@ -17,6 +17,7 @@ from .conditions import Condition, Error, SimpleProgramError, error, type_error
 from .data import Symbol
 from .packages import Package, find_package, is_symbol, sym
 from .packages import register as register_package
+from .print_names import symbol_with_prefix
 
 LISP_NAMES = "find-class class-of class-name"
 
@@ -39,8 +40,6 @@ class ClassNotFoundError(Error):
 
 def qualified(symbol):
     """The name of ``symbol`` with its package, always, as SBCL shows it in messages about classes."""
-    from .print_names import symbol_with_prefix
-
     return symbol_with_prefix(symbol)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from .conditions import error, type_error
 from .data import Character, Cons, DoubleFloat, Symbol, lisp_list
+from .late import late
 from .packages import sym
 from .vectors import BIT, CHARACTER
 
@@ -34,12 +35,10 @@ def upgraded_element_type(specifier):
             return _for_integers(*limits) if limits else True
         return True
     if isinstance(specifier, Symbol):
-        from . import types
-
-        expansion = types.expand_type(specifier)
+        expansion = late.expand_type(specifier)
         if expansion is not specifier:
             return upgraded_element_type(expansion)
-        if not types.is_known_type(specifier):
+        if not late.is_known_type(specifier):
             error("Undefined type: ~S", specifier)
     return True
 

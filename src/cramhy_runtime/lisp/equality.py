@@ -17,6 +17,7 @@ from math import copysign
 from zlib import crc32
 
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
+from .late import late
 from .vectors import LispArray, is_bit_vector
 
 LISP_NAMES = "eq eql equal equalp sxhash"
@@ -123,9 +124,7 @@ def _slots(x):
     # The slot values of a structure, or None for other objects: only structures are compared slot by slot.
     if not hasattr(x.__class__, "lisp_structure"):
         return None
-    from .structures import slots_of
-
-    return [value for _, value in slots_of(x)]
+    return [value for _, value in late.slots_of(x)]
 
 
 # ---------------------------------------------------------------------------------------------------------------- hash keys

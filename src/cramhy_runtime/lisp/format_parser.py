@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from .conditions import Error, error
 from .data import UNBOUND
+from .late import late
 
 NEWLINE = "\n"
 
@@ -92,11 +93,9 @@ def parse(control):
 
 
 def _place(nodes):
-    from .format_directives import HANDLERS
-
     for node in nodes:
         if isinstance(node, Directive):
-            node.handler = HANDLERS.get(node.char)
+            node.handler = late.HANDLERS.get(node.char)
             for clause in node.clauses or ():
                 _place(clause)
 

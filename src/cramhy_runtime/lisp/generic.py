@@ -25,6 +25,7 @@ from .data import Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_
 from .equality import eql_key
 from .faces import python_name
 from .generic_errors import incongruent, no_applicable_method_error
+from .late import late
 from .method_combination import STANDARD, Combination, find_combination
 from .methods import EqlSpecializer, Method, Shape
 from .packages import is_symbol, keyword, sym, symbol_name
@@ -285,10 +286,8 @@ class _ManyGeneric(GenericFunction):
 
 def no_applicable_method(function, arguments):
     """Call NO-APPLICABLE-METHOD; its default signals the error, with a restart RETRY."""
-    from .protocol import no_applicable_method as generic_
-
-    if generic_.user_methods:
-        return generic_(function, *arguments)
+    if late.no_applicable_method.user_methods:
+        return late.no_applicable_method(function, *arguments)
     return no_applicable_method_default(function, arguments)
 
 

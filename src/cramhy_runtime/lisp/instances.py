@@ -19,6 +19,7 @@ from .condition_types import Condition, Error, shown
 from .conditions import SimpleError, error, program_error
 from .data import UNBOUND, list_from, one, python_list
 from .generic import ALLOW_OTHER_KEYS, other_keys_allowed, when_methods_change
+from .late import late
 from .packages import is_symbol, keyword, symbol_name
 
 
@@ -61,8 +62,6 @@ class Plan:
     """How instances of one class are made."""
 
     def __init__(self, cls):
-        from .protocol import initialize_instance, shared_initialize
-
         self.cls = cls
         _check_finalized(cls)
         slots = effective_slots(cls).values()
@@ -73,7 +72,8 @@ class Plan:
         self.initforms = [(slot, slot.initfunction) for slot in slots if slot.initfunction is not None and slot.cell is None]
         self.defaults = default_initargs(cls)
         self.python_init, self.parameters = _python_init(cls, slots)
-        methods = [method for function in (initialize_instance, shared_initialize) for method in applicable_user_methods(function, cls)]
+        methods = [method for function in (late.initialize_instance, late.shared_initialize)
+                   for method in applicable_user_methods(function, cls)]
         self.custom = bool(methods) and not issubclass(cls, Condition)
         self.valid = None
         if not issubclass(cls, Condition) and not any(method.shape.allow_other_keys for method in methods):
@@ -193,9 +193,7 @@ def make_instance(class_, *initargs, **keywords):
     plan.check(initargs)
     obj = plan.allocate(initargs)
     if plan.custom:
-        from .protocol import initialize_instance
-
-        initialize_instance(obj, *initargs)
+        late.initialize_instance(obj, *initargs)
     else:
         plan.fill(obj, initargs)
     return obj
@@ -208,9 +206,7 @@ def _plan_or_error(cls):
 
 
 def default_initialize_instance(instance, *initargs):
-    from .protocol import shared_initialize
-
-    shared_initialize(instance, True, *initargs)
+    late.shared_initialize(instance, True, *initargs)
     return instance
 
 
@@ -226,15 +222,13 @@ def default_shared_initialize(instance, slot_names, *initargs):
 
 
 def default_reinitialize_instance(instance, *initargs):
-    from .protocol import reinitialize_instance, shared_initialize
-
     plan = plan_for(type(instance))
     if plan.valid is not None:
-        keys = {key for method in applicable_user_methods(reinitialize_instance, type(instance)) for key in method.shape.keys}
+        keys = {key for method in applicable_user_methods(late.reinitialize_instance, type(instance)) for key in method.shape.keys}
         wrong = [key for key in initargs[::2] if key not in plan.valid and key not in keys]
         if wrong and not other_keys_allowed(initargs):
             error(InitargError(type(instance), list(reversed(wrong))))
-    shared_initialize(instance, None, *initargs)
+    late.shared_initialize(instance, None, *initargs)
     return instance
 
 
@@ -247,8 +241,6 @@ def default_allocate_instance(cls, *initargs):
 
 def default_change_class(instance, new_class, *initargs):
     """Make ``instance`` an instance of ``new_class``, keeping the slots that both have (ANSI 7.2)."""
-    from .protocol import update_instance_for_different_class
-
     cls = find_class_or_error(new_class)
     old = type(instance)
     previous = copy.copy(instance)
@@ -268,19 +260,15 @@ def default_change_class(instance, new_class, *initargs):
         slot = find_slot(cls, name)
         if slot is not None and slot.cell is None and value is not UNBOUND:
             setattr(instance, slot.attribute, value)
-    update_instance_for_different_class(previous, instance, *initargs)
+    late.update_instance_for_different_class(previous, instance, *initargs)
     return instance
 
 
 def default_update_for_different_class(previous, current, *initargs):
-    from .protocol import shared_initialize
-
     before = effective_slots(type(previous))
     added = [name for name in effective_slots(type(current)) if name not in before]
-    shared_initialize(current, list_from(added), *initargs)
+    late.shared_initialize(current, list_from(added), *initargs)
 
 
 def default_update_for_redefined_class(instance, added_slots, discarded_slots, property_list, *initargs):
-    from .protocol import shared_initialize
-
-    shared_initialize(instance, added_slots, *initargs)
+    late.shared_initialize(instance, added_slots, *initargs)

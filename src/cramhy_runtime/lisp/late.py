@@ -1,8 +1,10 @@
 """What the ground of this room needs from what stands on it: one seam instead of imports in twenty functions.
 
 Symbols, packages, conditions and streams are the ground: everything imports them. But a condition prints itself with the printer,
-an undefined function signals a condition, and ``warn`` writes to a stream; these stand higher. Such a name is taken from `late`,
-which looks it up in the module that has it when it is first used; the table below is all that the ground knows of the rest.
+an undefined function signals a condition, and ``warn`` writes to a stream; these stand higher. And some things are knots by nature:
+the parts of the printer print their components with the whole of it, and an object is made by generic functions, which are objects.
+Such a name is taken from `late`, which looks it up in the module that has it when it is first used; the table below is all that
+lower modules know of higher ones.
 """
 
 from __future__ import annotations
@@ -14,12 +16,23 @@ WHERE = {
     "condition_types": "StreamError StyleWarning",
     "packages": "intern",
     "classes": "class_name find_class make_instance",
-    "types": "typep",
-    "printer": "prin1_to_string",
+    "slots": "missing_value",
+    "structures": "slots_of",
+    "types": "expand_type is_known_type type_of type_predicate typep",
+    "rounding": "floor truncate",
+    "effective_forms": "function_of_form",
+    "protocol": """initialize_instance no_applicable_method no_next_method print_object reinitialize_instance shared_initialize
+        slot_missing slot_unbound update_instance_for_different_class update_instance_for_redefined_class""",
+    "printer": "output_object output_ugly prin1_to_string print_unreadable write_string_text",
+    "standard_printers": "print_python_object",
+    "pprint_code": "is_backquoted",
     "format": "format_ format_to_string",
+    "format_directives": "HANDLERS",
     "streams": "warning_line ask_for_form",
+    "dispatch_macros": "dispatch",
+    "standard_syntax": "read_comment",
     "reader": "read_from_stream",
-    "evaluator": "evaluate",
+    "evaluator": "evaluate macro_expander",
 }
 """Module → the names that the ground takes from it."""
 

@@ -77,6 +77,15 @@ class Loop:
             self.clause()
         return self.assemble()
 
+    def value_form(self):
+        """The form of a clause that may say ``it`` for the value of the test around it."""
+        tokens = self.tokens
+        if self.it is not None and tokens and tokens.next_is("IT"):
+            tokens.take()
+            self.it_used = True
+            return self.it
+        return tokens.form()
+
     def clause(self):
         tokens = self.tokens
         tokens.begin_clause()
@@ -183,17 +192,7 @@ def _named(loop, keyword):
 
 
 def _return(loop, keyword):
-    loop.emit(loop.leave(value_form(loop)))
-
-
-def value_form(loop):
-    """The form of a clause that may say ``it`` for the value of the test around it."""
-    tokens = loop.tokens
-    if loop.it is not None and tokens and tokens.next_is("IT"):
-        tokens.take()
-        loop.it_used = True
-        return loop.it
-    return tokens.form()
+    loop.emit(loop.leave(loop.value_form()))
 
 
 def _while(loop, keyword):

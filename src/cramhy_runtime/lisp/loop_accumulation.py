@@ -34,10 +34,8 @@ class Accumulator:
 
 def clause(loop, keyword):
     """Read an accumulation clause after its keyword."""
-    from .loop import value_form
-
     tokens = loop.tokens
-    value = value_form(loop)
+    value = loop.value_form()
     into = None
     if tokens and tokens.next_is("INTO"):
         tokens.take()

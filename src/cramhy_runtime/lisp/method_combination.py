@@ -12,6 +12,7 @@ from __future__ import annotations
 from .conditions import SimpleError, error, restart_case, warn
 from .data import Cons, Symbol, lisp_list, list_from, one, python_list, truth
 from .generic_errors import no_primary_method_error
+from .late import late
 from .packages import keyword, printed, sym, symbol_name
 
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
@@ -42,9 +43,7 @@ class _NoNext:
         self.generic_function, self.method = generic_function, method
 
     def __call__(self, *arguments, **keywords):
-        from .protocol import no_next_method
-
-        return no_next_method(self.generic_function, self.method, *arguments)
+        return late.no_next_method(self.generic_function, self.method, *arguments)
 
 
 def link(generic_function, methods, classes, last=None):
@@ -245,8 +244,6 @@ class LongCombination(Combination):
         return any(group.takes(qualifiers) for group in self.groups)
 
     def effective(self, generic_function, methods, classes):
-        from .effective_forms import function_of_form
-
         lists = [[] for _ in self.groups]
         for method in methods:
             for group, members in zip(self.groups, lists):
@@ -263,7 +260,7 @@ class LongCombination(Combination):
                 return lambda *arguments, **keywords: _retrying(generic_function, arguments, no_primary_method_error)
         form = one(self.expand(generic_function, lisp_list(*generic_function.combination_options),
                                *[list_from(members) for members in lists]))
-        return function_of_form(form, generic_function, classes)
+        return late.function_of_form(form, generic_function, classes)
 
 
 class MethodGroup:

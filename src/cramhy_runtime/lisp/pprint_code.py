@@ -9,6 +9,7 @@ them as format controls; here they are functions, because they run often. Which 
 from __future__ import annotations
 
 from .data import Cons, Symbol, UndefinedFunction, python_list
+from .late import late
 from .packages import COMMON_LISP, is_symbol, sym, symbol_name
 from .pretty import call_logical_block, pprint_fill, pprint_linear
 from .print_controls import PRINT_PRETTY, bound
@@ -27,9 +28,7 @@ def _is_pair(lst):
 
 
 def _output(obj, stream):
-    from .printer import output_object
-
-    output_object(obj, stream)
+    late.output_object(obj, stream)
 
 
 # -------------------------------------------------------------------------------------------------------------- layouts

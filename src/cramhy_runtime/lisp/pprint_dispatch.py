@@ -9,8 +9,10 @@ priority first. Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
 from __future__ import annotations
 
 from . import pprint_code as code
-from .data import Cons, Symbol, python_list
+from .data import Cons, MultipleValues, Symbol, python_list
 from .dynamic import special
+from .equality import equal
+from .late import late
 from .packages import sym
 from .pretty import pprint_fill
 from .print_arrays import is_printed_array, pprint_array
@@ -99,9 +101,7 @@ def standard(obj):
 
 
 def _is_of_type(obj, specifier):
-    from .types import typep
-
-    return typep(obj, specifier) is not None
+    return late.typep(obj, specifier) is not None
 
 
 INITIAL = DispatchTable({head: Entry(None, LOWEST, layout) for head, layout in _STANDARD.items()})
@@ -119,12 +119,9 @@ def copy_pprint_dispatch(table=PRINT_PPRINT_DISPATCH):
 
 def pprint_dispatch(obj, table=PRINT_PPRINT_DISPATCH):
     """``pprint-dispatch``: the function for ``obj``, and whether the table has one."""
-    from .data import MultipleValues
-    from .printer import output_ugly
-
     found = _table(table.value if table is PRINT_PPRINT_DISPATCH else table).find(obj)
     if found is None:
-        return MultipleValues((lambda stream, thing, *_: output_ugly(thing, stream), None))
+        return MultipleValues((lambda stream, thing, *_: late.output_ugly(thing, stream), None))
     return MultipleValues((found, True))
 
 
@@ -147,8 +144,6 @@ def set_pprint_dispatch(type_, function, priority=0, table=None):
             else:
                 table.operators[head] = Entry(type_, priority, function)
         return None
-    from .equality import equal
-
     table.entries = [entry for entry in table.entries if not equal(entry.type, type_)]
     if function is not None:
         table.entries.append(Entry(type_, priority, function))

@@ -30,7 +30,9 @@ Lisp.
 from __future__ import annotations
 
 from . import print_controls as controls
+from .conditions import type_error
 from .data import Cons
+from .late import late
 from .packages import symbol_name
 from .pretty_stream import LineLimit, PrettyStream
 from .print_controls import CIRCULARITY, PRINT_CIRCLE, PRINT_PRETTY, bound, check_circularity, deeper, too_deep
@@ -108,10 +110,8 @@ class Block:
         self.count += 1
 
     def _leave(self, text):
-        from .printer import output_object
-
         self.stream.write(text)
-        output_object(self.remaining, self.stream)
+        late.output_object(self.remaining, self.stream)
         raise BlockExit(self)
 
     def pop(self):
@@ -125,9 +125,7 @@ class Block:
 
 
 def _is_backquoted(obj):
-    from .pprint_code import is_backquoted
-
-    return is_backquoted(obj)
+    return late.is_backquoted(obj)
 
 
 def call_logical_block(stream, obj, body, prefix="", suffix="", per_line=False):
@@ -141,9 +139,7 @@ def call_logical_block(stream, obj, body, prefix="", suffix="", per_line=False):
 
 def _call_block(stream, obj, body, prefix, suffix, per_line):
     if obj is not NO_OBJECT and obj is not None and (not isinstance(obj, Cons) or _is_backquoted(obj)):
-        from .printer import output_object
-
-        output_object(obj, stream)
+        late.output_object(obj, stream)
         return
     if PRINT_CIRCLE.value is None or obj is NO_OBJECT or obj is None:
         _run_block(stream, obj, body, prefix, suffix, per_line)
@@ -152,11 +148,9 @@ def _call_block(stream, obj, body, prefix, suffix, per_line):
         if mark is None or controls.print_mark(mark, stream):
             _run_block(stream, obj, body, prefix, suffix, per_line)
     else:
-        from .printer import output_object
-
         state = controls.Circularity()
         with bound(CIRCULARITY, state):
-            output_object(obj, BroadcastStream())
+            late.output_object(obj, BroadcastStream())
             state.counter = 0
             mark = check_circularity(obj, controls.ASSIGN, in_block=True)
             if mark is not None:
@@ -235,8 +229,6 @@ def _kind(designator):
 def _checked(designator, *allowed):
     kind = _kind(designator)
     if kind not in allowed:
-        from .conditions import type_error
-
         return type_error(designator, "(MEMBER " + " ".join(":" + name.upper() for name in allowed) + ")")
     return kind
 
@@ -268,12 +260,10 @@ def pprint_tab(kind, column, increment, stream=None):
 
 
 def _pprint_elements(stream, lst, colon, between):
-    from .printer import output_object
-
     def body(out, block):
         block.exit_if_exhausted()
         while True:
-            output_object(block.pop(), out)
+            late.output_object(block.pop(), out)
             block.exit_if_exhausted()
             out.write(" ")
             between(out)

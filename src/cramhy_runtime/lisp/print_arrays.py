@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import math
 
+from .data import Character
+from .late import late
 from .pretty import NO_OBJECT, call_logical_block
 from .print_controls import PRINT_ARRAY, PRINT_PRETTY, PRINT_READABLY, deeper, length_limit, too_deep
-from .vectors import LispArray, Vector, is_bit_vector
+from .vectors import CHARACTER, LispArray, Vector, is_bit_vector
 
 
 def is_printed_array(obj):
@@ -27,9 +29,6 @@ def _is_vector(array):
 
 def _characters(array):
     """The text of a vector of characters with a fill pointer, else ``None``."""
-    from .data import Character
-    from .vectors import CHARACTER
-
     if _is_vector(array) and getattr(array, "element_type", None) is CHARACTER:
         return "".join(item.char if isinstance(item, Character) else item for item in _elements(array))
     return None
@@ -37,14 +36,12 @@ def _characters(array):
 
 def print_array(array, stream):
     """Print ``array`` on one line, or tersely when ``*print-array*`` is nil."""
-    from .printer import output_object, print_unreadable, write_string_text
-
     text = _characters(array)
     if text is not None:
-        write_string_text(text, stream)
+        late.write_string_text(text, stream)
         return
     if PRINT_ARRAY.value is None and PRINT_READABLY.value is None:
-        print_unreadable(array, stream, type_=True, identity=True)
+        late.print_unreadable(array, stream, type_=True, identity=True)
         return
     if is_bit_vector(array):
         stream.write("#*" + "".join(map(str, _elements(array))))
@@ -61,11 +58,11 @@ def print_array(array, stream):
                 if index >= limit:
                     stream.write("...")
                     break
-                output_object(item, stream)
+                late.output_object(item, stream)
             stream.write(")")
         return
     stream.write(f"#{len(array.dimensions)}A")
-    _print_dimension(array.active(), array.dimensions, 0, stream, output_object)
+    _print_dimension(array.active(), array.dimensions, 0, stream, late.output_object)
 
 
 def _print_dimension(elements, dimensions, index, stream, output_object):
@@ -101,14 +98,12 @@ def pprint_array(stream, array, *_):
 
 
 def _fill_elements(out, block, elements):
-    from .printer import output_object
-
     for index, item in enumerate(elements):
         if index:
             out.write(" ")
             _newline(out, "fill")
         block.pop()
-        output_object(item, out)
+        late.output_object(item, out)
 
 
 def _newline(out, kind):
@@ -117,10 +112,8 @@ def _newline(out, kind):
 
 
 def _pprint_dimension(stream, elements, dimensions, index):
-    from .printer import output_object
-
     if not dimensions:
-        output_object(elements[index], stream)
+        late.output_object(elements[index], stream)
         return
     rest = dimensions[1:]
     step = math.prod(rest)

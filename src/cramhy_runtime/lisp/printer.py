@@ -19,7 +19,7 @@ from . import print_controls as controls
 from .conditions import PrintNotReadable, error
 from .data import UNSUPPLIED, Character, Cons, DoubleFloat, Keyword, LispString, MultipleValues, Symbol
 from .float_printing import float_text
-from .packages import is_symbol, sym
+from .late import late
 from .pprint_dispatch import PRINT_PPRINT_DISPATCH
 from .pretty import NO_OBJECT, call_logical_block, on_pretty_stream
 from .print_controls import (
@@ -179,6 +179,8 @@ def printer_for(cls):
     """The function that prints instances of ``cls``: that of the nearest superclass that has one."""
     found = _found.get(cls)
     if found is None:
+        if object not in _printers:
+            define_printer(object, late.print_python_object)  # and its module defines the printers of all standard classes
         found = next(_printers[ancestor] for ancestor in cls.__mro__ if ancestor in _printers)
         _found[cls] = found
     return found
@@ -247,20 +249,13 @@ def print_unreadable(obj, stream, text=None, type_=False, identity=False, body=N
 
 def class_symbol(cls):
     """The symbol that names the class ``cls``: from the class system, or from its ``lisp_name``."""
-    try:
-        from .classes import class_name
-    except ImportError:
-        name = getattr(cls, "lisp_name", cls.__name__.upper())
-        return name if is_symbol(name) else sym(name)
-    return class_name(cls)
+    return late.class_name(cls)
 
 
 def type_name(obj):
     """What stands for the type of ``obj`` in ``#<...>``: a symbol, or a list for arrays."""
     if isinstance(obj, (list, LispArray)):
-        from .types import type_of
-
-        return type_of(obj)
+        return late.type_of(obj)
     return class_symbol(type(obj))
 
 
@@ -421,5 +416,3 @@ def write_to_string(
 
 LISP_NAMES = "prin1 princ print pprint prin1-to-string princ-to-string write-to-string"
 LISP_FUNCTIONS = {"write": lisp_write}
-
-from . import standard_printers  # noqa: E402, F401  its printers are entered above; it uses ours, so whoever comes first gets both

@@ -7,9 +7,10 @@ and CHANGE-CLASS are here too, because methods on them are allowed. Source: ANSI
 from __future__ import annotations
 
 from . import generic as generics
-from . import instances, slots
+from . import instances, printer, slots
 from .builtin_classes import CLASSES
 from .class_objects import direct_slots, effective_slots, when_classes_change
+from .class_definition import define_class
 from .classes import class_name
 from .condition_types import shown
 from .conditions import SimpleError, error, type_error
@@ -17,6 +18,7 @@ from .data import NO_VALUES, MultipleValues, Symbol, lisp_list, list_from, pytho
 from .generic import EqlSpecializer, GenericFunction, find_method_or_none, generic, specializer_of, when_methods_change
 from .generic_errors import no_next_method_error
 from .packages import sym, symbol_name
+from .printer import prin1_to_string, standard_print_object
 
 LISP_NAMES = """make-instance allocate-instance initialize-instance reinitialize-instance shared-initialize change-class
 update-instance-for-different-class update-instance-for-redefined-class slot-missing slot-unbound no-applicable-method
@@ -82,8 +84,6 @@ no_next_method = _protocol("NO-NEXT-METHOD", "(generic-function method &rest arg
 
 
 def _print_object(object_, stream):
-    from .printer import standard_print_object
-
     standard_print_object(object_, stream)
     return object_
 
@@ -100,8 +100,6 @@ def _forget_printing():
 @when_methods_change
 def _print_methods_changed(function):
     if function is print_object:
-        from . import printer
-
         _printed_by_users.clear()
         printer.print_object_hook = _print_by_method if len(print_object.methods) > 1 else None
 
@@ -122,8 +120,6 @@ def _print_by_method(obj, stream):
 
 
 def _describe_object(object_, stream):
-    from .printer import prin1_to_string
-
     stream.write(f"{prin1_to_string(object_)}\n")
     names = _slot_names(object_)
     if names:
@@ -314,9 +310,5 @@ def class_finalized_p(class_):
 
 def ensure_class(name, *, direct_superclasses=None, direct_slots=None, **others):
     """``sb-mop:ensure-class``, without slots in property list form."""
-    from .class_definition import define_class
-
     return define_class(name, direct_superclasses, direct_slots)
 
-
-from . import clos_printing  # noqa: E402, F401  registers how classes, generic functions and methods print

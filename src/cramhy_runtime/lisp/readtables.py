@@ -11,7 +11,8 @@ import re
 
 from .condition_types import SimpleError
 from .conditions import error, type_error
-from .data import Character, Keyword, Symbol, boolean
+from .data import Character, Keyword, MultipleValues, Symbol, boolean
+from .late import late
 from .packages import keyword, sym
 
 UPCASE = keyword("UPCASE")
@@ -28,9 +29,7 @@ class DispatchTable:
         self.functions = dict(functions or {})
 
     def __call__(self, stream, character):
-        from .dispatch_macros import dispatch
-
-        return dispatch(self, stream, character)
+        return late.dispatch(self, stream, character)
 
     def copy(self):
         return DispatchTable(self.functions)
@@ -68,14 +67,12 @@ class Readtable:
         return self._scanner or self._compile()
 
     def _compile(self):
-        from .standard_syntax import read_comment
-
         white = _set(self.whitespace)
         escapes = _set(self.single_escapes | self.multiple_escapes)
         ending = _set(set(self.macros) - self.non_terminating)
         begin = f"[^{white}{escapes}{ending}{_set(self.non_terminating)}]"
         skip = f"[{white}]+"
-        if self.macros.get(";") is read_comment:
+        if self.macros.get(";") is late.read_comment:
             skip += r"|;[^\n]*"
         within = f"[^{white}{escapes}{ending}]"
         escape = f"[{escapes}]" if escapes else "(?!)"
@@ -164,8 +161,6 @@ def set_macro_character(character, function, non_terminating_p=None, readtable=T
 
 def get_macro_character(character, readtable=True):
     """Two values: the function of a macro character or nil, and whether the character may be inside a token."""
-    from .data import MultipleValues
-
     table = _current(readtable)
     char = _char(character)
     return MultipleValues((table.macros.get(char), boolean(char in table.non_terminating)))

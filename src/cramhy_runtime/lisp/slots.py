@@ -15,6 +15,7 @@ from .classes import class_of
 from .condition_types import formatted, shown
 from .conditions import CellError, Condition, SimpleError, UnboundSlot, error, restart_case, type_error
 from .data import UNBOUND, Symbol, boolean, list_from, one, truth
+from .late import late
 from .packages import sym
 
 LISP_NAMES = "slot-value slot-boundp slot-makunbound slot-exists-p"
@@ -85,7 +86,7 @@ def _slot_value(obj, name):
         value = getattr(obj, attribute)  # STANDARD-OBJECT signals the unbound slot itself
     except AttributeError:
         value = UNBOUND
-    return slot_unbound(class_of(obj), obj, name) if value is UNBOUND else value
+    return late.slot_unbound(class_of(obj), obj, name) if value is UNBOUND else value
 
 
 def set_slot_value(new, object, slot_name):
@@ -150,23 +151,14 @@ def slot_exists_p(object, slot_name):
 
 def missing_slot(obj, name, operation, what, new=UNBOUND):
     """Call SLOT-MISSING, or, when users defined no method for it, signal the error. ``what`` ends "When attempting to"."""
-    from .protocol import slot_missing
-
-    if slot_missing.user_methods:
+    if late.slot_missing.user_methods:
         arguments = (class_of(obj), obj, name, sym(operation), *(() if new is UNBOUND else (new,)))
-        return slot_missing(*arguments)
+        return late.slot_missing(*arguments)
     return error(MissingSlot(name, obj, what))
 
 
-def slot_unbound(cls, obj, name):
-    """Call SLOT-UNBOUND; its default signals unbound-slot with restarts USE-VALUE and STORE-VALUE, whose value is returned."""
-    from .protocol import slot_unbound as generic
-
-    return generic(cls, obj, name)
-
-
 def unbound_slot_error(cls, obj, name):
-    """The default of SLOT-UNBOUND."""
+    """The default of SLOT-UNBOUND: signal unbound-slot with restarts USE-VALUE and STORE-VALUE, whose value is returned."""
     if isinstance(obj, Condition):
         return error(SimpleError("Unbound condition slot: ~S", name))
 
@@ -193,7 +185,7 @@ def missing_value(obj, slot):
         value = getattr(obj, "__dict__", {}).get(slot.attribute, UNBOUND)
         if value is not UNBOUND:
             return value
-    return slot_unbound(class_of(obj), obj, slot.name)
+    return late.slot_unbound(class_of(obj), obj, slot.name)
 
 
 def update_if_obsolete(obj):
@@ -216,9 +208,7 @@ def update_if_obsolete(obj):
             discarded.append(name)
             if attribute in own:
                 plist += [name, own.pop(attribute)]
-    from .protocol import update_instance_for_redefined_class
-
-    update_instance_for_redefined_class(obj, list_from(added), list_from(discarded), list_from(plist))
+    late.update_instance_for_redefined_class(obj, list_from(added), list_from(discarded), list_from(plist))
     return True
 
 

@@ -15,6 +15,7 @@ from .backquote import Comma
 from .condition_types import shown_with
 from .conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
 from .data import Cons, DoubleFloat, LispString, Symbol
+from .late import late
 from .packages import Package, all_packages, is_symbol, sym, symbol_name
 from .pretty import NO_OBJECT, call_logical_block
 from .print_arrays import print_array
@@ -25,7 +26,8 @@ from .streams import ConsoleInput, FileInput, FileOutput, Stream, SynonymStream
 from .vectors import LispArray
 
 
-def _print_foreign(obj, stream):
+def print_python_object(obj, stream):
+    """Print an object whose class has no printer of its own: ``#<...>`` for most."""
     cls = type(obj)
     if getattr(cls, "lisp_structure", None) is not None:
         print_structure(obj, stream)
@@ -45,9 +47,7 @@ def _print_foreign(obj, stream):
 
 def print_structure(obj, stream):
     """``#S(NAME :SLOT value)``, one slot per line when they do not fit on one."""
-    from .structures import slots_of
-
-    print_slots(class_symbol(type(obj)), list(slots_of(obj)), stream)
+    print_slots(class_symbol(type(obj)), list(late.slots_of(obj)), stream)
 
 
 def print_slots(name, slots, stream):
@@ -124,14 +124,10 @@ def report_to(condition, stream):
     report = type(condition).report
     control = getattr(condition, "format_control", None)
     if report is SimpleCondition.report and isinstance(control, (str, LispString)):
-        from .format import format_
-
-        format_(stream, control, *(condition.format_arguments or ()))
+        late.format_(stream, control, *(condition.format_arguments or ()))
     elif report in _REPORTS:
-        from .format import format_
-
         with bound(PRINT_ESCAPE, True):
-            format_(stream, *_REPORTS[report](condition))
+            late.format_(stream, *_REPORTS[report](condition))
     else:
         stream.write(condition.report())
 
@@ -274,7 +270,7 @@ def _print_comma(comma, stream):
 
 def _register():
     for cls, function in (
-        (object, _print_foreign),
+        (object, print_python_object),
         (Condition, _print_condition),
         (Restart, _print_restart),
         (type, _print_class),

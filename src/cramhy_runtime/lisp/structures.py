@@ -13,6 +13,8 @@ from .classes import StructureClass, register_class, registered_class
 from .conditions import SimpleError, error, program_error, type_error
 from .data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
 from .faces import python_name
+from .generic import add_method
+from .late import late
 from .packages import Package, intern, is_symbol, keyword, string_designator, sym, symbol_name
 
 LISP_NAMES = "copy-structure"
@@ -77,10 +79,8 @@ class Structure:
 
     def prepare(self):
         """Compute what `construct` needs for each slot: how to set it, its keyword, initform and type test."""
-        from .types import type_predicate
-
         for slot in self.slots:
-            slot.predicate = None if slot.type is True else type_predicate(slot.type)
+            slot.predicate = None if slot.type is True else late.type_predicate(slot.type)
         if self.cls is not None:
             self.fields = tuple((getattr(self.cls, slot.attribute).__set__, slot) for slot in self.slots)
             self.recipe = tuple((set_slot, slot.keyword, slot.initform, slot.predicate, slot) for set_slot, slot in self.fields)
@@ -424,15 +424,12 @@ def _define_predicate(structure, symbol):
 def _define_printing(structure, print_function, print_object_function):
     if structure.cls is None or (print_function is None and print_object_function is None):
         return
-    from .generic import add_method
-    from .protocol import print_object
-
     def print_it(object, stream):
         if print_function is not None:
             return _callable(print_function)(object, stream, 0)
         return _callable(print_object_function)(object, stream)
 
-    add_method(print_object, (), [structure.cls, True], print_it, uses_next=False)
+    add_method(late.print_object, (), [structure.cls, True], print_it, uses_next=False)
 
 
 def _callable(designator):

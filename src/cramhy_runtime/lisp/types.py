@@ -18,7 +18,8 @@ from .class_objects import StandardObject, when_classes_change
 from .classes import class_name, class_of, symbol_class
 from .conditions import SimpleError, error
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
-from .equality import eql
+from .element_types import upgraded_element_type
+from .equality import eql, equal
 from .generic import GenericFunction
 from .packages import Package, is_symbol, sym
 from .structures import StructureObject
@@ -282,8 +283,6 @@ def _array(kind):
 
 
 def _array_test(predicate, kind, shape):
-    from .element_types import upgraded_element_type
-
     upgraded = None if is_star(kind) else upgraded_element_type(kind)
     wanted = [sym("*")] * shape if is_integer(shape) else None if is_star(shape) else list(shape or ())
 
@@ -300,8 +299,6 @@ def _array_test(predicate, kind, shape):
 
 def same_specifier(first, second):
     """Whether two specifiers are equal as trees."""
-    from .equality import equal
-
     return equal(first, second) is not None
 
 

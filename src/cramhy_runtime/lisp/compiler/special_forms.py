@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..conditions import Condition
 from ..data import Cons, Symbol, lisp_list, list_from, truth
 from ..lambda_lists import gensym
+from ..late import late
 from ..packages import is_symbol, sym
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
 from .environment import Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
@@ -239,12 +240,10 @@ def _labels(analyzer, form, env):
 
 @special("MACROLET")
 def _macrolet(analyzer, form, env):
-    from ..evaluator import macro_expander
-
     definitions, forms = _definitions(analyzer, form)
     inner = env.child()
     for _, symbol, lambda_list, body in definitions:
-        inner.functions[symbol] = LocalMacro(macro_expander(symbol, lambda_list, body, env))
+        inner.functions[symbol] = LocalMacro(late.macro_expander(symbol, lambda_list, body, env))
     return _locally(analyzer, Cons(sym("LOCALLY"), list_from(forms)), inner)
 
 
