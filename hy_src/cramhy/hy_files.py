@@ -11,6 +11,7 @@ from hy import models, read
 from hy.reader import HyReader
 
 from cramhy_runtime.lisp import evaluator
+from cramhy_runtime.lisp.compiler.core import hy_model
 from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.macros import from_hy
 from cramhy_runtime.lisp.packages import find_package_or_error, intern
@@ -67,7 +68,7 @@ def compile_form(form):
         new = unit.statements(part)
         if now:
             unit.run(unit.code(new))
-        statements += new
+        statements += map(hy_model, new)
     return models.Expression([models.Symbol("do"), *statements, models.Symbol("Lresult")])
 
 

@@ -410,7 +410,9 @@ def _wrong_argument_count(exception):
     if not match:
         return None
     name, function = _called(match["name"])
-    code = getattr(function, "__code__", None) or _code_of(match["name"], exception)
+    code = getattr(function, "__code__", None)
+    if code is None or match["missing"] not in (None, *code.co_varnames):  # another function of that name
+        function, code = None, _code_of(match["name"], exception)
     if match["given"]:
         condition = SimpleProgramError("invalid number of arguments: ~S", int(match["given"]))
     elif code is None:

@@ -47,7 +47,7 @@ class Unit:
         self.names = {}
 
     def statements(self, form):
-        """The Hy statements that one top-level form is compiled to. They leave its values in the global ``Lresult``."""
+        """The statements (core forms) that one top-level form is compiled to. They leave its values in the global ``Lresult``."""
         backend = compiler()
         analyzer = backend.Analyzer(self.filename, self.positions)
         analyzer._at = self.positions.get(id(form))
@@ -63,15 +63,11 @@ class Unit:
         return statements
 
     def code(self, statements):
-        """The code object of Hy statements."""
+        """The code object of core statements."""
         try:
             return compile(compiler().python_tree(statements, self.filename), self.filename, "exec")
-        except (RecursionError, compiler().HyError) as problem:
-            cause = problem  # Hy wraps what its macros raise
-            while cause is not None and not isinstance(cause, RecursionError):
-                cause = cause.__cause__ or cause.__context__
-            if cause is None:
-                raise
+        except RecursionError:
+            pass
         return too_deep()
 
     def compile(self, form):

@@ -9,22 +9,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from hy import models
-
 from ..backquote import Comma
 from ..data import Character, Cons, DoubleFloat, Symbol
+from .core import List, expression, word
 
 
 class NotStorable(Exception):
     """An object that no code can rebuild."""
-
-
-def symbol_model(name):
-    return models.Symbol(name)
-
-
-def expression(*items):
-    return models.Expression(items)
 
 
 class Constants:
@@ -56,68 +47,68 @@ class Constants:
         return {name: obj.function if kind == "function" else obj for name, kind, obj in fresh}
 
     def take_forms(self):
-        """Statements (Hy models) that make the entries made since the last call."""
+        """Statements (core forms) that make the entries made since the last call."""
         fresh, self.fresh, self.statements = self.fresh, [], []
         for name, kind, obj in fresh:
             if name in self.made:
                 continue
             value = self.builder(obj, top=True)
             if kind == "function":
-                value = expression(symbol_model("."), value, symbol_model("function"))
+                value = expression(word("."), value, word("function"))
             self.make(name, value)
         self.fresh = []
         return self.statements
 
     def make(self, name, value):
-        self.statements.append(expression(symbol_model("setv"), symbol_model(name), value))
+        self.statements.append(expression(word("setv"), word(name), value))
         self.made.add(name)
 
     def builder(self, obj, top=False):
-        """A Hy expression that makes ``obj``. Inside a list, symbols that have a name already are referred to by it."""
+        """A core form that makes ``obj``. Inside a list, symbols that have a name already are referred to by it."""
         if obj is None or obj is True:
-            return symbol_model("None" if obj is None else "True")
+            return word("None" if obj is None else "True")
         if not top:
             known = self.names.get(("object", id(obj)))
             if known in self.made:
-                return symbol_model(known)
+                return word(known)
         kind = type(obj)
         if isinstance(obj, Symbol):
             if obj.package is None:
-                maker = expression(symbol_model("Lgensym"), models.String(obj.name))
+                maker = expression(word("Lgensym"), obj.name)
                 if top:
                     return maker
                 name = self.name("object", obj)  # the same symbol wherever it occurs in the text
                 self.make(name, maker)
-                return symbol_model(name)
-            return expression(symbol_model("Lintern"), models.String(obj.name), models.String(obj.package.name))
+                return word(name)
+            return expression(word("Lintern"), obj.name, obj.package.name)
         if kind is Cons:
             items, cell = [], obj
             while isinstance(cell, Cons):
                 items.append(self.builder(cell.car))
                 cell = cell.cdr
             if cell is None:
-                return expression(symbol_model("Llist"), *items)
-            return expression(symbol_model("Ldotted"), *items, self.builder(cell))
+                return expression(word("Llist"), *items)
+            return expression(word("Ldotted"), *items, self.builder(cell))
         if kind is str:
-            return models.String(obj)
+            return obj
         if kind is int:
-            return models.Integer(obj)
+            return obj
         if kind is float:
             return float_model(obj)
         if kind is DoubleFloat:
-            return expression(symbol_model("Ldouble"), float_model(float(obj)))
+            return expression(word("Ldouble"), float_model(float(obj)))
         if kind is Fraction:
-            return expression(symbol_model("Lratio"), models.Integer(obj.numerator), models.Integer(obj.denominator))
+            return expression(word("Lratio"), obj.numerator, obj.denominator)
         if kind is Character:
-            return expression(symbol_model("Lcharacter"), models.String(obj.char))
+            return expression(word("Lcharacter"), obj.char)
         if kind is Comma:
-            return expression(symbol_model("Lcomma"), models.String(obj.kind), self.builder(obj.form))
+            return expression(word("Lcomma"), obj.kind, self.builder(obj.form))
         if kind is list:
-            return models.List([self.builder(item) for item in obj])
+            return List([self.builder(item) for item in obj])
         raise NotStorable(obj)
 
 
 def float_model(value):
     if value != value or value in (float("inf"), float("-inf")):
-        return expression(symbol_model("Lfloat"), models.String(str(float(value))))
-    return models.Float(value)
+        return expression(word("Lfloat"), str(float(value)))
+    return value

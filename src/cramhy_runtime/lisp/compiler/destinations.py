@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from .constants import symbol_model
+from .core import NONE, TRUE
 
-NONE = symbol_model("None")
-TRUE = symbol_model("True")
+__all__ = ["NONE", "TRUE"]
 
 
 class Destination:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..faces import python_name
 from ..packages import symbol_name
+from .core import HEADS
 
 
 class FunctionScope:
@@ -23,6 +24,8 @@ class FunctionScope:
         self.frozen = {}  # variables of the parent that must be captured by value (see Variable.fresh)
 
     def unique(self, base):
+        if base in HEADS:
+            base += "_"
         count = self.names.get(base)
         self.names[base] = (count or 1) + 1 if count else 1
         if count is None:

@@ -9,12 +9,11 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 
 from __future__ import annotations
 
-from hy import models
-
 from ..data import Symbol, UndefinedFunction
 from ..packages import COMMON_LISP, is_symbol, sym
-from . import nodes
-from .constants import Constants, expression, float_model, symbol_model
+from . import core, nodes
+from .constants import Constants, float_model
+from .core import List, expression, word
 from .destinations import EFFECT, NONE, TRUE, VALUE, VALUES, Destination
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
@@ -51,10 +50,10 @@ class Generator(ExitGenerator, FunctionGenerator):
 
     def call(self, name, *arguments):
         """A call of a support function: ``call("one", x)`` is ``(Lone x)``."""
-        return expression(symbol_model("L" + name), *arguments)
+        return expression(word("L" + name), *arguments)
 
     def assign(self, name, value):
-        self.emit(symbol_model("setv"), symbol_model(name), value)
+        self.emit(word("setv"), word(name), value)
 
     def captured(self, produce):
         """(statements, result) of ``produce``, its statements kept apart."""
@@ -69,12 +68,12 @@ class Generator(ExitGenerator, FunctionGenerator):
         return self.scope.unique(base)
 
     def constant(self, obj):
-        return symbol_model(self.constants.name("object", obj))
+        return word(self.constants.name("object", obj))
 
     def positioned(self, model, node):
         position = node.position
-        if position is not None:
-            model.start_line, model.start_column, model.end_line, model.end_column = position
+        if position is not None and model.__class__ is core.Expression:
+            model.position = position
         return model
 
     # ------------------------------------------------------------------------------------------------------------- driver
@@ -94,7 +93,7 @@ class Generator(ExitGenerator, FunctionGenerator):
         if kind == "value":
             return model
         if kind == "return":
-            self.emit(symbol_model("return"), model)
+            self.emit(word("return"), model)
         elif kind == "assign":
             self.assign(destination.name, model)
         elif not pure:
@@ -109,7 +108,7 @@ class Generator(ExitGenerator, FunctionGenerator):
             return None
         name = self.temporary()
         produce(Destination("assign", name, destination.multiple))
-        return symbol_model(name)
+        return word(name)
 
     def stable(self, model, node):
         """Whether ``model`` means the same after later statements."""
@@ -117,7 +116,7 @@ class Generator(ExitGenerator, FunctionGenerator):
             return True
         if isinstance(node, nodes.LocalVariable):
             return not node.variable.assigned
-        return isinstance(node, nodes.Lambda) and isinstance(model, models.Symbol)
+        return isinstance(node, nodes.Lambda) and isinstance(model, core.Symbol)
 
     def arguments(self, arguments, destination=VALUE):
         """The expressions of ``arguments``, evaluated from left to right."""
@@ -130,7 +129,7 @@ class Generator(ExitGenerator, FunctionGenerator):
                     if not self.stable(earlier, earlier_node):
                         name = self.temporary()
                         self.assign(name, earlier)
-                        done[index] = symbol_model(name), nodes.Constant(None)
+                        done[index] = word(name), nodes.Constant(None)
             self.out.extend(statements)
             done.append((model, node))
         return [model for model, _ in done]
@@ -147,25 +146,25 @@ class Generator(ExitGenerator, FunctionGenerator):
             return TRUE
         kind = type(value)
         if kind is str:
-            return models.String(value)
+            return value
         if kind is int and abs(value) < 1 << 64:
-            return models.Integer(value)
+            return value
         if kind is float:
             return float_model(value)
         return self.constant(value)
 
     def reference(self, variable):
-        name = symbol_model(variable.name)
-        return expression(symbol_model("."), name, symbol_model("v")) if variable.boxed else name
+        name = word(variable.name)
+        return expression(word("."), name, word("v")) if variable.boxed else name
 
     def LocalVariable(self, node, destination):
         return self.finish(self.reference(node.variable), node, destination, pure=True)
 
     def GlobalVariable(self, node, destination):
         constant = self.constant(node.symbol)
-        place = expression(symbol_model("."), constant, symbol_model("value"))
-        unbound = expression(symbol_model("is"), place, symbol_model("Lunbound"))
-        model = expression(symbol_model("if"), unbound, self.positioned(self.call("value", constant), node), place)
+        place = expression(word("."), constant, word("value"))
+        unbound = expression(word("is"), place, word("Lunbound"))
+        model = expression(word("if"), unbound, self.positioned(self.call("value", constant), node), place)
         return self.finish(model, node, destination)
 
     def SetLocal(self, node, destination):
@@ -173,20 +172,20 @@ class Generator(ExitGenerator, FunctionGenerator):
         if not variable.boxed:
             self.gen(node.value, Destination("assign", variable.name))
         else:
-            self.emit(symbol_model("setv"), self.reference(variable), self.value(node.value))
+            self.emit(word("setv"), self.reference(variable), self.value(node.value))
         return self.finish(self.reference(variable), node, destination, pure=True)
 
     def SetGlobal(self, node, destination):
         value = self.value(node.value)
-        place = expression(symbol_model("."), self.constant(node.symbol), symbol_model("value"))
-        self.emit(symbol_model("setv"), place, value)
+        place = expression(word("."), self.constant(node.symbol), word("value"))
+        self.emit(word("setv"), place, value)
         return self.finish(place, node, destination, pure=True)
 
     def FunctionReference(self, node, destination):
         if node.setf:
             model = self.call("setf_function", self.constant(node.symbol))
         elif self.standard(node.symbol):
-            model = symbol_model(self.constants.name("function", node.symbol))
+            model = word(self.constants.name("function", node.symbol))
         else:
             model = self.call("fdefinition", self.constant(node.symbol))
         return self.finish(model, node, destination, pure=True)
@@ -202,21 +201,21 @@ class Generator(ExitGenerator, FunctionGenerator):
         symbol = node.symbol
         arguments = self.arguments(node.arguments)
         if symbol in STEPS and len(arguments) == 1:
-            symbol, arguments = STEPS[symbol], [*arguments, models.Integer(1)]
+            symbol, arguments = STEPS[symbol], [*arguments, 1]
         if len(arguments) == 2 and symbol in ARITHMETIC:
-            model = self.positioned(expression(symbol_model(ARITHMETIC[symbol]), *arguments), node)
+            model = self.positioned(expression(word(ARITHMETIC[symbol]), *arguments), node)
             if symbol in OPERATORS:
                 quick = self.on_integers(arguments)
                 if quick is not None:
-                    model = expression(symbol_model("if"), quick, expression(symbol_model(OPERATORS[symbol]), *arguments), model)
+                    model = expression(word("if"), quick, expression(word(OPERATORS[symbol]), *arguments), model)
         elif symbol is NOT and len(arguments) == 1:
             model = self.call("not", *arguments)
         elif self.standard(symbol):
-            model = expression(symbol_model(self.constants.name("function", symbol)), *arguments)
+            model = expression(word(self.constants.name("function", symbol)), *arguments)
         elif is_symbol(symbol) and not isinstance(symbol, Symbol):
             model = self.call("undefined", self.constant(symbol), *arguments)
         else:
-            model = expression(expression(symbol_model("."), self.constant(symbol), symbol_model("function")), *arguments)
+            model = expression(expression(word("."), self.constant(symbol), word("function")), *arguments)
         return self.finish(self.positioned(model, node), node, destination)
 
     @staticmethod
@@ -225,12 +224,12 @@ class Generator(ExitGenerator, FunctionGenerator):
 
         Loops count with integers, and Python's own operator is three times as fast as a call of the generic one.
         """
-        names = [each for each in arguments if isinstance(each, models.Symbol)]
-        if not names or any(not isinstance(each, (models.Symbol, models.Integer)) for each in arguments):
+        names = [each for each in arguments if isinstance(each, core.Symbol)]
+        if not names or any(not isinstance(each, (core.Symbol, int)) for each in arguments):
             return None
-        tests = [expression(symbol_model("is"), expression(symbol_model("."), name, symbol_model("__class__")), symbol_model("Lint"))
+        tests = [expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
                  for name in dict.fromkeys(names)]
-        return tests[0] if len(tests) == 1 else expression(symbol_model("and"), *tests)
+        return tests[0] if len(tests) == 1 else expression(word("and"), *tests)
 
     def CallLocal(self, node, destination):
         arguments = self.arguments(node.arguments)
@@ -250,7 +249,7 @@ class Generator(ExitGenerator, FunctionGenerator):
     def CallSpread(self, node, destination):
         arguments = self.arguments([node.function])
         spread = self.arguments(node.arguments, VALUES)
-        unpacked = [expression(symbol_model("unpack-iterable"), self.call("all_values", item)) for item in spread]
+        unpacked = [expression(word("unpack-iterable"), self.call("all_values", item)) for item in spread]
         return self.finish(expression(self.call("callable", arguments[0]), *unpacked), node, destination)
 
     def Support(self, node, destination):
@@ -272,13 +271,13 @@ class Generator(ExitGenerator, FunctionGenerator):
         for item in node.rest:
             self.gen(item, EFFECT)
         saved = nodes.Constant(None)
-        return self.finish(symbol_model(name), saved, destination, pure=True)
+        return self.finish(word(name), saved, destination, pure=True)
 
     def LoadTimeValue(self, node, destination):
         if not hasattr(node, "name"):
             node.name = self.temporary("Lloaded")
             self.hoisted.append((node.name, node.node))
-        return self.finish(symbol_model(node.name), node, destination, pure=True)
+        return self.finish(word(node.name), node, destination, pure=True)
 
     # --------------------------------------------------------------------------------------------------------------- choice
 
@@ -287,44 +286,44 @@ class Generator(ExitGenerator, FunctionGenerator):
         if isinstance(node, nodes.Constant):
             return NONE if node.value is None or node.value is False else TRUE
         if isinstance(node, nodes.Call) and node.symbol in NEGATIONS and len(node.arguments) == 1:
-            return expression(symbol_model("not"), self.test(node.arguments[0]))
+            return expression(word("not"), self.test(node.arguments[0]))
         if isinstance(node, nodes.If):
             test = self.test(node.test)
             then_out, then = self.captured(lambda: self.test(node.then))
             else_out, otherwise = self.captured(lambda: self.test(node.otherwise))
             if not then_out and not else_out:
                 if otherwise is NONE:
-                    return expression(symbol_model("and"), test, then)
-                return expression(symbol_model("if"), test, then, otherwise)
+                    return expression(word("and"), test, then)
+                return expression(word("if"), test, then, otherwise)
             name = self.temporary()
             self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
-            return symbol_model(name)
+            return word(name)
         if isinstance(node, nodes.Call) and node.symbol in COMPARISONS and len(node.arguments) == 2:
             arguments = self.arguments(node.arguments)
-            slow = self.positioned(expression(symbol_model(ARITHMETIC[node.symbol]), *arguments), node)
-            slow = expression(symbol_model("is-not"), slow, NONE)
+            slow = self.positioned(expression(word(ARITHMETIC[node.symbol]), *arguments), node)
+            slow = expression(word("is-not"), slow, NONE)
             quick = self.on_integers(arguments)
             if quick is None:
                 return slow
-            return expression(symbol_model("if"), quick, expression(symbol_model(COMPARISONS[node.symbol]), *arguments), slow)
+            return expression(word("if"), quick, expression(word(COMPARISONS[node.symbol]), *arguments), slow)
         value = self.value(node)
         if node.boolean:
-            return expression(symbol_model("is-not"), value, NONE)
+            return expression(word("is-not"), value, NONE)
         if isinstance(node, nodes.LocalVariable) and not node.variable.boxed:
-            return expression(symbol_model("and"), expression(symbol_model("is-not"), value, NONE),
-                              expression(symbol_model("is-not"), value, symbol_model("False")))
+            return expression(word("and"), expression(word("is-not"), value, NONE),
+                              expression(word("is-not"), value, word("False")))
         return self.call("truth", value)
 
     @staticmethod
     def setting(name, value):
-        return expression(symbol_model("setv"), symbol_model(name), value)
+        return expression(word("setv"), word(name), value)
 
     def branch(self, test, then, otherwise):
-        do = symbol_model("do")
+        do = word("do")
         if otherwise:
-            self.emit(symbol_model("if"), test, expression(do, *then), expression(do, *otherwise))
+            self.emit(word("if"), test, expression(do, *then), expression(do, *otherwise))
         else:
-            self.emit(symbol_model("when"), test, *then) if then else self.emit(do, test)
+            self.emit(word("when"), test, *then) if then else self.emit(do, test)
 
     def If(self, node, destination):
         if isinstance(node.test, nodes.Constant):
@@ -336,10 +335,10 @@ class Generator(ExitGenerator, FunctionGenerator):
             self.branch(test, then_out, else_out)
             return None
         if not then_out and not else_out:
-            return expression(symbol_model("if"), test, then, otherwise)
+            return expression(word("if"), test, then, otherwise)
         name = self.temporary()
         self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
-        return symbol_model(name)
+        return word(name)
 
     # ------------------------------------------------------------------------------------------------------------- binding
 
@@ -359,26 +358,26 @@ class Generator(ExitGenerator, FunctionGenerator):
     def with_specials(self, body, dynamic, destination):
         def produce(inner):
             for symbol, value in dynamic:
-                self.emit(symbol_model("Lbind"), self.constant(symbol), value)
+                self.emit(word("Lbind"), self.constant(symbol), value)
             statements, _ = self.captured(lambda: self.gen(body, inner))
-            undo = expression(symbol_model("finally"), self.call("unbind", models.Integer(len(dynamic))))
-            self.emit(symbol_model("try"), *(statements or [NONE]), undo)
+            undo = expression(word("finally"), self.call("unbind", len(dynamic)))
+            self.emit(word("try"), *(statements or [NONE]), undo)
 
         return self.by_statements(body, destination, produce)
 
     def MultipleValueBind(self, node, destination):
         value = self.gen(node.values, VALUES)
-        count = models.Integer(len(node.variables))
+        count = len(node.variables)
         names, dynamic, boxed = [], [], []
         for variable in node.variables:
             name = self.temporary() if isinstance(variable, Symbol) or variable.boxed else variable.name
-            names.append(symbol_model(name))
+            names.append(word(name))
             if isinstance(variable, Symbol):
-                dynamic.append((variable, symbol_model(name)))
+                dynamic.append((variable, word(name)))
             elif variable.boxed:
-                boxed.append((variable, symbol_model(name)))
+                boxed.append((variable, word(name)))
         if names:
-            self.emit(symbol_model("setv"), models.List(names), self.call("spread", value, count))
+            self.emit(word("setv"), List(names), self.call("spread", value, count))
         else:
             self.out.append(value)
             self.effects += 1
@@ -394,7 +393,7 @@ class Generator(ExitGenerator, FunctionGenerator):
                 self.assign(variable.name, self.call("cell", NONE))
         for variable, function in node.functions:
             if variable.boxed:
-                self.emit(symbol_model("setv"), self.reference(variable), self.function(function))
+                self.emit(word("setv"), self.reference(variable), self.function(function))
             else:
                 self.function(function, variable.name)
         return self.gen(node.body, destination)
@@ -402,7 +401,7 @@ class Generator(ExitGenerator, FunctionGenerator):
     # ------------------------------------------------------------------------------------------------------------- top level
 
     def toplevel(self, node, name="toplevel", result="Lresult"):
-        """Statements (Hy models) that run the top-level function ``node`` and leave its values in ``result``.
+        """Statements (core forms) that run the top-level function ``node`` and leave its values in ``result``.
 
         The constants that they need must be made before: see `Constants`.
         """

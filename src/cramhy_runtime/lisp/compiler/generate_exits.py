@@ -8,10 +8,8 @@ of the kernel. Cleanup forms are shielded: no request to end the task interrupts
 
 from __future__ import annotations
 
-from hy import models
-
 from . import nodes
-from .constants import expression, symbol_model
+from .core import List, expression, word
 from .destinations import EFFECT, NONE, TRUE, VALUES
 
 
@@ -42,10 +40,10 @@ class ExitGenerator:
             return
         exit_name = self.temporary("Le")
         handler, _ = self.captured(lambda: self.finish(
-            self.call("block_value", symbol_model(exit_name), self.reference(block.variable)), nodes.Call(None, []), destination))
-        self.emit(symbol_model("try"), *(statements or [NONE]),
-                  expression(symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), *handler),
-                  expression(symbol_model("finally"), self.call("end_block", self.reference(block.variable))))
+            self.call("block_value", word(exit_name), self.reference(block.variable)), nodes.Call(None, []), destination))
+        self.emit(word("try"), *(statements or [NONE]),
+                  expression(word("except"), List([word(exit_name), word("LBlockExit")]), *handler),
+                  expression(word("finally"), self.call("end_block", self.reference(block.variable))))
 
     def block_body(self, node, destination):
         if destination.kind == "return":
@@ -55,7 +53,7 @@ class ExitGenerator:
         self.frames.append(frame)
         statements, _ = self.captured(lambda: self.gen(node.body, destination))
         self.frames.pop()
-        self.emit(symbol_model("while"), TRUE, *statements, expression(symbol_model("break")))
+        self.emit(word("while"), TRUE, *statements, expression(word("break")))
         self.continue_exits(frame)
 
     def ReturnFrom(self, node, destination):
@@ -74,30 +72,30 @@ class ExitGenerator:
         inner = self.frames[-1]
         again = target.__class__.__name__ == "Tagbody"
         if inner.target is target:
-            self.emit(symbol_model("continue" if again else "break"))
+            self.emit(word("continue" if again else "break"))
             return
         code = self.jump_codes.setdefault(target, len(self.jump_codes) + 1)
         self.scope.exits_set += 1
-        self.assign("Lexit", models.Integer(code))
+        self.assign("Lexit", code)
         inner.exits[target] = code
-        self.emit(symbol_model("break"))
+        self.emit(word("break"))
 
     def continue_exits(self, frame):
         """After a loop: go on with the exits for which it was left."""
         for target, code in frame.exits.items():
             def onward(target=target):
                 if self.frames[-1].target is target:
-                    self.assign("Lexit", models.Integer(0))
+                    self.assign("Lexit", 0)
                 self.jump(target)
 
             statements, _ = self.captured(onward)
-            self.emit(symbol_model("when"), expression(symbol_model("="), symbol_model("Lexit"), models.Integer(code)), *statements)
+            self.emit(word("when"), expression(word("="), word("Lexit"), code), *statements)
 
     def TagbodyNode(self, node, destination):
         tagbody = node.tagbody
         tagbody.counter = self.temporary("Lpc")
         frame = Frame(tagbody)
-        self.assign(tagbody.counter, models.Integer(0))
+        self.assign(tagbody.counter, 0)
         if tagbody.escapes:
             self.assign(tagbody.variable.name, self.call("block"))
         self.frames.append(frame)
@@ -106,21 +104,21 @@ class ExitGenerator:
             frame.segment = index
             statements, _ = self.captured(lambda segment=segment: [self.gen(item, EFFECT) for item in segment])
             if statements:
-                test = expression(symbol_model("<="), symbol_model(tagbody.counter), models.Integer(index))
+                test = expression(word("<="), word(tagbody.counter), index)
                 last = index == len(node.segments) - 1
-                parts.extend(statements if last else [expression(symbol_model("when"), test, *statements)])
+                parts.extend(statements if last else [expression(word("when"), test, *statements)])
         self.frames.pop()
-        parts.append(expression(symbol_model("break")))
+        parts.append(expression(word("break")))
         if tagbody.escapes:
             exit_name = self.temporary("Le")
-            target = expression(symbol_model("setv"), symbol_model(tagbody.counter),
-                                self.call("block_value", symbol_model(exit_name), self.reference(tagbody.variable)))
-            parts = [expression(symbol_model("try"), *parts, expression(
-                symbol_model("except"), models.List([symbol_model(exit_name), symbol_model("LBlockExit")]), target))]
-        loop = expression(symbol_model("while"), TRUE, *parts)
+            target = expression(word("setv"), word(tagbody.counter),
+                                self.call("block_value", word(exit_name), self.reference(tagbody.variable)))
+            parts = [expression(word("try"), *parts, expression(
+                word("except"), List([word(exit_name), word("LBlockExit")]), target))]
+        loop = expression(word("while"), TRUE, *parts)
         if tagbody.escapes:
             end = self.call("end_block", self.reference(tagbody.variable))
-            self.emit(symbol_model("try"), loop, expression(symbol_model("finally"), end))
+            self.emit(word("try"), loop, expression(word("finally"), end))
         else:
             self.out.append(loop)
             self.effects += 1
@@ -130,20 +128,20 @@ class ExitGenerator:
     def Go(self, node, destination):
         tagbody = node.tagbody
         if tagbody.owner is not self.scope:
-            return self.finish(self.call("return_from", self.reference(tagbody.variable), models.Integer(node.index)),
+            return self.finish(self.call("return_from", self.reference(tagbody.variable), node.index),
                                nodes.Constant(None), destination)
         frame = next(frame for frame in self.frames if frame.target is tagbody)
         if node.index <= frame.segment:
             self.checkpoint()
-        self.assign(tagbody.counter, models.Integer(node.index))
+        self.assign(tagbody.counter, node.index)
         self.jump(tagbody)
         return NONE if destination.kind == "value" else None
 
     def checkpoint(self):
         """`kernel.checkpoint` of a loop, its counting done in place."""
-        left = expression(symbol_model("."), symbol_model("Lbudget"), symbol_model("left"))
-        self.emit(symbol_model("setv"), left, expression(symbol_model("-"), left, models.Integer(1)))
-        self.emit(symbol_model("when"), expression(symbol_model("<"), left, models.Integer(0)), self.call("checkpoint"))
+        left = expression(word("."), word("Lbudget"), word("left"))
+        self.emit(word("setv"), left, expression(word("-"), left, 1))
+        self.emit(word("when"), expression(word("<"), left, 0), self.call("checkpoint"))
 
     def UnwindProtect(self, node, destination):
         def produce(inner):
@@ -152,8 +150,8 @@ class ExitGenerator:
             cleanup, _ = self.captured(lambda: self.gen(node.cleanup, EFFECT))
             if self.scope.exits_set != before:  # the cleanup must not forget the exit that it was entered by
                 saved = self.temporary("Lsaved")
-                cleanup = [self.setting(saved, symbol_model("Lexit")), *cleanup, self.setting("Lexit", symbol_model(saved))]
-            shielded = expression(symbol_model("with"), models.List([symbol_model("_"), self.call("shield")]), *(cleanup or [NONE]))
-            self.emit(symbol_model("try"), *(statements or [NONE]), expression(symbol_model("finally"), shielded))
+                cleanup = [self.setting(saved, word("Lexit")), *cleanup, self.setting("Lexit", word(saved))]
+            shielded = expression(word("with"), List([word("_"), self.call("shield")]), *(cleanup or [NONE]))
+            self.emit(word("try"), *(statements or [NONE]), expression(word("finally"), shielded))
 
         return self.by_statements(node, destination, produce)

@@ -6,13 +6,11 @@ use keywords. A variable that must be caught anew in each turn of a loop comes a
 
 from __future__ import annotations
 
-from hy import models
-
 from ..data import Cons
 from ..faces import python_name
 from ..packages import symbol_name
 from . import nodes
-from .constants import expression, symbol_model
+from .core import List, Tuple, expression, word
 from .destinations import NONE, RETURN, TRUE, Destination
 
 
@@ -39,61 +37,61 @@ class FunctionGenerator:
         self.out, self.frames, self.scope = saved
         self.out.extend(before)
         header = []
-        names = [symbol_model(variable.name) for variable in scope.nonlocals if not variable.boxed]
+        names = [word(variable.name) for variable in scope.nonlocals if not variable.boxed]
         if names:
-            header.append(expression(symbol_model("nonlocal"), *names))
+            header.append(expression(word("nonlocal"), *names))
         if scope.exits_set:
-            header.append(self.setting("Lexit", models.Integer(0)))
-        simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == symbol_model("return")
+            header.append(self.setting("Lexit", 0))
+        simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == word("return")
         if simple:
-            return self.positioned(expression(symbol_model("fn"), models.List(parameters), statements[0][1]), node)
-        definition = expression(symbol_model("defn"), symbol_model(name), models.List(parameters), *header, *statements)
+            return self.positioned(expression(word("fn"), List(parameters), statements[0][1]), node)
+        definition = expression(word("defn"), word(name), List(parameters), *header, *statements)
         self.out.append(self.positioned(definition, node))
-        return symbol_model(name)
+        return word(name)
 
     def parameters(self, node):
         """The Python parameters of ``node``; what they need done on entry is emitted."""
         spec = node.parameters
-        parameters = [symbol_model(variable.name) for variable in spec.required]
+        parameters = [word(variable.name) for variable in spec.required]
         for variable, default, supplied in spec.optional:
             plain = default is None and supplied is None
-            parameters.append(models.List([symbol_model(variable.name), NONE if plain else symbol_model("Lunsupplied")]))
+            parameters.append(List([word(variable.name), NONE if plain else word("Lunsupplied")]))
         if spec.rest is not None or spec.has_keys:
             rest = spec.rest.name if spec.rest is not None else self.temporary("Lkeys")
-            parameters.append(expression(symbol_model("unpack-iterable"), symbol_model(rest)))
+            parameters.append(expression(word("unpack-iterable"), word(rest)))
         frozen = [variable for variable in node.scope.frozen if variable.fresh]
         if frozen and not (spec.rest is not None or spec.has_keys):
-            parameters.append(symbol_model("*"))
-        parameters += [models.List([symbol_model(variable.name), symbol_model(variable.name)]) for variable in frozen]
+            parameters.append(word("*"))
+        parameters += [List([word(variable.name), word(variable.name)]) for variable in frozen]
         if spec.has_keys:
             keywords, parser = self.temporary("Lpython"), self.temporary("Lparse")
-            parameters.append(expression(symbol_model("unpack-mapping"), symbol_model(keywords)))
+            parameters.append(expression(word("unpack-mapping"), word(keywords)))
         for variable, default, supplied in spec.optional:
             self.default(variable, default, supplied)
         if spec.has_keys:
             table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
-            values = expression(symbol_model(parser), symbol_model(rest), symbol_model(keywords))
+            values = expression(word(parser), word(rest), word(keywords))
             self.before.append(self.setting(parser, self.call("key_parser", self.constant_keys(table),
                                                               TRUE if spec.allow_other_keys else NONE)))
             if spec.keys:
-                self.emit(symbol_model("setv"), models.List([symbol_model(variable.name) for variable, *_ in spec.keys]), values)
+                self.emit(word("setv"), List([word(variable.name) for variable, *_ in spec.keys]), values)
             else:
                 self.out.append(values)
         if spec.rest is not None:
-            self.assign(spec.rest.name, self.call("list_from", symbol_model(spec.rest.name)))
+            self.assign(spec.rest.name, self.call("list_from", word(spec.rest.name)))
         for variable, default, supplied, _ in spec.keys:
             self.default(variable, default, supplied)
         return parameters
 
     def constant_keys(self, table):
-        return models.Tuple([models.Tuple([self.constant(key), NONE if plain else symbol_model("Lunsupplied")]) for key, plain in table])
+        return Tuple([Tuple([self.constant(key), NONE if plain else word("Lunsupplied")]) for key, plain in table])
 
     def default(self, variable, default, supplied):
-        missing = expression(symbol_model("is"), symbol_model(variable.name), symbol_model("Lunsupplied"))
+        missing = expression(word("is"), word(variable.name), word("Lunsupplied"))
         if supplied is not None:
-            self.assign(supplied.name, expression(symbol_model("if"), missing, NONE, TRUE))
+            self.assign(supplied.name, expression(word("if"), missing, NONE, TRUE))
         elif default is None:
             return
         value = default if default is not None else nodes.Constant(None)
         statements, _ = self.captured(lambda: self.gen(value, Destination("assign", variable.name)))
-        self.emit(symbol_model("when"), missing, *statements)
+        self.emit(word("when"), missing, *statements)
