@@ -265,12 +265,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator defun [name lambda-list #* body]
   (setv #(documentation declarations forms) (body-parts body))
-  `(%define-function (quote ~name) (%named-lambda ~name ~lambda-list ~@declarations ~@forms) ~documentation))
+  `(%define-function (quote ~name) (%named-lambda ~name ~lambda-list ~@declarations ~@forms) ~documentation (quote ~lambda-list)))
 
 (defoperator defmacro [name lambda-list #* body]
   (import cramhy_runtime.lisp.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
-  `(%define-macro (quote ~name) ~function ~documentation))
+  `(%define-macro (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator define-compiler-macro [name lambda-list #* body]
   "Accepted; the compiler does without the optimization."
@@ -302,7 +302,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator deftype [name lambda-list #* body]
   (import cramhy_runtime.lisp.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
-  `(%define-type (quote ~name) ~function))
+  `(%define-type (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator defpackage [name #* options]
   `(%define-package (quote ~name) (quote ~options)))
@@ -436,7 +436,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%untrace (quote ~names)))
 
 (defoperator step [form]
-  form)
+  `(%step (quote ~form) (lambda [] ~form)))
 
 (defoperator with-compilation-unit [options #* body]
   `(progn ~@body))

@@ -76,7 +76,7 @@ def test_the_hook_is_asked_before_the_debugger(evaluate):
 def test_break_on_signals(evaluate):
     with pytest.raises(Condition) as caught:
         evaluate('(let ((*break-on-signals* (quote error))) (ignore-errors (error "inner")))')
-    assert caught.value.report() == "inner"
+    assert caught.value.report() == "inner\nBREAK was entered because of *BREAK-ON-SIGNALS* (now rebound to NIL)."
 
 
 def test_an_unknown_condition_class(evaluate):

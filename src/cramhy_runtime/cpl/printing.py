@@ -1,8 +1,9 @@
-"""How fluents, tasks and tree nodes are printed (cpl.md 2.2, 3.1, 7.3). Printing reads nothing that reading would change."""
+"""How fluents, tasks and tree nodes are printed (cpl.md 2.2, 3.1, 7.3) and described. Printing reads nothing that reading would change."""
 
 from __future__ import annotations
 
-from ..lisp.data import truth
+from ..lisp.data import Symbol, list_from, truth
+from ..lisp.describing import describe_facts, describe_object
 from ..lisp.pretty import logical_block, pprint_newline
 from ..lisp.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable, write
 from .fluents import Fluent, ValueFluent
@@ -42,3 +43,23 @@ def print_node(node, stream):
 define_printer(Fluent, print_fluent)
 define_printer(Task, print_task)
 define_printer(TaskTreeNode, print_node)
+
+
+@describe_object.method(Fluent, None)
+def describe_fluent(fluent, stream):
+    """What it is called and worth, how often it pulsed, and who observes it."""
+    waiting = [getattr(task.local, "plan_task", None) or Symbol(str(task.name)) for task in fluent.waiters]
+    return describe_facts(fluent, stream, "fluent", [
+        ("Name", fluent.name), ("Value", fluent.peek()), ("Pulses", fluent.pulses), ("Waiting tasks", list_from(waiting)),
+        ("Fluents computed from it", list_from(fluent.living_nets())), ("Callbacks", list_from(list(fluent.callbacks or ())))])
+
+
+@describe_object.method(Task, None)
+def describe_task(task, stream):
+    """What it does now, what came of it, and its place in the tree of tasks."""
+    facts = [("Name", task.name), ("Status", task.status), ("Parent", task.parent), ("Children", list_from(list(task.children)))]
+    if task.dead:
+        facts.append(("Result", task.result if not isinstance(task.result, tuple) else list_from(task.result)))
+    elif task.kernel_task is not None and task.kernel_task.describe_why():
+        facts.append(("Waits for ", task.kernel_task.describe_why()))
+    return describe_facts(task, stream, "task", [*facts, ("Path", task.path)])

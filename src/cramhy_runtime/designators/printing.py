@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from ..lisp.classes import class_name
 from ..lisp.conditions import type_error
-from ..lisp.data import Cons, Symbol
+from ..lisp.data import UNBOUND, Cons, Symbol
+from ..lisp.describing import describe_facts, describe_object
 from ..lisp.dynamic import special
 from ..lisp.packages import symbol_name
 from ..lisp.print_controls import PACKAGE, PRINT_ESCAPE
@@ -49,3 +51,14 @@ def _bare(thing, stream, escape):
 
 
 define_printer(Designator, print_designator)
+
+
+@describe_object.method(Designator, None)
+def describe_designator(designator, stream):
+    """Its class, what stands in it, and what became of it: data, solution, the designators it was equated with."""
+    facts = [("Class", class_name(type(designator))), ("Properties", designator.description), ("Effective", designator.effective),
+             ("Data", designator.data), ("Timestamp", designator.timestamp)]
+    if designator.solutions is not UNBOUND:
+        facts.append(("Current solution", designator.current_solution))
+    facts += [(label, other) for label, other in (("Parent", designator.parent), ("Successor", designator.successor)) if other is not None]
+    return describe_facts(designator, stream, "designator", facts)

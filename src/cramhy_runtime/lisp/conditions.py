@@ -59,13 +59,31 @@ def matches(condition, specifier):
 
 def signal_condition(condition):
     """Offer ``condition`` to the handlers, innermost first. Returns when all have declined."""
-    if truth(BREAK_ON_SIGNALS.value) and matches(condition, BREAK_ON_SIGNALS.value):
-        invoke_debugger(condition)
+    if truth(BREAK_ON_SIGNALS.value):
+        _break_on_signal(condition)
     clusters = _handlers.value
     while clusters is not None:
         cluster, outer = clusters
         _offer(condition, cluster, outer)
         clusters = outer
+
+
+def _break_on_signal(condition):
+    # bound to nil meanwhile, so that neither the debugger nor a type that is none breaks again (SBCL's texts)
+    def stop():
+        with binding(BREAK_ON_SIGNALS, None):
+            if matches(condition, wanted):
+                breaking.append(True)
+                break_("~A~%BREAK was entered because of *BREAK-ON-SIGNALS* (now rebound to NIL).", condition)
+
+    def reassign(new=None):
+        BREAK_ON_SIGNALS.value = new
+
+    wanted, breaking = BREAK_ON_SIGNALS.value, []
+    restart_case([(sym("CRAMHY::RESET"), reassign, "Set *BREAK-ON-SIGNALS* to NIL and continue."),
+                  (sym("CRAMHY::REASSIGN"), reassign, lambda: (
+        "Return from BREAK and assign a new value to *BREAK-ON-SIGNALS*." if breaking
+        else "Assign a new value to *BREAK-ON-SIGNALS* and continue with signal handling."), _ask_value)], stop)
 
 
 def _offer(condition, cluster, outer):

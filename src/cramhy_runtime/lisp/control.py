@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
+import gc
+import resource
 import sys
 
 from cramhy_runtime import kernel
 
 from . import conditions
 from .conditions import error, type_error
-from .data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, list_from, one
-from .definitions import data
+from .data import Cons, Keyword, MultipleValues, Symbol, list_from, one
 from .evaluator import compile_lambda, evaluate
 from .functions import functionp
 from .macros import macroexpand as expand_macros
 from .macros import macroexpand_1 as expand_macro
-from .packages import is_symbol, sym
+from .packages import sym
 
 LISP_NAMES = """eval compiled-function-p fdefinition macro-function
-macroexpand macroexpand-1 special-operator-p constantp compile get-setf-expansion documentation
+macroexpand macroexpand-1 special-operator-p constantp compile get-setf-expansion
 get-internal-real-time get-internal-run-time get-universal-time sleep lisp-implementation-type lisp-implementation-version
 machine-type machine-instance machine-version software-type software-version
 error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
 abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
 simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
 arithmetic-error-operation arithmetic-error-operands stream-error-stream file-error-pathname
-function-lambda-expression provide describe inspect disassemble room ed"""
+provide room ed"""
 
 
 compiled_function_p = functionp
@@ -95,37 +96,11 @@ def get_setf_expansion(place, environment=None):
     return expansion(place, environment)
 
 
-def documentation(obj, kind=None):
-    kind = kind.name if isinstance(kind, Symbol) else "FUNCTION"
-    if kind == "VARIABLE":
-        return (obj.compiler_data or {}).get("variable-documentation")
-    if kind == "FUNCTION" and isinstance(obj, Symbol):
-        if obj.macro is not None:
-            return getattr(obj.macro, "documentation", None)
-        return None if isinstance(obj.function, UndefinedFunction) else obj.function.__doc__
-    if kind in ("TYPE", "STRUCTURE") and is_symbol(obj):
-        from .classes import find_class
-
-        return getattr(find_class(obj, None), "__doc__", None)
-    return getattr(obj, "__doc__", None)
-
-
-def set_documentation(text, obj, kind=None):
-    kind = kind.name if isinstance(kind, Symbol) else "FUNCTION"
-    if kind == "VARIABLE":
-        data(obj)["variable-documentation"] = text
-    elif isinstance(obj, Symbol) and not isinstance(obj.function, UndefinedFunction):
-        obj.function.__doc__ = text
-    return text
-
-
 def get_internal_real_time():
     return int(kernel.now() * 1_000_000)
 
 
 def get_internal_run_time():
-    import resource
-
     return int(resource.getrusage(resource.RUSAGE_SELF).ru_utime * 1_000_000)
 
 
@@ -228,51 +203,28 @@ def simple_condition_format_arguments(condition):
     return list_from(arguments) if isinstance(arguments, tuple) else arguments
 
 
-def function_lambda_expression(function):
-    return MultipleValues((None, None, getattr(function, "__lisp_name__", None)))
-
-
 def provide(name):
     return True
 
 
-def describe(obj, stream=None):
-    """Print what is known about ``obj``."""
-    from .printer import prin1_to_string
+def room(detail=sym(":DEFAULT")):
+    """``room``: print how much memory the process uses, and with t how many objects Python's collector knows; no values."""
     from .streams import standard_output
 
+    used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     output = standard_output()
     output.fresh_line()
-    output.write(prin1_to_string(obj) + "\n")
-    if isinstance(obj, Symbol):
-        if not isinstance(obj.function, UndefinedFunction):
-            output.write(f"  names a function{': ' + obj.function.__doc__ if obj.function.__doc__ else ''}\n")
-        if obj.macro is not None:
-            output.write("  names a macro\n")
-        text = (obj.compiler_data or {}).get("variable-documentation")
-        if obj.special:
-            output.write(f"  names a special variable{': ' + text if text else ''}\n")
+    output.write(f"Dynamic space usage is:   {used:,} bytes at most so far.\n")
+    if detail is not None:
+        output.write(f"Garbage collection is currently {'enabled' if gc.isenabled() else 'disabled'}.\n")
+    if detail is True:
+        output.write(f"The collector watches {len(gc.get_objects()):,} objects.\n")
     return MultipleValues()
-
-
-def inspect(obj):
-    """Print what ``obj`` is; there is no menu to go into its parts, for which the forms at the prompt serve."""
-    return describe(obj)
-
-
-def disassemble(function):
-    import dis
-
-    dis.dis(function.function if isinstance(function, Symbol) else function)
-
-
-def room(detail=None):
-    return None
 
 
 def ed(target=None):
     return error("There is no editor here: edit the file with your own.")
 
 
-SETTERS = {"MACRO-FUNCTION": set_macro_function, "DOCUMENTATION": set_documentation}
+SETTERS = {"MACRO-FUNCTION": set_macro_function}
 

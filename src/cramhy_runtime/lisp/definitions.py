@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from .conditions import CompileError, error, type_error, warn
 from .conditions import types as condition_types
-from .data import Cons, Symbol, UNBOUND, UndefinedFunction, one
+from .data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, one
 from .evaluator import macro_lambda
 from .faces import python_name
 from .packages import COMMON_LISP, printed, symbol_name
@@ -25,17 +25,22 @@ def _check_name(symbol, what):
 
 def source_of(function):
     """The file that the compiled function came from, or ``None``."""
-    code = getattr(function, "__code__", None)
+    code = getattr(getattr(function, "traced", function), "__code__", None)
     return code.co_filename if code is not None else None
 
 
-def define_function(name, function, documentation=None):
-    """``defun``: make ``function`` the global function of ``name``, a symbol or ``(setf symbol)``. Returns the name."""
+def define_function(name, function, documentation=None, lambda_list=UNSUPPLIED):
+    """``defun``: make ``function`` the global function of ``name``, a symbol or ``(setf symbol)``. Returns the name.
+
+    lambda_list: as it was written, for ``describe``. A function that is traced stays traced.
+    """
     function.__doc__ = documentation
+    if lambda_list is not UNSUPPLIED:
+        function.__lisp_lambda_list__ = lambda_list
     if isinstance(name, Cons):
         symbol = name.cdr.car
         function.__lisp_name__ = name
-        symbol.setf_function = function
+        symbol.setf_function = traced_like(symbol.setf_function, function)
         return name
     _check_name(name, "function")
     function.__lisp_name__ = name
@@ -45,8 +50,14 @@ def define_function(name, function, documentation=None):
         name.macro = None
     elif not isinstance(old, UndefinedFunction) and (source_of(old) != source_of(function) or source_of(function).startswith("<")):
         warn(RedefinitionWarning(f"redefining {printed(name)} in DEFUN"))
-    name.function = function
+    name.function = traced_like(old, function)
     return name
+
+
+def traced_like(old, new):
+    """The function ``new`` as it takes the place of ``old``: traced if that was."""
+    retrace = getattr(old, "retrace", None)
+    return new if retrace is None else retrace(new)
 
 
 class RedefinitionWarning(condition_types.SimpleWarning):
@@ -55,13 +66,13 @@ class RedefinitionWarning(condition_types.SimpleWarning):
     lisp_name = "SB-KERNEL::REDEFINITION-WITH-DEFUN"
 
 
-def define_macro(name, expander, documentation=None):
+def define_macro(name, expander, documentation=None, lambda_list=None):
     """``defmacro``: ``expander`` is a function of the form and the environment. Returns the name."""
     _check_name(name, "macro")
     expander.__doc__ = documentation
     expander.__lisp_name__ = name
     name.macro = lambda form, environment: one(expander(form, environment))
-    name.macro.documentation = documentation
+    name.macro.documentation, name.macro.__lisp_lambda_list__, name.macro.source = documentation, lambda_list, expander
     return name
 
 

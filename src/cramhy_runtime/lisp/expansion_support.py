@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from . import conditions
 from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError, error, program_error
-from .data import Cons, MultipleValues, Symbol, UNSUPPLIED, all_values, list_from, truth
+from .data import Cons, MultipleValues, UNSUPPLIED, list_from, truth
 from .evaluator import PACKAGE
-from .packages import (COMMON_LISP, all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
-                       printed, string_designator, sym, symbol_name)
+from .packages import (all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
+                       string_designator, sym, symbol_name)
 
 # ------------------------------------------------------------------------------------------------------------ destructuring
 
@@ -266,66 +266,6 @@ def remove_property(plist, indicator):
         if items[index] is indicator or _eql(items[index], indicator):
             return MultipleValues((list_from(items[:index] + items[index + 2:]), True))
     return MultipleValues((plist, None))
-
-
-# ------------------------------------------------------------------------------------------------------------------ the REPL's
-
-
-def time_(thunk):
-    """``time``: run ``thunk`` and print how long it took, by the kernel's clock and by the processor's."""
-    import resource
-
-    from cramhy_runtime import kernel
-
-    from .streams import standard_output
-
-    before, used = kernel.now(), resource.getrusage(resource.RUSAGE_SELF).ru_utime
-    result = thunk()
-    output = standard_output()
-    output.fresh_line()
-    output.write(f"Evaluation took:\n  {kernel.now() - before:.3f} seconds of plan time\n"
-                 f"  {resource.getrusage(resource.RUSAGE_SELF).ru_utime - used:.3f} seconds of processor time\n")
-    return result
-
-
-_traced: dict = {}
-
-
-def trace(names):
-    """``trace``: print the calls of the named functions; without names, the list of those traced."""
-    from .printer import prin1_to_string
-    from .streams import TRACE_OUTPUT
-
-    def trace_output():
-        return TRACE_OUTPUT.value
-
-    depth = [0]
-    for name in names or ():
-        if name in _traced or not isinstance(name, Symbol) or name.package is COMMON_LISP:
-            continue
-
-        def traced(*arguments, _name=name, _function=name.function, **keywords):
-            call = prin1_to_string(Cons(_name, list_from(arguments)))
-            trace_output().write(f"{'  ' * depth[0]}  {depth[0]}: {call}\n")
-            depth[0] += 1
-            try:
-                result = _function(*arguments, **keywords)
-            finally:
-                depth[0] -= 1
-            shown = " ".join(prin1_to_string(value) for value in all_values(result))
-            trace_output().write(f"{'  ' * depth[0]}  {depth[0]}: {printed(_name)} returned {shown}\n")
-            return result
-
-        _traced[name] = name.function
-        name.function = traced
-    return names if names is not None else list_from(list(_traced))
-
-
-def untrace(names):
-    for name in names or list(_traced):
-        if name in _traced:
-            name.function = _traced.pop(name)
-    return True
 
 
 def proclaim(specifier):

@@ -66,6 +66,13 @@ class GenericFunction(FunctionObject):
         self.forget()
         _all.add(self)
 
+    watcher = None
+
+    def watch(self, watcher):
+        """Let ``watcher(effective function, arguments, keywords)`` make all calls from now on; ``None`` ends that. For ``trace``."""
+        self.watcher = watcher
+        self.forget()
+
     def forget(self):
         """Forget all effective functions, and find out anew on which arguments the methods specialize."""
         self.cache: dict = {}
@@ -77,7 +84,9 @@ class GenericFunction(FunctionObject):
         self.eql_positions = tuple(index for index in positions if self.eql_keys[index])
         self.minimum, self.maximum = self.shape.required, self.shape.maximum
         fixed = self.minimum == self.maximum
-        if len(positions) == 1 and fixed and self.minimum < 3:
+        if self.watcher is not None:
+            self.__class__ = _WatchedGeneric
+        elif len(positions) == 1 and fixed and self.minimum < 3:
             self.__class__ = {(0, 1): _UnaryGeneric, (0, 2): _FirstOfTwo, (1, 2): _SecondOfTwo}[positions[0], self.minimum]
         elif positions == [0]:
             self.__class__ = _FirstGeneric
@@ -282,6 +291,11 @@ class _ManyGeneric(GenericFunction):
             return wrong_argument_count(len(arguments))
         effective = self.cache.get(tuple([arguments[index].__class__ for index in self.positions])) or self.lookup(arguments)
         return effective(*arguments, **keywords)
+
+
+class _WatchedGeneric(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        return self.watcher(self.lookup(arguments), arguments, keywords)
 
 
 def no_applicable_method(function, arguments):

@@ -61,7 +61,7 @@ def define_operator(package, name, function):
             return malformed(form, symbol, problem)
         return from_hy(expansion, home)
 
-    symbol.macro = expander
+    symbol.macro, expander.source = expander, function
     if short not in owner.external:
         owner.export(symbol)
     return symbol

@@ -70,6 +70,7 @@ class Combination:
 
     lisp_name = "METHOD-COMBINATION"
     accepts_none = False
+    documentation = None
 
     def __init__(self, name):
         self.name = name
@@ -305,11 +306,17 @@ def _define_standard_ones():
 _define_standard_ones()
 
 
-def find_combination(name):
-    """The method combination that the symbol ``name`` names. HOOKS is known under this name in every package."""
+def known_combination(name):
+    """The method combination that the symbol ``name`` names, or ``None``. HOOKS is known under this name in every package."""
     found = _combinations.get(name)
     if found is None and isinstance(name, Symbol) and name.name in _by_name:
         found = _combinations[name] = _by_name[name.name](name)
+    return found
+
+
+def find_combination(name):
+    """The method combination that the symbol ``name`` names; an error that names the known ones when there is none."""
+    found = known_combination(name)
     if found is None:
         return error(SimpleError("There is no method combination named ~S. The standard ones are ~{~A~^, ~}; others are defined "
                                  "with DEFINE-METHOD-COMBINATION.", name, list_from(sorted(map(symbol_name, _combinations)))))

@@ -38,7 +38,7 @@ class Shape:
         self.rest = self.has_keys = self.allow_other_keys = False
         self.keys, self.names = [], []
         state = "required"
-        for item in _items(lambda_list):
+        for item in shape_items(lambda_list):
             name = item.name if isinstance(item, Symbol) else ""
             if name == "&OPTIONAL":
                 state = "optional"
@@ -68,7 +68,8 @@ class Shape:
                 and (self.rest or self.has_keys) == (other.rest or other.has_keys))
 
 
-def _items(lambda_list):
+def shape_items(lambda_list):
+    """The items of a lambda list, a Lisp list or the text of a Python room."""
     if isinstance(lambda_list, str):  # "(object &key name)", as Python rooms write it
         return [sym(word.upper()) if word.startswith("&") else Symbol(word.upper()) for word in lambda_list.strip("()").split()]
     return python_list(lambda_list)

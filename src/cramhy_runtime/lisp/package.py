@@ -14,7 +14,8 @@ from .packages import sym
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
     class_definition slots protocol generic structures streams stream_functions file_streams pathnames printer pretty pprint_dispatch
-    format reader tokens readtables reader_functions symbols control""".split())
+    format reader tokens readtables reader_functions symbols control documentation describing
+    inspecting apropos disassembling tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
 HELPERS = {
@@ -31,7 +32,8 @@ HELPERS = {
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
         handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart define-package set-package
         package-symbols all-symbols package-iterator hash-table-iterator
-        put-property remove-property time trace untrace next-method-exists""",
+        put-property remove-property next-method-exists""",
+    "tracing": "trace untrace time step",
 }
 
 

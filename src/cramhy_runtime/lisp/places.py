@@ -251,8 +251,9 @@ def _defsetf(form, environment):
     name, second, *rest = list(form.cdr)
     quote = sym("QUOTE")
     if not rest or isinstance(rest[0], str) and isinstance(second, Symbol):
-        return lisp_list(support("DEFINE-SETF-FUNCTION"), lisp_list(quote, name), lisp_list(quote, second))
+        return lisp_list(support("DEFINE-SETF-FUNCTION"), lisp_list(quote, name), lisp_list(quote, second), *rest)
     stores, *body = rest
+    documentation = body.pop(0) if len(body) > 1 and isinstance(body[0], str) else None
     arguments = gensym("ARGUMENTS")
     values = gensym("STORES")
     bindings = destructure(second, arguments, f"the place {name.name}")
@@ -260,21 +261,27 @@ def _defsetf(form, environment):
     let = lisp_list(LET_STAR, list_from([lisp_list(variable, value) for variable, value in bindings]),
                     Cons(sym("BLOCK"), Cons(name, list_from(body))))
     return lisp_list(support("DEFINE-SETF-FORM"), lisp_list(quote, name), len(list(stores or ())),
-                     lisp_list(sym("LAMBDA"), lisp_list(arguments, values), let))
+                     lisp_list(sym("LAMBDA"), lisp_list(arguments, values), let), documentation)
 
 
-def define_setf_function(name, updater):
+def _define_place(name, expander, documentation):
+    data(name)["setf-expander"] = expander
+    data(name)["setf-documentation"] = documentation
+    return name
+
+
+def define_setf_function(name, updater, documentation=None):
     """Short ``defsetf``: ``(setf (name a) v)`` is ``(updater a v)``."""
 
     def expander(place, environment):
         temporaries, forms, stores, _, getter = _function_place(place)
         return temporaries, forms, stores, Cons(updater, list_from([*(getter.cdr or ()), stores[0]])), getter
 
-    data(name)["setf-expander"] = expander
-    return name
+    expander.updater = updater
+    return _define_place(name, expander, documentation)
 
 
-def define_setf_form(name, count, function):
+def define_setf_form(name, count, function, documentation=None):
     """Long ``defsetf``: ``function`` gets the argument forms and the store variables, and gives the storing form."""
 
     def expander(place, environment):
@@ -282,8 +289,7 @@ def define_setf_form(name, count, function):
         stores = [gensym("NEW") for _ in range(count)]
         return temporaries, forms, stores, one(function(getter.cdr, list_from(stores))), getter
 
-    data(name)["setf-expander"] = expander
-    return name
+    return _define_place(name, expander, documentation)
 
 
 @macro("DEFINE-SETF-EXPANDER")
@@ -291,19 +297,18 @@ def _define_setf_expander(form, environment):
     from .evaluator import macro_lambda
 
     name, lambda_list, *body = list(form.cdr)
-    function, _ = macro_lambda(name, lambda_list, list_from(body))
-    return lisp_list(support("DEFINE-EXPANDER"), lisp_list(sym("QUOTE"), name), function)
+    function, documentation = macro_lambda(name, lambda_list, list_from(body))
+    return lisp_list(support("DEFINE-EXPANDER"), lisp_list(sym("QUOTE"), name), function, documentation)
 
 
-def define_expander(name, function):
+def define_expander(name, function, documentation=None):
     """What ``define-setf-expander`` does when it is run: ``function`` returns the five values."""
 
     def expander(place, environment):
         temporaries, forms, stores, setter, getter = function(place, environment)
         return list(temporaries or ()), list(forms or ()), list(stores or ()), setter, getter
 
-    data(name)["setf-expander"] = expander
-    return name
+    return _define_place(name, expander, documentation)
 
 
 def get_setf_expansion(place, environment=None):

@@ -14,7 +14,7 @@ from .class_definition import define_class
 from .classes import class_name
 from .condition_types import shown
 from .conditions import SimpleError, error, type_error
-from .data import NO_VALUES, MultipleValues, Symbol, lisp_list, list_from, python_list
+from .data import MultipleValues, Symbol, lisp_list, list_from, python_list
 from .generic import EqlSpecializer, GenericFunction, find_method_or_none, generic, specializer_of, when_methods_change
 from .generic_errors import no_next_method_error
 from .packages import sym, symbol_name
@@ -22,7 +22,7 @@ from .printer import prin1_to_string, standard_print_object
 
 LISP_NAMES = """make-instance allocate-instance initialize-instance reinitialize-instance shared-initialize change-class
 update-instance-for-different-class update-instance-for-redefined-class slot-missing slot-unbound no-applicable-method
-no-next-method print-object describe-object make-load-form make-load-form-saving-slots make-instances-obsolete
+no-next-method print-object make-load-form make-load-form-saving-slots make-instances-obsolete
 ensure-generic-function add-method remove-method find-method compute-applicable-methods method-qualifiers function-keywords
 invalid-method-error method-combination-error"""
 
@@ -34,7 +34,7 @@ class-finalized-p ensure-class eql-specializer-object"""
 """Names of the package SB-MOP (the metaobject protocol, as far as programs look at classes with it)."""
 
 
-def _protocol(name, lambda_list, function):
+def protocol_function(name, lambda_list, function):
     """A generic function whose default method is ``function``."""
     gf = generic(name, lambda_list)
     function.lisp_default = True
@@ -46,23 +46,24 @@ def _protocol(name, lambda_list, function):
 make_instance = generic("MAKE-INSTANCE", "(class &rest initargs &key &allow-other-keys)")
 for _specializer in (CLASSES["SYMBOL"], type):
     generics.add_method(make_instance, (), [_specializer], instances.make_instance, uses_next=False, user=False)
-allocate_instance = _protocol("ALLOCATE-INSTANCE", "(class &rest initargs &key &allow-other-keys)",
+allocate_instance = protocol_function("ALLOCATE-INSTANCE", "(class &rest initargs &key &allow-other-keys)",
                               instances.default_allocate_instance)
-initialize_instance = _protocol("INITIALIZE-INSTANCE", "(instance &rest initargs &key &allow-other-keys)",
+initialize_instance = protocol_function("INITIALIZE-INSTANCE", "(instance &rest initargs &key &allow-other-keys)",
                                 instances.default_initialize_instance)
-reinitialize_instance = _protocol("REINITIALIZE-INSTANCE", "(instance &rest initargs &key &allow-other-keys)",
+reinitialize_instance = protocol_function("REINITIALIZE-INSTANCE", "(instance &rest initargs &key &allow-other-keys)",
                                   instances.default_reinitialize_instance)
-shared_initialize = _protocol("SHARED-INITIALIZE", "(instance slot-names &rest initargs &key &allow-other-keys)",
+shared_initialize = protocol_function("SHARED-INITIALIZE", "(instance slot-names &rest initargs &key &allow-other-keys)",
                               instances.default_shared_initialize)
-change_class = _protocol("CHANGE-CLASS", "(instance new-class &rest initargs &key &allow-other-keys)", instances.default_change_class)
-update_instance_for_different_class = _protocol(
+change_class = protocol_function("CHANGE-CLASS", "(instance new-class &rest initargs &key &allow-other-keys)",
+                                 instances.default_change_class)
+update_instance_for_different_class = protocol_function(
     "UPDATE-INSTANCE-FOR-DIFFERENT-CLASS", "(previous current &rest initargs &key &allow-other-keys)",
     instances.default_update_for_different_class)
-update_instance_for_redefined_class = _protocol(
+update_instance_for_redefined_class = protocol_function(
     "UPDATE-INSTANCE-FOR-REDEFINED-CLASS",
     "(instance added-slots discarded-slots property-list &rest initargs &key &allow-other-keys)",
     instances.default_update_for_redefined_class)
-slot_unbound = _protocol("SLOT-UNBOUND", "(class instance slot-name)", slots.unbound_slot_error)
+slot_unbound = protocol_function("SLOT-UNBOUND", "(class instance slot-name)", slots.unbound_slot_error)
 
 _OPERATIONS = {"SLOT-VALUE": "read the slot's value (slot-value)", "SETF": "set the slot's value (SETF of SLOT-VALUE)",
                "SLOT-BOUNDP": "test to see whether slot is bound (SLOT-BOUNDP)",
@@ -73,10 +74,10 @@ def _slot_missing(cls, instance, slot_name, operation, new_value=None):
     return error(slots.MissingSlot(slot_name, instance, _OPERATIONS.get(symbol_name(operation), symbol_name(operation))))
 
 
-slot_missing = _protocol("SLOT-MISSING", "(class instance slot-name operation &optional new-value)", _slot_missing)
-no_applicable_method = _protocol("NO-APPLICABLE-METHOD", "(generic-function &rest arguments)",
+slot_missing = protocol_function("SLOT-MISSING", "(class instance slot-name operation &optional new-value)", _slot_missing)
+no_applicable_method = protocol_function("NO-APPLICABLE-METHOD", "(generic-function &rest arguments)",
                                  lambda function, *arguments: generics.no_applicable_method_default(function, arguments))
-no_next_method = _protocol("NO-NEXT-METHOD", "(generic-function method &rest arguments)",
+no_next_method = protocol_function("NO-NEXT-METHOD", "(generic-function method &rest arguments)",
                            lambda function, method, *arguments: no_next_method_error(function, method, arguments))
 
 
@@ -88,7 +89,7 @@ def _print_object(object_, stream):
     return object_
 
 
-print_object = _protocol("PRINT-OBJECT", "(object stream)", _print_object)
+print_object = protocol_function("PRINT-OBJECT", "(object stream)", _print_object)
 _printed_by_users: dict = {}
 
 
@@ -119,27 +120,15 @@ def _print_by_method(obj, stream):
     return True
 
 
-def _describe_object(object_, stream):
-    stream.write(f"{prin1_to_string(object_)}\n")
-    names = _slot_names(object_)
-    if names:
-        kind = "structure-object" if hasattr(type(object_), "lisp_structure") else "standard-object"
-        stream.write(f"  [{kind}]\n\nSlots with :INSTANCE allocation:\n")
-        for name in names:
-            value = prin1_to_string(slots.slot_value(object_, name)) if slots.slot_boundp(object_, name) else "#<unbound slot>"
-            stream.write(f"  {symbol_name(name):<30} = {value}\n")
-    return NO_VALUES
-
-
-def _slot_names(object_):
+def slot_names(object_):
+    """The names of the slots of an instance of a class or structure."""
     structure = getattr(type(object_), "lisp_structure", None)
     if structure is not None:
         return [slot.name for slot in structure.slots]
     return list(effective_slots(type(object_)))
 
 
-describe_object = _protocol("DESCRIBE-OBJECT", "(object stream)", _describe_object)
-make_load_form = _protocol("MAKE-LOAD-FORM", "(object &optional environment)",
+make_load_form = protocol_function("MAKE-LOAD-FORM", "(object &optional environment)",
                            lambda object_, environment=None: make_load_form_saving_slots(object_))
 
 
@@ -147,7 +136,7 @@ def make_load_form_saving_slots(object, **keywords):
     """The form that makes a copy of ``object`` when it is evaluated: ``make-instance`` with its slots set."""
     name = class_name(type(object))
     setters = []
-    for slot in _slot_names(object):
+    for slot in slot_names(object):
         if slots.slot_boundp(object, slot):
             place = lisp_list(sym("SLOT-VALUE"), Symbol("OBJECT"), lisp_list(sym("QUOTE"), slot))
             setters.append((place, lisp_list(sym("QUOTE"), slots.slot_value(object, slot))))

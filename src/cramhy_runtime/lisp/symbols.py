@@ -5,14 +5,14 @@ from __future__ import annotations
 from . import packages
 from .conditions import error, type_error
 from .data import Cons, Keyword, MultipleValues, Symbol, UNBOUND, UndefinedFunction, list_from, python_list, truth
+from .definitions import traced_like
 from .evaluator import PACKAGE
-from .packages import Package, find_package_or_error, is_symbol, keyword, printed, string_designator, sym
+from .packages import Package, find_package_or_error, is_symbol, keyword, string_designator, sym
 
 LISP_NAMES = """symbolp keywordp symbol-name symbol-package symbol-value set symbol-function boundp fboundp makunbound fmakunbound
 make-symbol gensym gentemp copy-symbol intern find-symbol unintern export unexport import shadow shadowing-import use-package
 unuse-package find-package package-name package-nicknames package-use-list package-used-by-list package-shadowing-symbols
-list-all-packages make-package delete-package rename-package packagep find-all-symbols package-error-package
-apropos apropos-list"""
+list-all-packages make-package delete-package rename-package packagep find-all-symbols package-error-package"""
 
 
 def _symbol(obj):
@@ -59,7 +59,7 @@ def symbol_function(symbol):
 
 
 def set_symbol_function(function, symbol):
-    symbol.function = function
+    symbol.function = traced_like(symbol.function, function)
     return function
 
 
@@ -251,27 +251,6 @@ def find_all_symbols(name):
 
 def package_error_package(condition):
     return condition.package
-
-
-def apropos(text, package=None):
-    """Print the symbols whose names contain ``text``, with what they are; no values."""
-    from .printer import prin1_to_string
-    from .streams import standard_output
-
-    output = standard_output()
-    output.fresh_line()
-    for symbol in apropos_list(text, package) or ():
-        about = " = " + prin1_to_string(symbol.value) if boundp(symbol) and not isinstance(symbol, Keyword) else ""
-        output.write(f"{prin1_to_string(symbol)}{' (fbound)' if fboundp(symbol) else ''}{about}\n")
-    return MultipleValues()
-
-
-def apropos_list(text, package=None):
-    """The symbols whose names contain ``text``."""
-    text = string_designator(text).upper()
-    homes = packages.all_packages() if package is None else [_package(package)]
-    found = {symbol for home in homes for table in (home.external, home.internal) for name, symbol in table.items() if text in name}
-    return list_from(sorted(found, key=lambda symbol: printed(symbol)))
 
 
 SETTERS = {"SYMBOL-VALUE": set_symbol_value, "SYMBOL-FUNCTION": set_symbol_function, "FDEFINITION": set_symbol_function}

@@ -329,7 +329,7 @@ _MAKERS = {
 # ------------------------------------------------------------------------------------------------------------------- deftype
 
 
-def define_type(symbol, expander):
+def define_type(symbol, expander, documentation=None, lambda_list=None):
     """``deftype``: make ``symbol`` a type specifier; returns it.
 
     expander: a function of the whole specifier, a list ``(symbol . arguments)``, and an environment (nil), as macro functions
@@ -337,9 +337,15 @@ def define_type(symbol, expander):
     """
     if sym("CAR").package is symbol.package and symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
+    expander.__doc__, expander.__lisp_lambda_list__ = documentation, lambda_list
     _expanders[symbol] = expander
     forget_predicates()
     return symbol
+
+
+def type_expander(symbol):
+    """The function that ``deftype`` gave ``symbol``, with its documentation and lambda list; ``None`` when there is none."""
+    return _expanders.get(symbol)
 
 
 def expand_type(specifier):

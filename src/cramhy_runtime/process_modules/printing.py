@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from ..lisp.data import list_from
+from ..lisp.describing import describe_facts, describe_object
 from ..lisp.printer import define_printer, print_unreadable
-from .modules import AbstractProcessModule
+from .modules import AbstractProcessModule, ProcessModule
 
 
 def print_module(module, stream):
@@ -11,3 +13,13 @@ def print_module(module, stream):
 
 
 define_printer(AbstractProcessModule, print_module)
+
+
+@describe_object.method(AbstractProcessModule, None)
+def describe_module(module, stream):
+    """Its name and state, what it works on, and what waits in its queue."""
+    facts = [("Name", module.name), ("Status", module.status_fluent.peek())]
+    if isinstance(module, ProcessModule):
+        facts += [("Works on", module.request and module.request.input),
+                  ("Queue", list_from([request.input for request in module.queue])), ("Last result", module.result_fluent.peek())]
+    return describe_facts(module, stream, "process-module", facts)
