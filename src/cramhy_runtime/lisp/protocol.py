@@ -18,7 +18,7 @@ from .data import MultipleValues, Symbol, lisp_list, list_from, python_list
 from .generic import EqlSpecializer, GenericFunction, find_method_or_none, generic, specializer_of, when_methods_change
 from .generic_errors import no_next_method_error
 from .packages import sym, symbol_name
-from .printer import prin1_to_string, standard_print_object
+from .printer import standard_print_object
 
 LISP_NAMES = """make-instance allocate-instance initialize-instance reinitialize-instance shared-initialize change-class
 update-instance-for-different-class update-instance-for-redefined-class slot-missing slot-unbound no-applicable-method
