@@ -1,7 +1,7 @@
 """Arithmetic and comparison of numbers: ``+ - * / = < max``, and the tests of a number's kind.
 
 The numeric tower is Python's: `int`, `Fraction` for ratios (a ratio with denominator 1 becomes an integer), `float` for
-single-floats, `DoubleFloat` for doubles, `complex`. A Python float is a single here and keeps its double precision inside;
+single-floats, `DoubleFloat` for doubles, and three kinds of `complex`. A Python float is a single here and keeps its double precision inside;
 rounding to 24 bits happens where Common Lisp makes it visible: in the printer, in ``coerce`` to double and in ``rational``
 (see `single`). ``t``, ``nil`` and strings are no numbers, although Python's ``True`` is.
 
@@ -17,6 +17,7 @@ import struct
 import sys
 from fractions import Fraction
 
+from .complex_numbers import DoubleComplex, ExactComplex
 from .conditions import DivisionByZero, FloatingPointOverflow, error, type_error
 from .data import DoubleFloat, lisp_list
 from .late import late
@@ -41,29 +42,6 @@ def single(value):
         return _pack_single.unpack(_pack_single.pack(value))[0]
     except OverflowError:
         return math.copysign(math.inf, value)
-
-
-class DoubleComplex(complex):
-    """A complex number of double-floats, as plain ``complex`` is one of single-floats."""
-
-    __slots__ = ()
-    double = True  # asked by the printer
-
-
-def _keep_double(name):
-    operation = getattr(complex, name)
-
-    def method(self, other):
-        result = operation(self, complex(other))
-        return result if result is NotImplemented else DoubleComplex(result)
-
-    return method
-
-
-for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
-    setattr(DoubleComplex, f"__{_name}__", _keep_double(f"__{_name}__"))
-DoubleComplex.__neg__ = lambda self: DoubleComplex(complex.__neg__(self))
-DoubleComplex.conjugate = lambda self: DoubleComplex(complex.conjugate(self))
 
 
 # ---------------------------------------------------------------------------------------------------------------- the kinds
@@ -154,12 +132,22 @@ def _finite(operation, result, *operands):
 
 
 def _operate(operation, function, a, b):
-    need_number(a)
-    need_number(b)
+    a, b = _complex_operands(need_number(a), need_number(b))
     try:
         return normal(function(a, b))
     except OverflowError:
         return overflow(operation, a, b)
+
+
+def _complex_operands(a, b):
+    # Two contagions that Python does not know: of a double to a complex of singles, and none of a ratio to an exact one.
+    for one, other in ((a, b), (b, a)):
+        if isinstance(one, complex):
+            if other.__class__ is DoubleFloat and one.__class__ is complex:
+                return (DoubleComplex(a), b) if one is a else (a, DoubleComplex(b))
+            if other.__class__ is Fraction and isinstance(one, ExactComplex):
+                return (a, ExactComplex(b, 0)) if one is a else (ExactComplex(a, 0), b)
+    return a, b
 
 
 def add2(a, b):
@@ -214,8 +202,7 @@ def div2(a, b):
             return _zero_division(a, b)
         except OverflowError:
             return overflow("/", a, b)
-    need_number(a)
-    need_number(b)
+    a, b = _complex_operands(need_number(a), need_number(b))
     try:
         return normal(a / b if kind is not int or other is not int else Fraction(a, b))
     except ZeroDivisionError:

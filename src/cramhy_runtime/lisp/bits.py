@@ -87,21 +87,26 @@ def byte(size, position):
     return Cons(_natural(size), _natural(position))
 
 
+def _spec(bytespec):
+    return bytespec if isinstance(bytespec, Cons) else type_error(bytespec, sym("CONS"))
+
+
 def byte_size(bytespec):
-    return bytespec.car
+    return _spec(bytespec).car
 
 
 def byte_position(bytespec):
-    return bytespec.cdr
+    return _spec(bytespec).cdr
 
 
 def _mask(bytespec):
-    return (1 << bytespec.car) - 1
+    return (1 << _spec(bytespec).car) - 1
 
 
 def ldb(bytespec, integer):
     """The byte of ``integer``, moved to position 0."""
-    return need_integer(integer) >> bytespec.cdr & _mask(bytespec)
+    mask = _mask(bytespec)
+    return need_integer(integer) >> bytespec.cdr & mask
 
 
 def ldb_test(bytespec, integer):
@@ -116,7 +121,8 @@ def dpb(newbyte, bytespec, integer):
 
 def mask_field(bytespec, integer):
     """The byte of ``integer``, where it stands."""
-    return need_integer(integer) & _mask(bytespec) << bytespec.cdr
+    mask = _mask(bytespec)
+    return need_integer(integer) & mask << bytespec.cdr
 
 
 def deposit_field(newbyte, bytespec, integer):
@@ -135,7 +141,7 @@ _BOOLE = (("CLR", lambda a, b: 0), ("SET", lambda a, b: -1), ("1", lambda a, b: 
 def boole(op, integer1, integer2):
     """The logical operation ``op``, one of the constants BOOLE-AND, BOOLE-XOR, ..."""
     if op not in range(16):
-        return type_error(op, "(MOD 16)")
+        return type_error(op, "(UNSIGNED-BYTE 4)")
     return _BOOLE[op][1](need_integer(integer1), need_integer(integer2))
 
 

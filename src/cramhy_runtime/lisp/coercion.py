@@ -10,7 +10,8 @@ from __future__ import annotations
 from .arithmetic import is_real
 from .conditions import SimpleTypeError, error, undefined_function
 from .data import Cons, LispString, Symbol, UndefinedFunction
-from .irrational import to_double, to_single
+from .complex_numbers import parts
+from .irrational import complex_, to_double, to_single
 from .packages import is_symbol, sym
 from .types import expand_type, type_predicate
 
@@ -59,11 +60,14 @@ def _is_sequence(obj):
 
 
 def _to_complex(obj, specifier):
-    if isinstance(obj, complex):
+    part = specifier.cdr.car if isinstance(specifier, Cons) and specifier.cdr else sym("*")
+    if type_predicate(specifier)(obj):
         return obj
-    if not is_real(obj):
+    if not isinstance(obj, complex) and not is_real(obj):
         return _cannot(obj, specifier)
-    return complex(obj, 0.0) if isinstance(obj, float) else obj
+    if part is not sym("*") and part not in (sym("REAL"), sym("RATIONAL"), sym("INTEGER")):
+        return complex_(*(coerce(each, part) for each in (parts(obj) if isinstance(obj, complex) else (obj, 0))))
+    return complex_(obj, 0.0) if isinstance(obj, float) else obj
 
 
 def _to_function(obj):

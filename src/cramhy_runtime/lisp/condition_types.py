@@ -240,6 +240,16 @@ class FloatingPointInvalidOperation(ArithmeticError_):
 
 
 @public
+class FloatingPointUnderflow(ArithmeticError_):
+    lisp_name = "FLOATING-POINT-UNDERFLOW"
+
+
+@public
+class FloatingPointInexact(ArithmeticError_):
+    lisp_name = "FLOATING-POINT-INEXACT"
+
+
+@public
 class PackageError(SimpleCondition, Error):
     lisp_name = "PACKAGE-ERROR"
     initargs = {"PACKAGE": "package"}

@@ -42,7 +42,7 @@ def eql(x, y):
             return True if x or copysign(1.0, x) == copysign(1.0, y) else None
         return True if x != x and y != y else None
     if isinstance(x, complex):
-        return True if x == y and getattr(x, "double", None) == getattr(y, "double", None) else None
+        return True if x == y else None
     return None
 
 
@@ -144,7 +144,7 @@ def eql_key(x):
     if cls is bool:
         return (True,) if x else None
     if isinstance(x, complex):
-        return (cls, complex(x), getattr(x, "double", None))
+        return (cls, x.real, x.imag)
     return (id(x), None)
 
 

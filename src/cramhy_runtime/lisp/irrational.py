@@ -1,8 +1,7 @@
 """Roots, powers, logarithms, trigonometry, floats taken apart, and complex numbers.
 
 An integer, ratio or single-float argument gives a single-float, a double-float gives a double, and where the real line ends
-(``(sqrt -4)``, ``(acos 2)``) the result is complex. Complex numbers are Python's, that is, of floats: ``#C(1 2)`` is
-``#C(1.0 2.0)`` here. Source: ANSI 12.1.3 and 12.2.
+(``(sqrt -4)``, ``(acos 2)``) the result is complex. Source: ANSI 12.1.3 and 12.2.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ import math
 from fractions import Fraction
 
 from .arithmetic import (
-    DoubleComplex,
     division_by_zero,
     is_integer,
     is_rational,
@@ -25,6 +23,7 @@ from .arithmetic import (
     overflow,
     single,
 )
+from .complex_numbers import DoubleComplex, ExactComplex, exact, exact_power, parts
 from .conditions import ArithmeticError_, DivisionByZero, FloatingPointOverflow, error, type_error
 from .data import UNSUPPLIED, DoubleFloat, MultipleValues, lisp_list
 from .packages import sym
@@ -39,6 +38,7 @@ class ArgumentsOutOfDomain(ArithmeticError_):
     lisp_name = "SB-INT::ARGUMENTS-OUT-OF-DOMAIN-ERROR"
 
 
+_SINGLES_END = 2.0 ** 128
 PI = DoubleFloat(math.pi)
 
 
@@ -58,7 +58,11 @@ def _float(number):
     try:
         return float(number)
     except OverflowError:
-        return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym("SINGLE-FLOAT"))))
+        return too_large_for(number, "SINGLE-FLOAT")
+
+
+def too_large_for(number, kind):
+    return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym(kind))))
 
 
 def _apply(name, real, complex_, number, domain=None):
@@ -198,12 +202,14 @@ def expt(base, power):
 
 def _integer_power(base, power):
     if power == 0:
-        return base.__class__(1) if not is_rational(base) else 1
+        return 1 if is_rational(base) or isinstance(base, ExactComplex) else base.__class__(1)
     if base == 0 and power < 0:
         return division_by_zero("EXPT", base, power)
     try:
         if is_rational(base):
             return base ** power if power > 0 and base.__class__ is int else normal(Fraction(base) ** power)
+        if isinstance(base, ExactComplex):
+            return exact_power(base, power)
         if isinstance(base, complex):
             return complex_kind(base)(complex(base) ** power)
         return base.__class__(float(base) ** power)
@@ -216,21 +222,27 @@ def _integer_power(base, power):
 
 def to_single(number):
     """The real ``number`` as a single-float, that is, a plain Python float."""
-    return float(number) if number.__class__ is DoubleFloat else _float(number)
+    if number.__class__ is float:
+        return number
+    value = _float(number)
+    return value if abs(value) < _SINGLES_END or math.isinf(value) else too_large_for(number, "SINGLE-FLOAT")
 
 
 def to_double(number):
     """The real ``number`` as a `DoubleFloat`; a single-float brings the 24 bits that it has."""
     if number.__class__ is float:
         return DoubleFloat(single(number))
-    return DoubleFloat(_float(number))
+    try:
+        return DoubleFloat(number)
+    except OverflowError:
+        return too_large_for(number, "DOUBLE-FLOAT")
 
 
 def float_(number, prototype=UNSUPPLIED):
     """``number`` as a float of the kind of ``prototype``; without one, floats stay and rationals become singles."""
     need_real(number)
     if prototype is UNSUPPLIED:
-        return number if isinstance(number, float) else _float(number)
+        return number if isinstance(number, float) else to_single(number)
     _need_float(prototype)
     if prototype.__class__ is number.__class__:
         return number
@@ -306,7 +318,9 @@ def float_digits(number):
 
 
 def float_precision(number):
-    return float_digits(number) if _need_float(number) != 0 else 0
+    digits, exponent = float_digits(number), math.frexp(_exact(number))[1]
+    least = -1074 if number.__class__ is DoubleFloat else -149
+    return max(0, min(digits, exponent - least)) if number else 0
 
 
 def float_radix(number):
@@ -328,22 +342,18 @@ def complex_(realpart, imagpart=0):
     """``cl:complex``; with rational parts and imaginary part 0 just the real part."""
     need_real(realpart)
     need_real(imagpart)
-    if imagpart == 0 and is_rational(realpart) and is_rational(imagpart):
-        return realpart
+    if is_rational(realpart) and is_rational(imagpart):
+        return exact(realpart, imagpart)
     return complex_kind(realpart, imagpart)(realpart, imagpart)
 
 
-def _part(number, value):
-    return DoubleFloat(value) if isinstance(number, DoubleComplex) else value
-
-
 def realpart(number):
-    return _part(number, number.real) if isinstance(number, complex) else need_number(number)
+    return parts(number)[0] if isinstance(number, complex) else need_number(number)
 
 
 def imagpart(number):
     if isinstance(need_number(number), complex):
-        return _part(number, number.imag)
+        return parts(number)[1]
     return number * 0 if isinstance(number, float) else 0
 
 
@@ -355,9 +365,9 @@ def phase(number):
     """The angle of ``number`` in the complex plane, in radians."""
     need_number(number)
     if isinstance(number, complex):
-        return _part(number, cmath.phase(number))
+        return (DoubleFloat if isinstance(number, DoubleComplex) else float)(cmath.phase(number))
     kind = result_kind(number)
-    return kind(math.pi) if number < 0 else kind(0.0) if isinstance(number, float) else 0
+    return kind(math.pi) if number < 0 else kind(0.0)
 
 
 def cis(radians):

@@ -13,6 +13,7 @@ import weakref
 from . import print_controls as controls
 from .backquote import Comma
 from .condition_types import shown_with
+from .complex_numbers import parts
 from .conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
 from .data import Cons, DoubleFloat, LispString, Symbol
 from .late import late
@@ -234,11 +235,11 @@ def _print_path(path, stream):
 
 
 def _print_complex(number, stream):
-    double = DoubleFloat if getattr(number, "double", False) else float
     stream.write("#C(")
-    output_object(double(number.real), stream)
+    real, imaginary = parts(number)
+    output_object(real, stream)
     stream.write(" ")
-    output_object(double(number.imag), stream)
+    output_object(imaginary, stream)
     stream.write(")")
 
 

@@ -223,8 +223,9 @@ def bounds(text, start, end):
     if isinstance(start, int) and isinstance(stop, int) and 0 <= start <= stop <= len(text):
         return start, stop
     from .conditions import error
+    from .sequence_types import BoundingIndicesBad
 
-    return error("The bounding indices ~S and ~S are bad for a sequence of length ~S.", start, end, len(text))
+    return error(BoundingIndicesBad(start, end, len(text)))
 
 
 LISP_NAMES = "parse-integer"

@@ -16,6 +16,7 @@ from .arithmetic import is_integer, is_number, is_rational, is_real
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_objects import StandardObject, when_classes_change
 from .classes import class_name, class_of, symbol_class
+from .complex_numbers import parts
 from .conditions import SimpleError, error
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
 from .element_types import upgraded_element_type
@@ -313,7 +314,10 @@ def _values(arguments, specifier):
 
 
 def _complex(arguments, _):
-    return _ATOMIC["COMPLEX"]
+    if not arguments or is_star(arguments[0]):
+        return _ATOMIC["COMPLEX"]
+    fits = type_predicate(arguments[0])
+    return lambda obj: isinstance(obj, complex) and all(map(fits, parts(obj)))
 
 
 _MAKERS = {
@@ -389,15 +393,24 @@ def type_of(object):
     if cls is Character:
         kind = "STANDARD-CHAR" if _is_standard_character(object) else "BASE-CHAR" if object.char < "\x80" else "EXTENDED-CHAR"
         return sym(kind)
-    if cls is complex:
-        return lisp_list(sym("COMPLEX"), lisp_list(sym("SINGLE-FLOAT"), *sorted((object.real, object.imag))))
+    if isinstance(object, complex):
+        return lisp_list(sym("COMPLEX"), _part_type(object))
     if _is_array(object):
         return array_type(object)
     return class_name(class_of(object))
 
 
+def _part_type(number):
+    real, imaginary = parts(number)
+    if isinstance(real, float):
+        kind = class_name(class_of(real))
+    else:
+        kind = sym("INTEGER" if real.__class__ is imaginary.__class__ is int else "RATIONAL")
+    return lisp_list(kind, *sorted((real, imaginary)))
+
+
 def upgraded_complex_part_type(typespec, environment=None):
-    return sym("REAL") if typespec is not None else None
+    return typespec
 
 
 def __getattr__(name):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ..backquote import Comma
+from ..complex_numbers import parts
 from ..data import Character, Cons, DoubleFloat, Symbol
 from .core import List, expression, word
 
@@ -99,6 +100,8 @@ class Constants:
             return expression(word("Ldouble"), float_model(float(obj)))
         if kind is Fraction:
             return expression(word("Lratio"), obj.numerator, obj.denominator)
+        if isinstance(obj, complex):
+            return expression(word("Lcomplex"), *map(self.builder, parts(obj)))
         if kind is Character:
             return expression(word("Lcharacter"), obj.char)
         if kind is Comma:

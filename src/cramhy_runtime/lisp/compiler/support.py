@@ -19,6 +19,7 @@ from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbo
                     list_from, lisp_list, one, truth)
 from ..dynamic import Bindings, bind, unbind
 from ..functions import function_of
+from ..irrational import complex_
 from ..packages import intern, keyword, printed, sym
 
 
@@ -213,6 +214,7 @@ NAMESPACE = {
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
+    "Lcomplex": complex_,
     "Lcharacter": Character, "Lfloat": float, "Lcomma": Comma,
     "Ladd2": arithmetic.add2, "Lsub2": arithmetic.sub2, "Lmul2": arithmetic.mul2, "Ldiv2": arithmetic.div2, "Llt2": arithmetic.lt2,
     "Lgt2": arithmetic.gt2, "Lle2": arithmetic.le2, "Lge2": arithmetic.ge2, "Lnum_eq2": arithmetic.num_eq2,
