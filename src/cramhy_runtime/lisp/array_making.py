@@ -131,8 +131,7 @@ def _displaced(dimensions, size, element_type, adjustable, fill_pointer, target,
     dimensions_of(target) if isinstance(target, (list, str, LispString, LispArray)) else \
         type_error(target, "(OR ARRAY NULL)", "\nwhen binding SB-VM::DISPLACED-TO")
     if array_element_type(target) != element_type and not isinstance(element_type, Cons):
-        error("Array element type ~S does not match the type ~S of the array it is displaced to.", element_type,
-              array_element_type(target))
+        error("Can't displace an array of type ~S into another of type ~S", element_type, array_element_type(target))
     if offset.__class__ is not int or offset < 0:
         type_error(offset, INDEX_TYPE, "\nwhen binding SB-VM::DISPLACED-INDEX-OFFSET")
     if isinstance(target, (str, LispString)):

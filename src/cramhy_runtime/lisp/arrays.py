@@ -28,6 +28,9 @@ bit-and bit-ior bit-xor bit-eqv bit-nand bit-nor bit-andc1 bit-andc2 bit-orc1 bi
 """
 
 
+CONSTANTS = VARIABLES = {"ARRAY-DIMENSION-LIMIT": 2 ** 62 - 3, "ARRAY-TOTAL-SIZE-LIMIT": 2 ** 62 - 3, "ARRAY-RANK-LIMIT": 129}
+
+
 class InvalidArrayIndex(TypeError_):
     """A subscript outside the array."""
 
@@ -184,7 +187,18 @@ def set_bit(value, array, *subscripts):
     return set_aref(value, _bit_array(array), *subscripts)
 
 
-sbit, set_sbit = bit, set_bit
+def sbit(array, *subscripts):
+    """``sbit``: the bit at ``subscripts`` of a simple bit array."""
+    return aref(_simple_bit_array(array), *subscripts)
+
+
+def set_sbit(value, array, *subscripts):
+    """``(setf sbit)``."""
+    return set_aref(value, _simple_bit_array(array), *subscripts)
+
+
+def _simple_bit_array(array):
+    return array if is_simple(_bit_array(array)) else type_error(array, "(SIMPLE-ARRAY BIT)", "\nwhen binding ARRAY")
 
 
 def _bit_array(array, context="\nwhen binding ARRAY"):

@@ -16,6 +16,7 @@ from .data import Character, LispString
 from .equality import folded
 from .packages import is_symbol, string_designator, symbol_name
 
+CONSTANTS = VARIABLES = {"CHAR-CODE-LIMIT": 0x110000}
 LISP_NAMES = """
 char-code code-char char-int char-name name-char character characterp
 char= char/= char< char> char<= char>= char-equal char-not-equal char-lessp char-greaterp char-not-greaterp char-not-lessp
@@ -78,6 +79,8 @@ def char_name(character):
 
 def name_char(name):
     """``name-char``: the character of that name, in any case; nil if there is none."""
+    if not isinstance(name, (str, LispString, Character)) and not is_symbol(name):
+        return type_error(name, "(OR STRING SYMBOL CHARACTER)")
     name = str(string_designator(name))
     found = _BY_NAME.get(name.upper())
     if found is None:

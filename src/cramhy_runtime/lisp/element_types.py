@@ -99,11 +99,20 @@ def check_element(element, element_type, context=None):
     elif element_type is _SINGLE or element_type is _DOUBLE:
         fits = isinstance(element, float)
     else:
-        fits = element.__class__ is int
+        fits = element.__class__ is int and _in_range(element, element_type)
     if not fits:
         type_error(element, element_type, f"\nwhen setting an element of (ARRAY {printed_type(element_type)})"
                    if context is None else context)
     return element
+
+
+def _in_range(integer, element_type):
+    if element_type is _FIXNUM:
+        return -2 ** 62 <= integer < 2 ** 62
+    bits = element_type.cdr.car
+    if element_type.car.name == "UNSIGNED-BYTE":
+        return 0 <= integer < 1 << bits
+    return -(1 << bits - 1) <= integer < 1 << bits - 1
 
 
 def printed_type(element_type):

@@ -9,6 +9,7 @@ from . import conditions
 from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError, error, program_error
 from .data import Cons, MultipleValues, UNSUPPLIED, list_from, truth
 from .evaluator import PACKAGE
+from .hash_tables import need_table
 from .packages import (all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
                        string_designator, sym, symbol_name)
 
@@ -237,7 +238,7 @@ def package_iterator(packages, kinds):
 
 def hash_table_iterator(table):
     """The generator function of ``with-hash-table-iterator``: T, key and value a call, nil at the end."""
-    entries = iter(table.items())
+    entries = iter(need_table(table).items())
     return lambda: next((MultipleValues((True, key, value)) for key, value in entries), None)
 
 

@@ -16,6 +16,7 @@ from .conditions import error, type_error
 from .data import Cons, MultipleValues, Symbol, UndefinedFunction, values
 from .equality import eql
 
+CONSTANTS = VARIABLES = dict.fromkeys(("CALL-ARGUMENTS-LIMIT", "LAMBDA-PARAMETERS-LIMIT", "MULTIPLE-VALUES-LIMIT"), 2 ** 62 - 1)
 LISP_NAMES = "identity constantly complement funcall apply functionp values values-list not"
 
 

@@ -165,7 +165,8 @@ def _strong(thing):
     return thing() if thing.__class__ is _Weak else thing
 
 
-def _table(thing):
+def need_table(thing):
+    """``thing`` if it is a hash table, else a type-error."""
     if not isinstance(thing, HashTable):
         type_error(thing, "HASH-TABLE", "\nwhen binding HASH-TABLE")
     return thing
@@ -197,7 +198,7 @@ def _test_name(test):
 def gethash(key, table, default=None):
     """``gethash``: two values, the value of ``key`` (or ``default``) and whether there is one."""
     if table.__class__ is not HashTable:
-        _table(table)
+        need_table(table)
     entry = table.entries.get(table.hash_key(key))
     if entry is None:
         return MultipleValues((default, None))
@@ -206,25 +207,25 @@ def gethash(key, table, default=None):
 
 def set_gethash(value, key, table, default=None):
     """``(setf gethash)``; ``default`` is accepted and not used, as in the standard."""
-    _table(table).put(key, value)
+    need_table(table).put(key, value)
     return value
 
 
 def remhash(key, table):
     """``remhash``: remove the entry of ``key``; whether there was one."""
-    return True if _table(table).remove(key) else None
+    return True if need_table(table).remove(key) else None
 
 
 def clrhash(table):
     """``clrhash``: remove all entries; returns the table."""
-    _table(table).clear()
+    need_table(table).clear()
     return table
 
 
 def maphash(function, table):
     """``maphash``: call ``function`` with each key and value; it may change or remove entries. Returns nil."""
     function = function_of(function, "\nwhen binding SB-KERNEL:FUNCTION-DESIGNATOR")
-    for key, value in _table(table).items():
+    for key, value in need_table(table).items():
         function(key, value)
 
 
@@ -235,57 +236,57 @@ def hash_table_p(thing):
 
 def hash_table_count(table):
     """``hash-table-count``: the number of entries."""
-    return len(_table(table))
+    return len(need_table(table))
 
 
 def hash_table_test(table):
     """``hash-table-test``: the symbol that names the test."""
-    return sym(_table(table).test)
+    return sym(need_table(table).test)
 
 
 def hash_table_size(table):
     """``hash-table-size``: for how many entries there is room."""
-    return max(_table(table).size, len(table))
+    return max(need_table(table).size, len(table))
 
 
 def hash_table_rehash_size(table):
     """``hash-table-rehash-size``: what the program asked for; Python's tables grow by themselves."""
-    return _table(table).rehash_size
+    return need_table(table).rehash_size
 
 
 def hash_table_rehash_threshold(table):
     """``hash-table-rehash-threshold``: likewise."""
-    return _table(table).rehash_threshold
+    return need_table(table).rehash_threshold
 
 
 def hash_table_weakness(table):
     """``sb-ext:hash-table-weakness``: nil or the keyword."""
-    return _table(table).weakness and sym(":" + table.weakness)
+    return need_table(table).weakness and sym(":" + table.weakness)
 
 
 def hash_table_synchronized_p(table):
     """``sb-ext:hash-table-synchronized-p``: whether it was made so. With one baton every table is safe."""
-    return True if _table(table).synchronized else None
+    return True if need_table(table).synchronized else None
 
 
 def hash_table_keys(table):
     """``alexandria:hash-table-keys``: the list of the keys."""
-    return list_from(_table(table).keys())
+    return list_from(need_table(table).keys())
 
 
 def hash_table_values(table):
     """``alexandria:hash-table-values``: the list of the values."""
-    return list_from(_table(table).values())
+    return list_from(need_table(table).values())
 
 
 def hash_table_alist(table):
     """``alexandria:hash-table-alist``: the list of the pairs (key . value)."""
-    return list_from([Cons(key, value) for key, value in _table(table).items()])
+    return list_from([Cons(key, value) for key, value in need_table(table).items()])
 
 
 def hash_table_plist(table):
     """``alexandria:hash-table-plist``: the property list of the entries."""
-    return list_from([thing for entry in _table(table).items() for thing in entry])
+    return list_from([thing for entry in need_table(table).items() for thing in entry])
 
 
 SETTERS = {"GETHASH": set_gethash}

@@ -324,7 +324,7 @@ def property_cell(plist, indicator, context=""):
         cell = cell.cdr.cdr
     if cell is None or cell is False:
         return None
-    return not_a_list(cell, context) if cell is plist else _malformed(plist)
+    return not_a_list(cell, context)
 
 
 def getf(plist, indicator, default=None):

@@ -209,7 +209,7 @@ def string_downcase(string, *, start=0, end=None):
 
 def string_capitalize(string, *, start=0, end=None):
     """``string-capitalize``: every word with a capital and the rest in lowercase; words are letters and digits."""
-    return _changed(_text(string), start, end, _capital)
+    return _changed(_text(string, ""), start, end, _capital)
 
 
 def _in_place(string_, start, end, change):
@@ -249,19 +249,19 @@ def _bag(characters):
 
 def string_trim(characters, string):
     """``string-trim``: the string without the given characters at both ends."""
-    bag, text = _bag(characters), _text(string)
+    bag, text = _bag(characters), _text(string, "")
     return text.strip(bag) if bag else text
 
 
 def string_left_trim(characters, string):
     """``string-left-trim``: the string without the given characters at its beginning."""
-    bag, text = _bag(characters), _text(string)
+    bag, text = _bag(characters), _text(string, "")
     return text.lstrip(bag) if bag else text
 
 
 def string_right_trim(characters, string):
     """``string-right-trim``: the string without the given characters at its end."""
-    bag, text = _bag(characters), _text(string)
+    bag, text = _bag(characters), _text(string, "")
     return text.rstrip(bag) if bag else text
 
 

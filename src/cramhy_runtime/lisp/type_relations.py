@@ -27,6 +27,7 @@ _NUMERIC = {  # kinds of numbers, by name: (the leaf kinds it consists of, low, 
 }
 _ARRAYS = {"ARRAY": (False, False, None), "SIMPLE-ARRAY": (True, False, None), "VECTOR": (False, True, None),
            "SIMPLE-VECTOR": (True, True, True), "STRING": (False, True, "CHARACTER"), "SIMPLE-STRING": (True, True, "CHARACTER"),
+           "BASE-STRING": (False, True, "BASE-CHAR"), "SIMPLE-BASE-STRING": (True, True, "BASE-CHAR"),
            "BIT-VECTOR": (False, True, "BIT"), "SIMPLE-BIT-VECTOR": (True, True, "BIT")}
 _PARENTS = {"KEYWORD": "SYMBOL", "BASE-CHAR": "CHARACTER", "STANDARD-CHAR": "BASE-CHAR", "EXTENDED-CHAR": "CHARACTER",
             "COMPILED-FUNCTION": "FUNCTION", "STANDARD-GENERIC-FUNCTION": "GENERIC-FUNCTION", "GENERIC-FUNCTION": "FUNCTION"}
@@ -245,7 +246,8 @@ def _array_within(name, arguments, other, others):
     if other_simple and not simple:
         return False
     if other_element is not None and (element is None or not same_specifier(element, other_element)):
-        return False
+        if not (element is sym("BASE-CHAR") and other in ("STRING", "SIMPLE-STRING")):  # strings are of any characters
+            return False
     if other_shape is None:
         return True
     if shape is None or len(shape) != len(other_shape):
