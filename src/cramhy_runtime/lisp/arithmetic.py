@@ -1,9 +1,9 @@
 """Arithmetic and comparison of numbers: ``+ - * / = < max``, and the tests of a number's kind.
 
-The numeric tower is Python's: `int`, `Fraction` for ratios (a ratio with denominator 1 becomes an integer), `float` for
-single-floats, `DoubleFloat` for doubles, and three kinds of `complex`. A Python float is a single here and keeps its double precision inside;
-rounding to 24 bits happens where Common Lisp makes it visible: in the printer, in ``coerce`` to double and in ``rational``
-(see `single`). ``t``, ``nil`` and strings are no numbers, although Python's ``True`` is.
+The numeric tower is Python's: `int`, `Fraction` for ratios (a ratio with denominator 1 becomes an integer), `float` for single-
+floats, `DoubleFloat` for doubles, and three kinds of `complex`. A Python float is a single here and keeps its double precision
+inside; rounding to 24 bits happens where Common Lisp makes it visible: in the printer, in ``coerce`` to double and in
+``rational`` (see `single`). ``t``, ``nil`` and strings are no numbers, although Python's ``True`` is.
 
 The compiler calls `add2`, `sub2`, `mul2`, `div2`, `lt2`, `gt2`, `le2`, `ge2`, `num_eq2` and `num_ne2` for two arguments.
 They test for the two common classes first, so ordinary numbers pay for one set lookup each. Source: ANSI chapter 12; texts

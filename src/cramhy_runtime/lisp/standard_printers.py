@@ -15,7 +15,7 @@ from .backquote import Comma
 from .condition_types import shown_with
 from .complex_numbers import parts
 from .conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
-from .data import Cons, DoubleFloat, LispString, Symbol
+from .data import Cons, LispString, Symbol
 from .late import late
 from .packages import Package, all_packages, is_symbol, sym, symbol_name
 from .pretty import NO_OBJECT, call_logical_block
