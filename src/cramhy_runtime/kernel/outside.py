@@ -10,7 +10,7 @@ takes. A source that only may send messages (`outside_source`) does not hold the
 
 from _thread import get_ident
 
-from .budget import SLICE, STAIRS, budget
+from .budget import SLICE, budget, need_headroom
 from .tasks import BLOCKED, RUNNING
 
 
@@ -51,7 +51,7 @@ class Outside:
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, STAIRS)
+        need_headroom()
         if me.carrier.ident != get_ident():
             self._refuse("start a blocking call")
         me.why = lambda: f"the call {getattr(fn, '__name__', fn)!s} outside of the kernel"

@@ -22,7 +22,7 @@ from collections import deque
 
 from . import reports
 from .backends import NoStack, make_backend
-from .budget import SLICE, STAIRS, budget
+from .budget import SLICE, budget, need_headroom
 from .clocks import Bell, make_clock
 from .endings import PATIENCE, Endings
 from .errors import Deadlock, Interrupted, KernelError, TimeLimit
@@ -121,7 +121,7 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, STAIRS)
+        need_headroom()
         if me.carrier.ident != get_ident():
             self._refuse("wait")
         me.why = why
@@ -183,7 +183,7 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, STAIRS)
+        need_headroom()
         if me.carrier.ident != get_ident():
             self._refuse("yield")
         self._enqueue(me)
@@ -205,7 +205,7 @@ class Kernel(Endings, Outside):
             return
         if me.attention:
             me.deliver()
-        isinstance(None, STAIRS)
+        need_headroom()
         me.state = RUNNABLE
         me.preempted = True
         self._queue.append(me)
@@ -223,7 +223,7 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention:
             me.deliver()
-        isinstance(None, STAIRS)
+        need_headroom()
         if me.carrier.ident != get_ident():
             self._refuse("settle")
         me.state = SETTLING
