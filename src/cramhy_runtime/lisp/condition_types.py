@@ -421,8 +421,10 @@ def _wrong_argument_count(exception):
         return None
     name, function = _called(match["name"])
     code = getattr(function, "__code__", None)
-    if code is None or match["missing"] not in (None, *code.co_varnames):  # another function of that name
+    if not _takes(code, match["missing"]):  # another function of that name
         function, code = None, _code_of(match["name"], exception)
+        if not _takes(code, match["missing"]):
+            code = None
     if match["given"]:
         condition = SimpleProgramError("invalid number of arguments: ~S", int(match["given"]))
     elif code is None:
@@ -451,6 +453,11 @@ def _code_of(name, exception):
             return code
         codes += [constant for constant in code.co_consts if isinstance(constant, type(code))]
     return None
+
+
+def _takes(code, missing):
+    """Whether a function of that code can be the one that misses its parameter ``missing`` (``None``: was given too many)."""
+    return code is not None and (missing is None or missing in code.co_varnames)
 
 
 def _called(name):
