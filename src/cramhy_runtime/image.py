@@ -13,7 +13,7 @@ ROOMS = ("transforms", "prolog", "cpl", "ros", "turtlesim", "designators", "proc
 
 SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
 cram-executive cl-transforms roslisp roslisp-utilities std_msgs-msg std_srvs-srv geometry_msgs-msg rosgraph_msgs-msg turtlesim-msg
-turtlesim-srv cram-math alexandria lisp-unit actionlib_msgs-msg roscpp-msg roscpp-srv roscpp_tutorials-srv turtlesim"""
+turtlesim-srv actionlib_msgs-msg roscpp-msg roscpp-srv roscpp_tutorials-srv turtlesim"""
 """The systems of CRAM and ROS that need no loading, because they are here."""
 
 _booted = False
@@ -26,7 +26,7 @@ def boot():
         return
     _booted = True
     from cramhy_runtime import kernel
-    from cramhy_runtime.lisp import evaluator, importer, package, places_in_source, ros_load, systems
+    from cramhy_runtime.lisp import evaluator, importer, package, packages, places_in_source, ros_load, systems
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 
     kernel.allow_deep_recursion()
@@ -38,6 +38,7 @@ def boot():
     for room in ("prolog", "ros"):
         importlib.import_module(f"cramhy_runtime.{room}.macro_support")
     systems.provide_system(SYSTEMS)
+    packages.on_demand.update(systems.LIBRARY_PACKAGES)
     ros_load.define_faces()
     importer.install()
     kernel.describe_frame = places_in_source.describe_frame

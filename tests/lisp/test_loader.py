@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -270,3 +272,23 @@ def test_load_time_value_is_computed_once_for_each_load(folder):
     for _ in range(2):
         loader.load_file(path)
         assert value("*ONE-BOX*") == "T"
+
+
+def test_a_kept_file_runs_in_a_process_that_compiles_nothing(tmp_path):
+    """What expansions call is there without the macros: LOOP's collecting was not."""
+    path = write(tmp_path, """(defparameter *got*
+      (list (loop for x in '(1 2) collect x append (list x) nconc (list x)) (loop for x across "ab" collect x)
+            (let ((h (make-hash-table)))
+              (setf (gethash 1 h) 2)
+              (loop for k being the hash-keys of h using (hash-value v) collect (list k v)))
+            (loop for s being the external-symbols of :sb-mop count (symbolp s))
+            (with-output-to-string (s) (format s "~a" 1)) (handler-case (error "x") (error () :handled))))
+      (print (subseq *got* 0 3))""")
+    program = f"""from cramhy_runtime.repl.session import Session
+import sys
+Session(time="virtual", turtlesim=False).load({str(path)!r})
+print("hy" in sys.modules)"""
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
+    runs = [subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment) for _ in range(2)]
+    assert [run.stdout.split("\n") for run in runs] == [["", '((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) True', ""],
+                                                        ["", '((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) False', ""]], runs[1].stderr

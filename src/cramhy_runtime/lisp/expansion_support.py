@@ -10,7 +10,7 @@ from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError,
 from .data import Cons, MultipleValues, UNSUPPLIED, list_from, truth
 from .evaluator import PACKAGE
 from .hash_tables import need_table
-from .packages import (all_packages, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
+from .packages import (all_packages, defined_by_program, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
                        string_designator, sym, symbol_name)
 
 # ------------------------------------------------------------------------------------------------------------ destructuring
@@ -154,6 +154,7 @@ def define_package(name, options):
                               "DOCUMENTATION", "DESIG-PROPERTIES", "LOCK", "IMPLEMENT"}
     if unknown:
         return error(CompileError("DEFPACKAGE ~A: there is no option :~A. Did you forget a parenthesis?", name, sorted(unknown)[0]))
+    defined_by_program([name, *names("NICKNAMES")])
     package = find_package(name)
     if package is None:
         package = make_package(name, names("NICKNAMES"))

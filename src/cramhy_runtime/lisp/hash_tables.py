@@ -14,7 +14,7 @@ from __future__ import annotations
 import weakref
 
 from .conditions import error, type_error
-from .data import UNSUPPLIED, Cons, Keyword, MultipleValues, Symbol, list_from
+from .data import UNSUPPLIED, Keyword, MultipleValues, Symbol
 from .equality import KEYS, eq, eql, equal, equalp, equalp_key
 from .functions import function_of
 from .packages import sym
@@ -27,8 +27,6 @@ hash-table-rehash-size hash-table-rehash-threshold
 """
 EXTENSION_NAMES = "hash-table-weakness hash-table-synchronized-p"
 """Names of package SB-EXT."""
-ALEXANDRIA_NAMES = "hash-table-keys hash-table-values hash-table-alist hash-table-plist"
-"""Names of package ALEXANDRIA."""
 
 _TESTS = {eq: "EQ", eql: "EQL", equal: "EQUAL", equalp: "EQUALP"}
 _BY_KEY = ("KEY", "KEY-AND-VALUE", "KEY-OR-VALUE")
@@ -267,26 +265,6 @@ def hash_table_weakness(table):
 def hash_table_synchronized_p(table):
     """``sb-ext:hash-table-synchronized-p``: whether it was made so. With one baton every table is safe."""
     return True if need_table(table).synchronized else None
-
-
-def hash_table_keys(table):
-    """``alexandria:hash-table-keys``: the list of the keys."""
-    return list_from(need_table(table).keys())
-
-
-def hash_table_values(table):
-    """``alexandria:hash-table-values``: the list of the values."""
-    return list_from(need_table(table).values())
-
-
-def hash_table_alist(table):
-    """``alexandria:hash-table-alist``: the list of the pairs (key . value)."""
-    return list_from([Cons(key, value) for key, value in need_table(table).items()])
-
-
-def hash_table_plist(table):
-    """``alexandria:hash-table-plist``: the property list of the entries."""
-    return list_from([thing for entry in need_table(table).items() for thing in entry])
 
 
 SETTERS = {"GETHASH": set_gethash}

@@ -33,6 +33,7 @@ WHERE = {
     "standard_syntax": "read_comment",
     "reader": "read_from_stream",
     "evaluator": "evaluate macro_expander",
+    "systems": "load_system",
 }
 """Module → the names that the ground takes from it."""
 

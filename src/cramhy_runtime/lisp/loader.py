@@ -39,13 +39,13 @@ def stamp():
     if _stamp is None:
         digest = hashlib.sha256(sys.version.encode())
         here = Path(__file__).parent
-        folders = [here, here / "compiler"]
+        folders = [here, here / "compiler", *(here.parent / "libraries").iterdir()]
         language = importlib.util.find_spec("cramhy")
         if language and language.submodule_search_locations:
             folders += map(Path, language.submodule_search_locations)
         for folder in folders:
             for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
-                if entry.name.endswith((".py", ".hy")):
+                if entry.name.endswith((".py", ".hy", ".lisp")):
                     status = entry.stat()
                     digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode())
         _stamp = digest.hexdigest()

@@ -59,7 +59,7 @@ def table_entries(table):
     return list_from(pairs)
 
 
-def package_symbols(kind, package):
+def loop_symbols(kind, package):
     """The symbols of a package: ``kind`` is ``SYMBOLS`` (accessible), ``PRESENT-SYMBOLS`` or ``EXTERNAL-SYMBOLS``."""
     found = []
     for each in list(package) if isinstance(package, Cons) else [package]:
@@ -72,15 +72,6 @@ def package_symbols(kind, package):
     return list_from(list(dict.fromkeys(found)))
 
 
-def _define(name, function):
-    symbol = intern(name, "CRAMHY")
-    symbol.function = function
-    return symbol
-
-
-COLLECT = _define("COLLECT", collect)
-COLLECT_APPEND = _define("COLLECT-APPEND", collect_append)
-COLLECT_NCONC = _define("COLLECT-NCONC", collect_nconc)
-LOOP_VECTOR = _define("LOOP-VECTOR", loop_vector)
-TABLE_ENTRIES = _define("TABLE-ENTRIES", table_entries)
-LOOP_SYMBOLS = _define("LOOP-SYMBOLS", package_symbols)
+COLLECT, COLLECT_APPEND, COLLECT_NCONC, LOOP_VECTOR, TABLE_ENTRIES, LOOP_SYMBOLS = (
+    intern(name, "CRAMHY") for name in ("COLLECT", "COLLECT-APPEND", "COLLECT-NCONC", "LOOP-VECTOR", "TABLE-ENTRIES", "LOOP-SYMBOLS"))
+"""The symbols of these functions; `package.fill` defines them, because kept code calls them without LOOP having been loaded."""

@@ -28,6 +28,8 @@ HELPERS = {
         make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
     "file_streams": "with-open-file",
     "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
+    "loop_support": "collect collect-append collect-nconc loop-vector table-entries loop-symbols",
+    "places_in_source": "source-position",
     "places": "define-modifier define-setf-function define-setf-form define-expander",
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
         handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart define-package set-package

@@ -130,6 +130,8 @@ class Package:
 
 
 _packages: dict[str, Package] = {}
+on_demand: dict[str, str] = {}
+"""Packages of libraries that come with cramhy → the system that defines each; it is loaded when somebody asks for the package."""
 
 
 def register(package):
@@ -207,7 +209,16 @@ def find_package(designator):
     """The package a name, symbol or package stands for, or ``None``."""
     if isinstance(designator, Package):
         return designator
-    return _packages.get(string_designator(designator))
+    name = string_designator(designator)
+    if name in on_demand:
+        late.load_system(on_demand[name])
+    return _packages.get(name)
+
+
+def defined_by_program(names):
+    """The packages ``names`` are about to be defined; no library is loaded for them any more."""
+    for name in names:
+        on_demand.pop(name, None)
 
 
 def find_package_or_error(designator):

@@ -8,11 +8,17 @@ from __future__ import annotations
 
 import linecache
 import sys
+from pathlib import Path
+
+from .data import list_from
+
+_LIBRARIES = str(Path(__file__).parents[1] / "libraries")
 
 
 def is_user_file(filename):
     """Whether code of this file name was written by the user: Lisp, Hy, or typed at the REPL."""
-    return filename.endswith((".lisp", ".hy", ".asd")) and "hy_src" not in filename or filename.startswith("<repl")
+    return filename.endswith((".lisp", ".hy", ".asd")) and "hy_src" not in filename and not filename.startswith(_LIBRARIES) \
+        or filename.startswith("<repl")
 
 
 def frame_position(frame, lasti=None):
@@ -53,6 +59,11 @@ def locate(condition, exception):
         position = exception_position(exception)
         if position is not None:
             condition.position = position
+
+
+def source_position():
+    """``cramhy::source-position``: the place of the innermost user frame as a list (file line column), or ``nil``."""
+    return list_from(user_position(sys._getframe(1)) or ())
 
 
 def describe(position):

@@ -8,6 +8,7 @@ manual; roslisp.md section 12.
 
 from __future__ import annotations
 
+import functools
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -70,6 +71,18 @@ def search_folders():
     return [folder for folder in dict.fromkeys(folders) if folder.is_dir()]
 
 
+LIBRARIES = Path(__file__).parents[1] / "libraries"
+"""The libraries that come with cramhy, each a folder with a ``.asd``; they are loaded when somebody asks for them."""
+LIBRARY_PACKAGES = {"ALEXANDRIA": "alexandria", "ALEXANDRIA-1": "alexandria", "LISP-UNIT": "lisp-unit"}
+"""Their packages: the library is loaded when its package is first named."""
+
+
+@functools.cache
+def libraries():
+    """The ``.asd`` files in `LIBRARIES`: the path there by the file's name."""
+    return {path.name: path.relative_to(LIBRARIES) for path in LIBRARIES.glob("*/*.asd")}
+
+
 def _asd_files(folder, depth=4):
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
@@ -89,6 +102,8 @@ _skipped = {"node_modules", "build", "devel", "venv", "site-packages", "tests"}
 def find_asd(name):
     """The ``.asd`` file that defines the system ``name`` (its file name, or its secondary name after the slash), or ``None``."""
     wanted = name.partition("/")[0] + ".asd"
+    if wanted in libraries():
+        return LIBRARIES / libraries()[wanted]
     for folder in search_folders():
         for path in _asd_files(folder):
             if path.name == wanted:
@@ -107,7 +122,8 @@ def find_package_folder(name):
 
 def known_systems():
     """Names of all systems that could be loaded, for "did you mean"."""
-    return {*built_in, *(path.stem for folder in search_folders() for path in _asd_files(folder))}
+    return {*built_in, *(name.removesuffix(".asd") for name in libraries()),
+            *(path.stem for folder in search_folders() for path in _asd_files(folder))}
 
 
 # --------------------------------------------------------------------------------------------------------------- defsystem

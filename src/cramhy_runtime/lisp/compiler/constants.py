@@ -53,6 +53,8 @@ class Constants:
         for name, kind, obj in fresh:
             if name in self.made:
                 continue
+            if is_circular(obj):
+                raise NotStorable(obj)
             value = self.builder(obj, top=True)
             if kind == "function":
                 value = expression(word("."), value, word("function"))
@@ -109,6 +111,23 @@ class Constants:
         if kind is list:
             return List([self.builder(item) for item in obj])
         raise NotStorable(obj)
+
+
+def is_circular(obj):
+    """Whether the conses and vectors of a constant come back to themselves."""
+    active, done, stack = set(), set(), [(obj, False)]
+    while stack:
+        item, leaving = stack.pop()
+        if leaving:
+            active.discard(id(item))
+            done.add(id(item))
+        elif isinstance(item, (Cons, list)) and id(item) not in done:
+            if id(item) in active:
+                return True
+            active.add(id(item))
+            stack.append((item, True))
+            stack += [(part, False) for part in ((item.car, item.cdr) if isinstance(item, Cons) else item)]
+    return False
 
 
 def float_model(value):

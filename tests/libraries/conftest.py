@@ -1,0 +1,14 @@
+"""Fixtures of the libraries' tests: forms in, printed values out."""
+
+from __future__ import annotations
+
+import pytest
+
+from cramhy_runtime.lisp.printer import prin1_to_string
+
+
+@pytest.fixture
+def values(session):
+    """A function: the printed values of the last form of a text, in CL-USER."""
+    session.package = "CL-USER"
+    return lambda text: " ".join(prin1_to_string(value) for value in session.evaluate_text(text, "<test>"))
