@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from cramhy_runtime.lisp.packages import COMMON_LISP, ensure_package
 from cramhy_runtime.lisp.printer import prin1_to_string
 
 
 @pytest.fixture
 def values(session):
-    """A function: the printed values of the last form of a text, in CL-USER."""
-    session.package = "CL-USER"
+    """A function: the printed values of the last form of a text, in a package of its own."""
+    session.package = ensure_package("LIBRARIES-TESTS", use=[COMMON_LISP])
     return lambda text: " ".join(prin1_to_string(value) for value in session.evaluate_text(text, "<test>"))
