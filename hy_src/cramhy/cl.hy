@@ -10,10 +10,10 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 ;; ---------------------------------------------------------------------------------------------------------------- choice
 
 (defoperator when [test #* body]
-  `(if ~test (progn ~@body) nil))
+  `(if ~test ~(clause-body body)))
 
 (defoperator unless [test #* body]
-  `(if ~test nil (progn ~@body)))
+  `(if ~test nil ~(clause-body body)))
 
 (defn clause-body [body]
   (if (= (len body) 1) (get body 0) `(progn ~@body)))
@@ -153,8 +153,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 ;; ------------------------------------------------------------------------------------------------------------ iteration
 
+(defn iteration-spec [variable form [result None] #* extra]
+  "The parts (variable form result) of `dotimes` and its relatives; there is at most one result form."
+  (if extra (raise (TypeError "takes at most three parts")) #(variable form result)))
+
 (defoperator dotimes [spec #* body]
-  (setv #(variable count #* result) spec)
+  (setv #(variable count result) (iteration-spec #* spec))
   (setv counter (gensym "COUNTER") limit (gensym "LIMIT") next (gensym "NEXT") end (gensym "END"))
   (setv #(declarations forms) (split-declarations body))
   `(block nil
@@ -166,10 +170,10 @@ Each is what the standard says that it expands into; see the section of ANSI in 
          (setq ~counter (1+ ~counter))
          (go ~next)
          ~end)
-       (let [[~variable ~counter]] ~@declarations ~variable ~@(or result [None])))))
+       (let [[~variable ~counter]] ~@declarations ~variable ~result))))
 
 (defoperator dolist [spec #* body]
-  (setv #(variable items #* result) spec)
+  (setv #(variable items result) (iteration-spec #* spec))
   (setv rest (gensym "REST") next (gensym "NEXT") end (gensym "END"))
   (setv #(declarations forms) (split-declarations body))
   `(block nil
@@ -181,7 +185,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
          (setq ~rest (cdr ~rest))
          (go ~next)
          ~end))
-     ~(if result `(let [[~variable nil]] ~variable ~@result) None)))
+     ~(if (is result None) None `(let [[~variable nil]] ~variable ~result))))
 
 (defn step-parts [bindings]
   "(variables with their first values, pairs of variable and step form) of `do`."
@@ -263,7 +267,15 @@ Each is what the standard says that it expands into; see the section of ANSI in 
       True (break)))
   #(documentation declarations forms))
 
+(defn check-name [name operator valid kind]
+  (when (not valid)
+    (error "The NAME argument to ~A, ~S, is not a ~A." operator name kind)))
+
+(defn function-name? [name]
+  (or (is-symbol name) (and (listp name) (is name.car (sym "SETF")) (listp name.cdr) (is-symbol name.cdr.car))))
+
 (defoperator defun [name lambda-list #* body]
+  (check-name name "DEFUN" (function-name? name) "function name")
   (setv #(documentation declarations forms) (body-parts body))
   `(%define-function (quote ~name) (%named-lambda ~name ~lambda-list ~@declarations ~@forms) ~documentation (quote ~lambda-list)))
 
@@ -273,15 +285,19 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%define-macro (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator define-compiler-macro [name lambda-list #* body]
-  "Accepted; the compiler does without the optimization."
-  `(quote ~name))
+  "Its function is kept for those who ask for it; the compiler does without the optimization."
+  (import cramhy_runtime.lisp.definitions [macro-function-form])
+  (setv #(function documentation) (macro-function-form name lambda-list (list-from body) "DEFINE-COMPILER-MACRO"))
+  `(%define-compiler-macro (quote ~name) ~function))
 
 (defoperator defvar [name #* rest]
+  (check-name name "DEFVAR" (is-symbol name) "symbol")
   (%note-special name)
   (setv #(value documentation) (+ (list rest) (* [None] (- 2 (len rest)))))
   `(%define-variable (quote ~name) ~(if rest `(lambda [] ~value) None) ~documentation))
 
 (defoperator defparameter [name value [documentation None]]
+  (check-name name "DEFPARAMETER" (is-symbol name) "symbol")
   (%note-special name)
   `(%define-variable (quote ~name) (lambda [] ~value) ~documentation t))
 
@@ -297,11 +313,11 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%define-symbol-macro (quote ~name) (quote ~expansion)))
 
 (defoperator declaim [#* specifiers]
-  `(progn ~@(lfor specifier specifiers `(proclaim (quote ~specifier)))))
+  `(%declaim ~@(lfor specifier specifiers `(quote ~specifier))))
 
 (defoperator deftype [name lambda-list #* body]
-  (import cramhy_runtime.lisp.definitions [macro-function-form])
-  (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
+  (import cramhy_runtime.lisp.definitions [type-function-form])
+  (setv #(function documentation) (type-function-form name lambda-list (list-from body)))
   `(%define-type (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator defpackage [name #* options]
@@ -317,10 +333,6 @@ Each is what the standard says that it expands into; see the section of ANSI in 
      (macrolet [[~name [] (quote (funcall ~iterator))]] ~@body)))
 
 ;; --------------------------------------------------------------------------------------------------- conditions, checks
-
-(defoperator assert [test [places None] #* message]
-  (setv again (gensym "AGAIN"))
-  `(tagbody ~again (if ~test nil (progn (%assertion-failed (quote ~test) ~@message) (go ~again)))))
 
 (defoperator check-type [place type [name None]]
   (setv again (gensym "AGAIN") failed `(%check-type-failed ~place (quote ~place) (quote ~type) ~name))
@@ -360,8 +372,15 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(list (quote ~name) (lambda ~lambda-list ~@rest) (%restart-report ~(function-of report))
          ~(function-of (.get options "INTERACTIVE")) ~(function-of (.get options "TEST"))))
 
+(defn signalling [form]
+  "The name of the function that the form calls to signal a condition, with which `restart-case` associates its restarts."
+  (when (and (listp form) (isinstance form.car LispSymbol) (in form.car (lfor name ["ERROR" "CERROR" "SIGNAL" "WARN"] (sym name))))
+    form.car))
+
 (defoperator restart-case [form #* clauses]
-  `(%restart-case (list ~@(lfor clause clauses (restart-clause clause))) (lambda [] ~form)))
+  (setv operator (signalling form))
+  `(%restart-case (list ~@(lfor clause clauses (restart-clause clause)))
+                  (lambda [] ~(if operator `(%signal-with-restarts (quote ~operator) ~@(. form cdr)) form))))
 
 (defoperator restart-bind [bindings #* body]
   `(%restart-bind
@@ -376,7 +395,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%with-simple-restart (quote ~name) (lambda [] (format nil ~control ~@arguments)) (lambda [] ~@body)))
 
 (defoperator with-condition-restarts [condition restarts #* body]
-  `(progn ~condition ~restarts ~@body))
+  `(%with-condition-restarts ~condition ~restarts (lambda [] ~@body)))
 
 ;; -------------------------------------------------------------------------------------------------------------- streams
 

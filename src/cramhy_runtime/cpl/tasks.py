@@ -214,7 +214,7 @@ class Task:
             condition = from_python(exception)
             locate(condition, exception)
             return FAILED, envelope(condition)
-        lost = types.ControlError_(
+        lost = types.SimpleControlError(
             "A branch of a plan tried to leave a form around it, by RETURN-FROM, RETURN, GO or THROW. Every branch has a stack of its "
             "own, so only its values can leave it: let the branch return a value, or FAIL and handle the failure outside.")
         lost.__cause__ = exception

@@ -61,7 +61,7 @@ class Condition(BaseException):
 
     def report(self):
         """The text for the user."""
-        return f"Condition {printed(late.class_name(type(self)))} was signalled."
+        return f"Condition {shown_with(late.class_name(type(self)), 'COMMON-LISP')} was signalled."
 
     def __str__(self):
         try:
@@ -161,8 +161,13 @@ class SimpleProgramError(SimpleCondition, ProgramError):
 
 
 @public
-class ControlError_(SimpleCondition, Error):
+class ControlError_(Error):
     lisp_name = "CONTROL-ERROR"
+
+
+@public
+class SimpleControlError(SimpleCondition, ControlError_):
+    lisp_name = "SB-INT::SIMPLE-CONTROL-ERROR"
 
 
 @public
@@ -235,11 +240,6 @@ class FloatingPointOverflow(ArithmeticError_):
 
 
 @public
-class FloatingPointInvalidOperation(ArithmeticError_):
-    lisp_name = "FLOATING-POINT-INVALID-OPERATION"
-
-
-@public
 class FloatingPointUnderflow(ArithmeticError_):
     lisp_name = "FLOATING-POINT-UNDERFLOW"
 
@@ -247,6 +247,11 @@ class FloatingPointUnderflow(ArithmeticError_):
 @public
 class FloatingPointInexact(ArithmeticError_):
     lisp_name = "FLOATING-POINT-INEXACT"
+
+
+@public
+class FloatingPointInvalidOperation(ArithmeticError_):
+    lisp_name = "FLOATING-POINT-INVALID-OPERATION"
 
 
 @public
@@ -323,11 +328,19 @@ class FileError(SimpleCondition, Error):
         SimpleCondition.__init__(self, text, *arguments, **slots)
         self.pathname = pathname
 
+    def report(self):
+        if self.format_control is UNBOUND:
+            return f"error on file {shown(self.pathname)}"
+        return super().report()
+
 
 @public
 class PrintNotReadable(Error):
     lisp_name = "PRINT-NOT-READABLE"
     initargs = {"OBJECT": "object"}
+
+    def report(self):
+        return f"{shown(self.object)} cannot be printed readably."
 
 
 @public

@@ -15,6 +15,8 @@ The classes are in ``condition_types.py``. Source: ANSI chapter 9; texts are SBC
 
 from __future__ import annotations
 
+import functools
+
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .data import Symbol, UNBOUND, truth
@@ -167,16 +169,23 @@ def make_condition(datum, arguments=(), default=types.SimpleError):
             return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum,
                                                expected_type=sym("CONDITION")))
         return _instance(cls, arguments)
-    return type_error(datum, "(OR CONDITION SYMBOL STRING)")
+    return type_error(datum, "(OR STRING FUNCTION SYMBOL CONDITION SB-PCL::CONDITION-CLASS)", "\nwhen binding SB-KERNEL::DATUM")
 
 
 def _instance(cls, arguments):
     return late.make_instance(cls, *arguments)
 
 
+def _designated(datum):
+    """``datum``, a designator for ``signal`` or ``warn``, which have a text of their own for others."""
+    if isinstance(datum, (str, types.Condition)) or is_symbol(datum) or callable(datum) or datum.__class__.__name__ == "LispString":
+        return datum
+    return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum, expected_type=sym("SYMBOL")))
+
+
 def signal(datum, *arguments):
     """``cl:signal``: offer the condition to the handlers; nil when all decline."""
-    signal_condition(make_condition(datum, arguments, types.SimpleCondition))
+    signal_condition(make_condition(_designated(datum), arguments, types.SimpleCondition))
 
 
 def error(datum, *arguments):
@@ -188,16 +197,20 @@ def error(datum, *arguments):
 
 def cerror(continue_format, datum, *arguments):
     """``cl:cerror``: as `error`, with a restart CONTINUE that makes it return nil."""
-    condition = make_condition(datum, arguments)
-    report = continue_format if isinstance(datum, types.Condition) else (lambda: types.formatted(continue_format, arguments))
-    with_simple_restart(sym("CONTINUE"), report, lambda: error(condition))
+    _continuable(continue_format, make_condition(datum, arguments), arguments)
+
+
+def _continuable(continue_format, condition, arguments):
+    with_simple_restart(sym("CONTINUE"), lambda: types.formatted(continue_format, arguments), lambda: error(condition))
 
 
 def warn(datum, *arguments):
     """``cl:warn``: signal a warning; unless muffled, print ``WARNING: text`` to ``*error-output*``. Returns nil."""
-    condition = make_condition(datum, arguments, types.SimpleWarning)
+    condition = make_condition(_designated(datum), arguments, types.SimpleWarning)
     if not isinstance(condition, types.Warning_):
-        return type_error(condition, "WARNING")
+        if isinstance(datum, types.Condition):
+            return type_error(condition, "WARNING")
+        return error(types.SimpleTypeError("~S does not designate a WARNING class", datum, datum=datum, expected_type=sym("WARNING")))
 
     def report_it():
         signal_condition(condition)
@@ -247,6 +260,13 @@ class Restart:
         self.report_function = report
         self.interactive = interactive
         self.test = test
+        self.conditions = ()
+
+    def belongs_to(self, condition):
+        """Whether it can be offered for ``condition``: associated with it or with none, and its test says so."""
+        if condition is not None and self.conditions and not any(condition is own for own in self.conditions):
+            return False
+        return self.test is None or truth(self.test(condition))
 
     def report(self):
         """The text that the debugger shows."""
@@ -310,12 +330,43 @@ def compute_restarts(condition=None):
     found, clusters = [], _restarts.value
     while clusters is not None:
         cluster, clusters = clusters
-        found += [restart for restart in cluster if restart.test is None or truth(restart.test(condition))]
+        found += [restart for restart in cluster if restart.belongs_to(condition)]
     return found
+
+
+def with_condition_restarts(condition, restarts, thunk):
+    """``with-condition-restarts``: while ``thunk`` runs, ``restarts`` are those of ``condition`` and of no other."""
+    for restart in restarts:
+        restart.conditions = (condition, *restart.conditions)
+    try:
+        return thunk()
+    finally:
+        for restart in restarts:
+            restart.conditions = restart.conditions[1:]
+
+
+def signal_with_restarts(operator, *arguments):
+    """Signal by ``operator`` (ERROR, CERROR, SIGNAL or WARN) a condition to which the innermost cluster of restarts belongs."""
+    if operator == "CERROR":
+        continue_format, datum, *rest = arguments
+        condition = make_condition(datum, rest)
+        signaller = functools.partial(_continuable, continue_format, condition, rest)
+    else:
+        datum, *rest = arguments
+        function, default = {"ERROR": (error, types.SimpleError), "SIGNAL": (signal, types.SimpleCondition),
+                             "WARN": (warn, types.SimpleWarning)}[operator]
+        condition = make_condition(datum, rest, default)
+        signaller = functools.partial(function, condition)
+    return with_condition_restarts(condition, _restarts.value[0], signaller)
+
+
+RESTART_DESIGNATOR = "(OR (AND SYMBOL (NOT NULL)) RESTART)"
 
 
 def find_restart(designator, condition=None):
     """The innermost restart of that name, or the `Restart` itself; ``None`` when there is none."""
+    if not isinstance(designator, Restart) and not is_symbol(designator):
+        return type_error(designator, RESTART_DESIGNATOR, "\nwhen binding SB-KERNEL::IDENTIFIER")
     for restart in compute_restarts(condition):
         if restart is designator or (restart.name is designator and designator is not None):
             return restart
@@ -324,9 +375,11 @@ def find_restart(designator, condition=None):
 
 def invoke_restart(designator, *arguments):
     """``cl:invoke-restart``: call the restart's function, which usually does not return."""
+    if not isinstance(designator, Restart) and not is_symbol(designator):
+        return type_error(designator, RESTART_DESIGNATOR, "\nwhen binding RESTART")
     restart = find_restart(designator)
     if restart is None:
-        return error(types.ControlError_(f"No restart {printed(designator) if is_symbol(designator) else designator} is active."))
+        return error(types.SimpleControlError("No restart ~S is active.", designator))
     return restart.function(*arguments)
 
 
@@ -346,7 +399,7 @@ def _standard_restart(name):
         if restart is not None:
             return restart.function(*values)
         if name in ("ABORT", "MUFFLE-WARNING"):
-            error(types.ControlError_(f"No restart {name} is active."))
+            error(types.SimpleControlError("No restart ~S is active.", symbol))
         return None
 
     invoke.__name__ = name.lower().replace("-", "_")

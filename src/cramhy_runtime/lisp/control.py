@@ -10,21 +10,22 @@ from cramhy_runtime import kernel
 
 from . import conditions
 from .conditions import error, type_error
-from .data import Cons, Keyword, MultipleValues, Symbol, list_from, one
+from .data import UNBOUND, Cons, Keyword, MultipleValues, Symbol, list_from, one
+from .definitions import data
 from .evaluator import compile_lambda, evaluate
 from .functions import functionp
 from .macros import macroexpand as expand_macros
 from .macros import macroexpand_1 as expand_macro
-from .packages import sym
+from .packages import is_symbol, sym
 
-LISP_NAMES = """eval compiled-function-p fdefinition macro-function
+LISP_NAMES = """eval compiled-function-p fdefinition macro-function compiler-macro-function
 macroexpand macroexpand-1 special-operator-p constantp compile get-setf-expansion
 get-internal-real-time get-internal-run-time get-universal-time sleep lisp-implementation-type lisp-implementation-version
 machine-type machine-instance machine-version software-type software-version
 error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
 abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
 simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
-arithmetic-error-operation arithmetic-error-operands stream-error-stream file-error-pathname
+arithmetic-error-operation arithmetic-error-operands print-not-readable-object stream-error-stream file-error-pathname
 provide room ed"""
 
 
@@ -42,6 +43,9 @@ def fdefinition(name):
 def macro_function(symbol, environment=None):
     from .macros import ensure_loaded
     from .macros import macro_function as expander
+
+    if not is_symbol(symbol):
+        return type_error(symbol, "SYMBOL", "\nwhen binding SYMBOL")
 
     ensure_loaded()
     return expander(symbol, environment)
@@ -68,7 +72,32 @@ UNWIND-PROTECT""".split()}
 """The 25 of ANSI 3.1.2.1.2.1; the compiler treats a few macros itself too, which must not show."""
 
 
+def compiler_macro_function(name, environment=None):
+    """The function of a compiler macro, which ``define-compiler-macro`` made; calls are compiled without it."""
+    return _setf_name_data(name).get("compiler-macro")
+
+
+def set_compiler_macro_function(function, name, environment=None):
+    _setf_name_data(name)["compiler-macro"] = function
+    return function
+
+
+def define_compiler_macro(name, function):
+    """What ``define-compiler-macro`` does when it is run. Returns the name."""
+    set_compiler_macro_function(function, name)
+    return name
+
+
+def _setf_name_data(name):
+    """The notes about the function of ``name``, a symbol or ``(setf symbol)``."""
+    if isinstance(name, Cons):
+        return data(name.cdr.car).setdefault("setf", {})
+    return data(name) if isinstance(name, Symbol) else type_error(name, "SYMBOL")
+
+
 def special_operator_p(symbol):
+    if not is_symbol(symbol):
+        return type_error(symbol, "SYMBOL", "\nwhen binding SYMBOL")
     return True if symbol in SPECIAL_OPERATORS else None
 
 
@@ -171,12 +200,18 @@ def make_condition(kind, *arguments):
     return conditions.make_condition(kind, arguments)
 
 
-def _reader(attribute):
-    return lambda condition: getattr(condition, attribute)
+def _reader(attribute, kind="Condition"):
+    def reader(condition):
+        if not isinstance(condition, conditions.Condition):
+            return type_error(condition, "CONDITION")
+        value = getattr(condition, attribute, UNBOUND)
+        return type_error(condition, getattr(conditions, kind).lisp_name) if value is UNBOUND else value
+
+    return reader
 
 
-simple_condition_format_control = _reader("format_control")
-type_error_datum = _reader("datum")
+simple_condition_format_control = _reader("format_control", "SimpleCondition")
+type_error_datum = _reader("datum", "TypeError_")
 
 
 def type_error_expected_type(condition):
@@ -193,6 +228,7 @@ def type_error_expected_type(condition):
         return one(read_from_string(expected))
 
 
+print_not_readable_object = _reader("object", "PrintNotReadable")
 cell_error_name, unbound_slot_instance = _reader("name"), _reader("instance")
 arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _reader("operands")
 stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
@@ -226,5 +262,5 @@ def ed(target=None):
     return error("There is no editor here: edit the file with your own.")
 
 
-SETTERS = {"MACRO-FUNCTION": set_macro_function}
+SETTERS = {"MACRO-FUNCTION": set_macro_function, "COMPILER-MACRO-FUNCTION": set_compiler_macro_function}
 

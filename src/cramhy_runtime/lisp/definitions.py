@@ -6,12 +6,14 @@ Lisp name (``__lisp_name__``) and the file it came from, for printing, ``describ
 
 from __future__ import annotations
 
-from .conditions import CompileError, error, type_error, warn
+from .conditions import CompileError, error, program_error, restart_case, type_error, warn
 from .conditions import types as condition_types
-from .data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, one
+from .data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, lisp_list, one
 from .evaluator import macro_lambda
+from .equality import eql
 from .faces import python_name
-from .packages import COMMON_LISP, printed, symbol_name
+from .late import late
+from .packages import COMMON_LISP, printed, sym, symbol_name
 
 
 def _check_name(symbol, what):
@@ -89,7 +91,31 @@ def define_variable(symbol, thunk=None, documentation=None, always=False):
     return symbol
 
 
+class ConstantChanged(condition_types.Error):
+    """A ``defconstant`` gives another value than the one before it."""
+
+    lisp_name = "SB-EXT::DEFCONSTANT-UNEQL"
+
+    def __init__(self, name, old, new, **slots):
+        super().__init__(**slots)
+        self.name, self.old, self.new = name, old, new
+
+    def report(self):
+        return (f"The constant {late.prin1_to_string(self.name)} is being redefined (from {late.prin1_to_string(self.old)} to "
+                f"{late.prin1_to_string(self.new)})\nSee also:\n  The ANSI Standard, Macro DEFCONSTANT\n"
+                '  The SBCL Manual, Node "Idiosyncrasies"')
+
+
 def define_constant(symbol, value, documentation=None):
+    """``defconstant``: a value that is not ``eql`` to the one before is an error with the restarts CONTINUE and ABORT."""
+    if not isinstance(symbol, Symbol):
+        return error("The NAME argument to DEFCONSTANT, ~S, is not a symbol.", symbol)
+    if symbol.constant and not eql(symbol.value, value):
+        unequal = ConstantChanged(symbol, symbol.value, value)
+        keep = restart_case([(sym("CONTINUE"), lambda: False, "Go ahead and change the value."),
+                             (sym("ABORT"), lambda: True, "Keep the old value.")], lambda: error(unequal))
+        if one(keep):
+            return symbol
     symbol.value = value
     symbol.special = symbol.constant = True
     if documentation is not None:
@@ -107,6 +133,8 @@ def proclaim_special(symbol):
 
 
 def define_symbol_macro(symbol, expansion):
+    if not isinstance(symbol, Symbol) or symbol.special:
+        return program_error("Symbol macro name already declared SPECIAL: ~S.", symbol)
     data(symbol)["symbol-macro"] = expansion
     return symbol
 
@@ -118,6 +146,11 @@ def data(symbol):
     return symbol.compiler_data
 
 
-def macro_function_form(name, lambda_list, body):
+def macro_function_form(name, lambda_list, body, definer="DEFMACRO"):
     """(lambda expression, documentation) of a macro: see `evaluator.macro_lambda`."""
-    return macro_lambda(name, lambda_list, body)
+    return macro_lambda(name, lambda_list, body, definer)
+
+
+def type_function_form(name, lambda_list, body):
+    """(lambda expression, documentation) of a ``deftype``: optional parameters are ``*`` where nothing else is said (ANSI 3.4.8)."""
+    return macro_lambda(name, lambda_list, body, "DEFTYPE", lisp_list(sym("QUOTE"), sym("*")))

@@ -7,10 +7,12 @@ loader compiles whole files with `Unit`, whose code can be kept. Top-level ``pro
 
 from __future__ import annotations
 
+from .compiler.environment import EXECUTE, SITUATIONS
 from .compiler.support import NAMESPACE
 from .conditions import CompileError, Condition, error
 from .data import Cons, Keyword, Symbol, lisp_list, list_from, one
 from .lambda_lists import destructure, gensym
+from .late import late
 from .packages import COMMON_LISP, sym
 
 PACKAGE = sym("*PACKAGE*")
@@ -97,7 +99,9 @@ class Unit:
                     yield from self.toplevel_parts(part)
                 return
             if head is EVAL_WHEN and isinstance(form.cdr, Cons) and isinstance(form.cdr.car, Cons):
-                if not self.situations.isdisjoint(form.cdr.car):
+                if not SITUATIONS.issuperset(form.cdr.car):
+                    yield form  # the compiler says what is wrong with it
+                elif not self.situations.isdisjoint(form.cdr.car):
                     yield from self.toplevel_parts(Cons(PROGN, form.cdr.cdr))
                 return
             if head in (MACROLET, SYMBOL_MACROLET, LOCALLY) and isinstance(form.cdr, Cons):
@@ -153,9 +157,6 @@ def new_namespace(filename):
     return {"__name__": "cramhy_code", "__file__": filename, "__builtins__": __builtins__, **NAMESPACE}
 
 
-EXECUTE = {sym(":EXECUTE"), sym("EVAL")}
-"""The situations of ``eval-when`` in which ``eval`` evaluates; a file is compiled and loaded at once, so it evaluates in all."""
-SITUATIONS = EXECUTE | {sym(":LOAD-TOPLEVEL"), sym(":COMPILE-TOPLEVEL"), sym("LOAD"), sym("COMPILE")}
 PROGN = sym("PROGN")
 EVAL_WHEN = sym("EVAL-WHEN")
 MACROLET, SYMBOL_MACROLET, LOCALLY, DECLARE = sym("MACROLET"), sym("SYMBOL-MACROLET"), sym("LOCALLY"), sym("DECLARE")
@@ -215,8 +216,11 @@ def compile_lambda(form, environment=None):
     return one(unit.run(compile(backend.python_tree(statements, unit.filename), unit.filename, "exec")))
 
 
-def macro_lambda(name, lambda_list, body):
-    """The lambda expression ``(lambda (form environment) ...)`` of a macro defined by ``defmacro`` or ``macrolet``."""
+def macro_lambda(name, lambda_list, body, definer="DEFMACRO", default=None):
+    """The lambda expression ``(lambda (form environment) ...)`` of a macro, and its documentation.
+
+    definer: what defines it (``MACROLET``, ``DEFTYPE``), for errors. default: the form of optional parameters that give none.
+    """
     form, environment = gensym("FORM"), gensym("ENVIRONMENT")
     whole_first = isinstance(lambda_list, Cons) and getattr(lambda_list.car, "name", None) == "&WHOLE"
     arguments = lambda_list
@@ -224,18 +228,18 @@ def macro_lambda(name, lambda_list, body):
     if whole_first:
         prefix = [(lambda_list.cdr.car, form)]
         arguments = lambda_list.cdr.cdr
-    bindings = prefix + destructure(arguments, lisp_list(sym("CDR"), form), f"the macro {getattr(name, 'name', name)}", environment)
+    bindings = prefix + destructure(arguments, lisp_list(sym("CDR"), form), f"{definer} {late.prin1_to_string(name)}", environment, default)
     forms, declarations = list(body or ()), []
     documentation = forms.pop(0) if len(forms) > 1 and isinstance(forms[0], str) else None
     while forms and isinstance(forms[0], Cons) and forms[0].car is sym("DECLARE"):
         declarations.append(forms.pop(0))
-    block = Cons(sym("BLOCK"), Cons(name, list_from(forms)))
+    block = Cons(sym("BLOCK"), Cons(name.cdr.car if isinstance(name, Cons) else name, list_from(forms)))
     let = lisp_list(sym("LET*"), list_from([lisp_list(symbol, value) for symbol, value in bindings]), *declarations, block)
     return lisp_list(sym("LAMBDA"), lisp_list(form, environment), let), documentation
 
 
 def macro_expander(name, lambda_list, body, environment=None):
     """The expander function of a local macro."""
-    function, _ = macro_lambda(name, lambda_list, body)
+    function, _ = macro_lambda(name, lambda_list, body, "MACROLET")
     compiled = compile_lambda(function, environment)
     return lambda form, env: one(compiled(form, env))

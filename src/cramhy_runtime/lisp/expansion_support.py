@@ -6,8 +6,8 @@ A macro only rearranges forms; the work is done here. Users do not call these by
 from __future__ import annotations
 
 from . import conditions
-from .conditions import CaseFailure, CompileError, SimpleError, SimpleTypeError, error, program_error
-from .data import Cons, MultipleValues, UNSUPPLIED, list_from, truth
+from .conditions import CaseFailure, CompileError, SimpleTypeError, error, program_error
+from .data import Cons, MultipleValues, list_from, truth
 from .evaluator import PACKAGE
 from .hash_tables import need_table
 from .packages import (all_packages, defined_by_program, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
@@ -22,21 +22,20 @@ def check_shape(lst, least, most, what, lambda_list):
     while isinstance(cell, Cons):
         count += 1
         cell = cell.cdr
-    if cell is not None and not (most is None and count >= least):
-        return error("~S, given to ~A, is not a proper list.", lst, what)
-    if count < least or (most is not None and count > most):
-        wanted = str(least) if least == most else f"at least {least}" if most is None else f"{least} to {most}"
-        return error("Error while parsing arguments to ~A:\n  too ~A elements in\n    ~S\n  to satisfy lambda list\n    ~S:\n  "
-                     "~A expected, but got ~D", what, "few" if count < least else "many", lst, lambda_list,
-                     "exactly " + wanted if least == most else wanted, count)
+    improper = cell is not None and not (most is None and count >= least)
+    if improper or count < least or (most is not None and count > most):
+        wanted = f"exactly {least}" if least == most else f"at least {least}" if most is None else f"between {least} and {most}"
+        kind = "invalid number of" if improper else "too few" if count < least else "too many"
+        return program_error("Error while parsing arguments to ~A:~%  ~A elements in~%    ~:S~%  to satisfy lambda list~%    ~:S:~%  "
+                             "~A expected, but got ~A", what, kind, lst, lambda_list, wanted, "a non-list" if improper else count)
     return lst
 
 
-def key_table(arguments, known, allow_others):
-    """The keyword arguments in the list ``arguments`` as a dict; unknown and odd ones are errors."""
+def key_table(arguments, known, allow_others, what):
+    """The keyword arguments of ``what`` in the list ``arguments`` as a dict; unknown and odd ones are errors."""
     items = list(arguments or ())
     if len(items) % 2:
-        return program_error("odd number of keyword arguments in ~S", arguments)
+        return program_error("Error while parsing arguments to ~A:~%  odd number of elements in keyword/value list: ~S", what, arguments)
     table = {}
     for index in range(0, len(items), 2):
         table.setdefault(items[index], items[index + 1])
@@ -45,7 +44,8 @@ def key_table(arguments, known, allow_others):
     if not allow_others and not truth(table.get(allow)):
         for key in table:
             if key not in names and key is not allow:
-                return program_error("unknown keyword ~S in ~S; known are ~S", key, arguments, known)
+                return program_error("Error while parsing arguments to ~A:~%  unknown keyword: ~S; expected one of ~{~S~^, ~}", what, key,
+                                     known)
     return table
 
 
@@ -68,11 +68,6 @@ def ask_for_value(value, operator, possibilities):
     """Signal that no clause fits, with a restart STORE-VALUE; returns the value to try next."""
     return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, "Supply a new value.")],
                                    lambda: error(CaseFailure(value, operator, possibilities)))
-
-
-def assertion_failed(form, datum=UNSUPPLIED, *arguments):
-    condition = SimpleError("The assertion ~S failed.", form) if datum is UNSUPPLIED else conditions.make_condition(datum, arguments)
-    return conditions.restart_case([(sym("CONTINUE"), lambda: None, "Retry assertion.")], lambda: error(condition))
 
 
 def check_type_failed(value, place, kind, name):
@@ -118,6 +113,15 @@ def restart_report(report):
 def restart_case(clauses, thunk):
     """``restart-case``: clauses are lists (name function report interactive test)."""
     return conditions.restart_case([tuple(clause) for clause in clauses or ()], thunk)
+
+
+def signal_with_restarts(operator, *arguments):
+    """Signal as ``operator`` does, in the form of a ``restart-case``: its restarts belong to the condition (ANSI, RESTART-CASE)."""
+    return conditions.signal_with_restarts(symbol_name(operator), *arguments)
+
+
+def with_condition_restarts(condition, restarts, thunk):
+    return conditions.with_condition_restarts(condition, list(restarts or ()), thunk)
 
 
 def restart_bind(bindings, thunk):
@@ -268,13 +272,3 @@ def remove_property(plist, indicator):
         if items[index] is indicator or _eql(items[index], indicator):
             return MultipleValues((list_from(items[:index] + items[index + 2:]), True))
     return MultipleValues((plist, None))
-
-
-def proclaim(specifier):
-    from .definitions import proclaim_special
-
-    if isinstance(specifier, Cons) and symbol_name(specifier.car) == "SPECIAL":
-        for symbol in specifier.cdr or ():
-            proclaim_special(symbol)
-    return None
-

@@ -42,8 +42,11 @@ def malformed(lambda_list, why):
     return error(CompileError("The lambda list ~S is malformed: ~A", lambda_list, why))
 
 
-def parse(lambda_list, destructuring=False):
-    """The `LambdaList` of ``lambda_list``, a Lisp list. Malformed ones are compile errors that say where."""
+def parse(lambda_list, destructuring=False, default=None):
+    """The `LambdaList` of ``lambda_list``, a Lisp list. Malformed ones are compile errors that say where.
+
+    default: the form of optional and keyword parameters that give none.
+    """
     result = LambdaList()
     state = "REQUIRED"
     cell = lambda_list
@@ -75,9 +78,9 @@ def parse(lambda_list, destructuring=False):
                 malformed(lambda_list, "a parameter must be a symbol.")
             result.required.append(item)
         elif state == "OPTIONAL":
-            result.optional.append(_with_default(item))
+            result.optional.append(_with_default(item, default))
         elif state == "KEY":
-            result.keys.append(_key(item))
+            result.keys.append(_key(item, default))
         elif state == "AUX":
             variable, form, _ = _with_default(item)
             result.aux.append((variable, form))
@@ -96,15 +99,15 @@ def _next(lambda_list, cell, marker):
     return cell.car, cell.cdr
 
 
-def _with_default(item):
+def _with_default(item, default=None):
     if isinstance(item, Cons):
-        parts = list(item) + [None, None]
-        return parts[0], parts[1], parts[2]
-    return item, None, None
+        parts = list(item)
+        return parts[0], parts[1] if len(parts) > 1 else default, parts[2] if len(parts) > 2 else None
+    return item, default, None
 
 
-def _key(item):
-    variable, default, supplied = _with_default(item)
+def _key(item, default):
+    variable, default, supplied = _with_default(item, default)
     if isinstance(variable, Cons):
         name, variable = list(variable)
         return name, variable, default, supplied
@@ -120,14 +123,15 @@ def gensym(base="G"):
     return Symbol(base)
 
 
-def destructure(lambda_list, form, what, environment=None):
+def destructure(lambda_list, form, what, environment=None, default=None):
     """Bindings that take the value of ``form`` apart: a list of (variable, form), to be made in order.
 
     lambda_list: a destructuring lambda list. what: the text naming the construct in errors.
-    environment: the form for an &environment variable. A shape that does not fit is a program-error at run time.
+    environment: the form for an &environment variable. default: that of optional and keyword
+    variables without one. A shape that does not fit is a program-error at run time.
     """
     bindings = []
-    _destructure(parse(lambda_list, destructuring=True), form, what, lambda_list, bindings, environment)
+    _destructure(parse(lambda_list, destructuring=True, default=default), form, what, lambda_list, bindings, environment)
     return bindings
 
 
@@ -158,7 +162,8 @@ def _destructure(parsed, form, what, lambda_list, bindings, environment):
     if parsed.has_keys:
         names = list_from([key for key, *_ in parsed.keys])
         table = gensym("KEYS")
-        bindings.append((table, lisp_list(support("KEY-TABLE"), rest, lisp_list(quote, names), True if parsed.allow_other_keys else None)))
+        bindings.append((table, lisp_list(support("KEY-TABLE"), rest, lisp_list(quote, names), True if parsed.allow_other_keys else None,
+                                          what)))
         for key, variable, default, supplied in parsed.keys:
             given = lisp_list(support("KEY-GIVEN-P"), table, lisp_list(quote, key))
             if supplied is not None:

@@ -13,12 +13,14 @@ import importlib
 from fractions import Fraction
 
 from .conditions import CompileError, Condition, error
-from .data import Character, Cons, Symbol, list_from
+from .data import Character, Cons, Symbol, list_from, one
+from .functions import function_of
 from .packages import COMMON_LISP, find_package_or_error, intern, is_symbol, keyword, sym
 
 FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp")
 """The modules of ``hy_src/cramhy`` that define operators, in order."""
 
+HOOK, FUNCALL = sym("*MACROEXPAND-HOOK*"), sym("FUNCALL")
 _loaded = False
 
 
@@ -121,7 +123,10 @@ def macroexpand_1(form, environment=None):
     if isinstance(form, Cons) and is_symbol(form.car):
         expander = macro_function(form.car, environment)
         if expander is not None:
-            return expander(form, environment), True
+            hook = HOOK.value
+            if hook is FUNCALL:
+                return expander(form, environment), True
+            return one(function_of(hook)(expander, form, environment)), True
     elif isinstance(form, Symbol):
         local = environment.variable(form) if environment is not None else None
         expansion = getattr(local, "expansion", None)

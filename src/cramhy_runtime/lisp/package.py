@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import importlib
 
-from . import cl_names, expansion_support, extension_packages
+from . import cl_names, extension_packages
 from .faces import define_face, lispify
 from .packages import sym
 
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
     class_definition slots protocol generic structures streams stream_functions file_streams pathnames printer pretty pprint_dispatch
-    format reader tokens readtables reader_functions symbols control documentation describing
+    format reader tokens readtables reader_functions symbols declarations control documentation describing
     inspecting apropos disassembling tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
@@ -27,12 +27,16 @@ HELPERS = {
     "printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
         make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
     "file_streams": "with-open-file",
+    "assertions": "assertion-failed assertion-prompt",
+    "control": "define-compiler-macro",
+    "declarations": "declaim",
     "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
     "loop_support": "collect collect-append collect-nconc loop-vector table-entries loop-symbols",
     "places_in_source": "source-position",
     "places": "define-modifier define-setf-function define-setf-form define-expander",
-    "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value assertion-failed check-type-failed
-        handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart define-package set-package
+    "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
+        handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart
+        signal-with-restarts with-condition-restarts define-package set-package
         package-symbols all-symbols package-iterator hash-table-iterator
         put-property remove-property next-method-exists""",
     "tracing": "trace untrace time step",
@@ -51,7 +55,6 @@ def fill():
             sym(constant).constant = True
         for lisp_name, setter in getattr(module, "SETTERS", {}).items():
             sym(lisp_name).setf_function = lispify(setter)
-    define_face("COMMON-LISP", functions={"proclaim": expansion_support.proclaim})
     importlib.import_module(f"{__package__}.clos_printing")  # teaches the printer about classes and generic functions
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})

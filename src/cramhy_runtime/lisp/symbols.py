@@ -16,7 +16,7 @@ list-all-packages make-package delete-package rename-package packagep find-all-s
 
 
 def _symbol(obj):
-    return obj if is_symbol(obj) else type_error(obj, "SYMBOL")
+    return obj if is_symbol(obj) else type_error(obj, "SYMBOL", "\nwhen binding SYMBOL")
 
 
 def symbolp(obj):

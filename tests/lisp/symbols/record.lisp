@@ -25,16 +25,26 @@
     (loop for line = (read-line lines nil)
           while line do (write-line (string-right-trim " " (format nil "| ~a" line)) *answers*))))
 
+(defun error-line (condition)
+  (let ((*print-pretty* nil))
+    (words (format nil "!! ~a ~a" (symbol-name (type-of condition))
+                   (handler-case (princ-to-string condition)
+                     (error () "(its report fails)"))))))
+
+(defun answer-line (text)
+  (let ((sb-ext:*invoke-debugger-hook* nil)
+        (*debugger-hook* (lambda (condition hook)
+                           (declare (ignore hook))
+                           (return-from answer-line (error-line condition)))))
+    (handler-case
+        (let ((values (multiple-value-list (eval (read-from-string text)))) (*print-pretty* nil))
+          (words (format nil "=> ~{~a~^ ; ~}" (mapcar #'prin1-to-string values))))
+      (error (condition) (error-line condition)))))
+
 (defun answer (text)
   (let ((output (make-string-output-stream)) (answer nil))
     (let ((*standard-output* output) (*trace-output* output) (*standard-input* (make-string-input-stream "")))
-      (setf answer
-            (handler-case
-                (let ((values (multiple-value-list (eval (read-from-string text)))) (*print-pretty* nil))
-                  (words (format nil "=> ~{~a~^ ; ~}" (mapcar #'prin1-to-string values))))
-              (error (condition)
-                (let ((*print-pretty* nil))
-                  (words (format nil "!! ~a ~a" (symbol-name (type-of condition)) condition)))))))
+      (setf answer (answer-line text)))
     (write-output (get-output-stream-string output))
     (write-line answer *answers*)))
 

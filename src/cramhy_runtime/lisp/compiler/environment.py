@@ -8,8 +8,12 @@ variable used by an inner function is captured, a block left from an inner funct
 from __future__ import annotations
 
 from ..faces import python_name
-from ..packages import symbol_name
+from ..packages import sym, symbol_name
 from .core import HEADS
+
+EXECUTE = {sym(":EXECUTE"), sym("EVAL")}
+"""The situations of ``eval-when`` in which ``eval`` evaluates; a file is compiled and loaded at once, so it evaluates in all."""
+SITUATIONS = EXECUTE | {sym(":LOAD-TOPLEVEL"), sym(":COMPILE-TOPLEVEL"), sym("LOAD"), sym("COMPILE")}
 
 
 class FunctionScope:

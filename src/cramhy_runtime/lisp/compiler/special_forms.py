@@ -12,7 +12,7 @@ from ..lambda_lists import gensym
 from ..late import late
 from ..packages import is_symbol, sym
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
-from .environment import Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
+from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
 from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue, Constant, FunctionReference, Functions, Go, If,
                     Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom, Support,
                     TagbodyNode, UnwindProtect)
@@ -361,8 +361,11 @@ def _the(analyzer, form, env):
 @special("EVAL-WHEN")
 def _eval_when(analyzer, form, env):
     situations, *forms = _parts(analyzer, form, 1)
-    wanted = {sym(":EXECUTE"), sym(":LOAD-TOPLEVEL"), sym("EVAL"), sym("LOAD")}
-    if wanted.isdisjoint(_items(analyzer, form, situations)):
+    situations = _items(analyzer, form, situations)
+    for situation in situations:
+        if situation not in SITUATIONS:
+            analyzer.fail("~S is no situation of EVAL-WHEN: they are :COMPILE-TOPLEVEL, :LOAD-TOPLEVEL and :EXECUTE.", situation)
+    if EXECUTE.isdisjoint(situations):  # the evaluator takes top-level ones apart itself
         return Constant(None)
     return analyzer.body(forms, env)
 

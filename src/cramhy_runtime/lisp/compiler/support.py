@@ -14,7 +14,7 @@ from cramhy_runtime.kernel.budget import budget
 
 from .. import arithmetic
 from ..backquote import Comma
-from ..conditions import ControlError_, error, program_error, unbound_variable
+from ..conditions import SimpleControlError, error, program_error, unbound_variable
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
 from ..dynamic import Bindings, bind, unbind
@@ -49,7 +49,7 @@ def block_value(exit_, token):
 def return_from(token, value):
     """Leave the block of ``token`` with ``value``."""
     if not token.active:
-        error(ControlError_("attempt to leave a block or tagbody whose form has already returned"))
+        error(SimpleControlError("attempt to leave a block or tagbody whose form has already returned"))
     token.value = value
     raise token
 
@@ -87,7 +87,7 @@ def throw(tag, value):
         if tags[0] is tag:
             raise ThrowExit(tag, value)
         tags = tags[1]
-    return error(ControlError_("attempt to THROW to a tag that does not exist: ~S", tag))
+    return error(SimpleControlError("attempt to THROW to a tag that does not exist: ~S", tag))
 
 
 def progv(symbols, values, thunk):

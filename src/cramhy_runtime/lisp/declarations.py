@@ -1,0 +1,53 @@
+"""Proclamations, and the constants and variables of evaluation (ANSI 3.3, 3.4, 3.8).
+
+``declaim`` and ``proclaim`` make variables special; the rest of what they say is advice that this compiler does without. It is
+checked for its shape all the same, so that a slip of the pen is found.
+"""
+
+from __future__ import annotations
+
+from .conditions import program_error, type_error
+from .data import Cons, MultipleValues, Symbol, list_from
+from .definitions import data, proclaim_special
+from .lambda_lists import KEYWORDS
+from .packages import sym
+
+LISP_NAMES = "proclaim"
+NAMING = {sym(name) for name in ("SPECIAL", "TYPE", "FTYPE", "DECLARATION")}
+"""The proclamations of which ``declaim`` gives the names that they are about."""
+
+
+def proclaim(specifier):
+    """``proclaim``: returns no values."""
+    _proclaim(specifier)
+    return MultipleValues()
+
+
+def declaim(*specifiers):
+    """What a ``declaim`` form does when it is run. Returns what SBCL returns: the names of the last specifier, or nil."""
+    result = None
+    for specifier in specifiers:
+        result = _proclaim(specifier)
+    return result
+
+
+def _proclaim(specifier):
+    if isinstance(specifier, Symbol):  # (declaim optimize) is no declaration
+        return program_error("malformed proclamation specifier: ~S", specifier)
+    if not isinstance(specifier, Cons):
+        return type_error(specifier, "LIST")
+    kind, names = specifier.car, list(specifier.cdr or ())
+    if kind is sym("SPECIAL"):
+        for symbol in names:
+            proclaim_special(symbol)
+    elif kind in (sym("TYPE"), sym("FTYPE")):
+        names = names[1:]
+    elif kind is sym("DECLARATION"):
+        for symbol in names:
+            data(symbol)["declaration"] = True
+    return list_from(names) if kind in NAMING else None
+
+
+CONSTANTS = {"LAMBDA-LIST-KEYWORDS": list_from([sym(name) for name in KEYWORDS.values()]), "CALL-ARGUMENTS-LIMIT": 2 ** 62,
+             "LAMBDA-PARAMETERS-LIMIT": 2 ** 62, "MULTIPLE-VALUES-LIMIT": 2 ** 62}
+VARIABLES = {**CONSTANTS, "*MACROEXPAND-HOOK*": sym("FUNCALL")}
