@@ -170,7 +170,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
          (setq ~counter (1+ ~counter))
          (go ~next)
          ~end)
-       (let [[~variable ~counter]] ~@declarations ~variable ~result))))
+       ~(if (is result None) None `(let [[~variable (max ~limit 0)]] ~@declarations ~variable ~result)))))
 
 (defoperator dolist [spec #* body]
   (setv #(variable items result) (iteration-spec #* spec))
@@ -181,8 +181,8 @@ Each is what the standard says that it expands into; see the section of ANSI in 
        (tagbody
          ~next
          (if (endp ~rest) (go ~end))
-         (let [[~variable (car ~rest)]] ~@declarations (tagbody ~@forms))
-         (setq ~rest (cdr ~rest))
+         (let [[~variable (%car-of-cons ~rest)]] ~@declarations (tagbody ~@forms))
+         (setq ~rest (%cdr-of-cons ~rest))
          (go ~next)
          ~end))
      ~(if (is result None) None `(let [[~variable nil]] ~variable ~result))))

@@ -46,10 +46,12 @@ from .active import (
     outside_source,
     park,
     post,
+    refill,
     run_blocking,
     settle,
     shield,
     sleep,
+    slice_over,
     spawn,
     start,
     stop,
@@ -67,6 +69,6 @@ from .timers import Timer
 __all__ = [
     "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer",
     "VirtualClock", "WallClock", "active", "allow_deep_recursion", "call_at", "call_every", "checkpoint", "current", "describe_frame",
-    "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "run_blocking", "settle", "shield", "sleep",
-    "spawn", "start", "stop", "unhandled", "unpark", "yield_",
+    "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle", "shield",
+    "sleep", "slice_over", "spawn", "start", "stop", "unhandled", "unpark", "yield_",
 ]  # fmt: skip

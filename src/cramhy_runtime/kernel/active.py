@@ -7,7 +7,7 @@ floors above call: `kernel.park(...)` is `kernel.active().park(...)`.
 import atexit
 from _thread import get_ident
 
-from .budget import SLICE, budget
+from .budget import budget
 from .errors import KernelError
 from .scheduler import Kernel
 
@@ -63,10 +63,21 @@ def checkpoint():
     """Named in every loop's back edge: counts, and now and then lets others run or raises a request to end."""
     budget.left = left = budget.left - 1
     if left < 0:
-        if _active is None:
-            budget.left = SLICE
-        else:
-            _active.end_slice()
+        slice_over()
+
+
+def slice_over():
+    """What comes when all checkpoints of a slice are used up."""
+    if _active is None:
+        budget.renew()
+    else:
+        _active.end_slice()
+
+
+def refill():
+    """What a compiled loop calls when it has no more ticks (see ``budget.py``)."""
+    if budget.refill():
+        slice_over()
 
 
 def current():

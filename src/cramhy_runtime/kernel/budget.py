@@ -4,22 +4,49 @@ Erlang counts reductions, we count checkpoints. The count, and never the wall cl
 preempted, so the order of a run depends on the program alone (law 5). There is one counter for the process, because
 one task runs at a time (law 4); whoever gets the baton gets a full slice.
 
-`budget.left = 0` ends the slice at the next checkpoint. That is one store, so a signal handler may do it.
+`budget.end()` ends the slice at the next checkpoint. It is short and may be called by a signal handler.
+
+A compiled loop does not call `checkpoint` in each turn. It takes one of `budget.ticks`, an iterator, in each turn, which costs
+Python next to nothing, and calls `refill` when there are no more: then as many checkpoints count at once. All loops share the
+ticks, inner and outer ones, so loops of a few turns count like one of many.
 """
 
 import sys
+from collections import deque
 from functools import partial
+from itertools import repeat
+from operator import length_hint
 
 SLICE = 1000  # checkpoints; a Lisp loop passes one in 0.1 to 5 us, so a slice lasts at most some milliseconds
 
 
-class Budget:
-    """The checkpoints that are left to the task that runs."""
+TICKS = 50  # that are handed out at once
 
-    __slots__ = ("left",)
+
+class Budget:
+    """The checkpoints that are left to the task that runs; ``ticks`` are those that loops take from, counted already."""
+
+    __slots__ = ("left", "ticks")
 
     def __init__(self):
+        self.renew()
+
+    def renew(self):
+        """A full slice."""
         self.left = SLICE
+        self.ticks = repeat(None, TICKS)
+
+    def end(self):
+        """Nothing is left."""
+        self.left = 0
+        deque(self.ticks, maxlen=0)
+
+    def refill(self):
+        """New ticks, if there are none; returns whether the slice is over."""
+        if not length_hint(self.ticks):  # else another loop has got new ones since this one did
+            self.left -= TICKS
+            self.ticks = repeat(None, TICKS)
+        return self.left < 0
 
 
 budget = Budget()

@@ -42,7 +42,7 @@ class Endings:
             raise Interrupted
         self._interrupts += 1
         self._inbox.append(self._read_interrupt)
-        budget.left = 0
+        budget.end()
         self._bell.ring()
 
     def interrupt_over(self):

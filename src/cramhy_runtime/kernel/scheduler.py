@@ -22,7 +22,7 @@ from collections import deque
 
 from . import reports
 from .backends import NoStack, make_backend
-from .budget import SLICE, budget, need_headroom
+from .budget import budget, need_headroom
 from .clocks import Bell, make_clock
 from .endings import PATIENCE, Endings
 from .errors import Deadlock, Interrupted, KernelError, TimeLimit
@@ -69,7 +69,7 @@ class Kernel(Endings, Outside):
         main.carrier = self.backend.adopt(self)
         main.state = RUNNING
         self.current = main
-        budget.left = SLICE
+        budget.renew()
 
     # ------------------------------------------------------------------ tasks
 
@@ -196,12 +196,12 @@ class Kernel(Endings, Outside):
         """What a checkpoint does when the slice is over: others get a turn, and requests to end are delivered."""
         me = self.current
         if me is self._scheduler:
-            budget.left = SLICE
+            budget.renew()
             if self._interrupts:
                 raise Interrupted  # Ctrl-C gets the user out of a callback that loops for ever, too
             return
         if me.carrier.ident != get_ident():
-            budget.left = 0  # an outside thread came by; the task whose slice it is shall find it over
+            budget.end()  # an outside thread came by; the task whose slice it is shall find it over
             return
         if me.attention:
             me.deliver()
@@ -270,7 +270,7 @@ class Kernel(Endings, Outside):
         if task is not me:
             self.backend.transfer(me.carrier, task.carrier)
         me.state = RUNNING
-        budget.left = SLICE
+        budget.renew()
 
     def carry(self, carrier):
         """The job of every carrier: live the life of the current task, and of new tasks that come next.
@@ -282,7 +282,7 @@ class Kernel(Endings, Outside):
         while True:
             if task is not self._scheduler:
                 task.state = RUNNING
-                budget.left = SLICE
+                budget.renew()
                 try:
                     task.result = task.context.run(task.fn, *task.args)
                 except BaseException as exception:

@@ -101,7 +101,7 @@ class Task:
         if not self.shielded:
             self.kernel.rouse(self)
             if self is self.kernel.current:
-                budget.left = 0
+                budget.end()
 
     def interject(self, fn):
         """Have FN called on the task's own stack at its next park point or checkpoint; FN may park. Wakes it if it is parked.
@@ -113,7 +113,7 @@ class Task:
         if not self.shielded:
             self.kernel.rouse(self)
             if self is self.kernel.current:
-                budget.left = 0
+                budget.end()
 
     def join(self, why=None):
         """Park until the task is dead; returns its result, or None if it has none.
@@ -237,5 +237,5 @@ class shield:  # noqa: N801 (reads as a statement: `with shield():`)
         task = self._task
         task.shielded -= 1
         if task.attention and not task.shielded:
-            budget.left = 0
+            budget.end()
         return False

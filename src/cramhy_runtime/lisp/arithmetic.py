@@ -19,7 +19,7 @@ from fractions import Fraction
 
 from .complex_numbers import DoubleComplex, ExactComplex
 from .conditions import DivisionByZero, FloatingPointOverflow, error, type_error
-from .data import DoubleFloat, lisp_list
+from .data import DoubleFloat, MultipleValues, lisp_list, one
 from .late import late
 from .packages import sym
 
@@ -65,11 +65,17 @@ def is_integer(obj):
 
 
 def need_number(obj):
-    return obj if is_number(obj) else type_error(obj, sym("NUMBER"))
+    return obj if is_number(obj) else _first_value(obj, is_number, "NUMBER")
 
 
 def need_real(obj):
-    return obj if is_real(obj) else type_error(obj, sym("REAL"))
+    return obj if is_real(obj) else _first_value(obj, is_real, "REAL")
+
+
+def _first_value(obj, accepts, wanted):
+    # compiled code leaves it to the generic functions to take the first of several values
+    first = one(obj)
+    return first if accepts(first) else type_error(first, sym(wanted))
 
 
 def need_integer(obj):
@@ -132,6 +138,18 @@ def _finite(operation, result, *operands):
 
 
 def _operate(operation, function, a, b):
+    if a.__class__ is MultipleValues or b.__class__ is MultipleValues:
+        return LISP_FUNCTIONS[operation](one(a), one(b))
+    a, b = _complex_operands(need_number(a), need_number(b))
+    try:
+        return normal(function(a, b))
+    except OverflowError:
+        return overflow(operation, a, b)
+
+
+def _operate(operation, function, a, b):
+    if a.__class__ is MultipleValues or b.__class__ is MultipleValues:
+        return LISP_FUNCTIONS[operation](one(a), one(b))
     a, b = _complex_operands(need_number(a), need_number(b))
     try:
         return normal(function(a, b))
@@ -202,6 +220,8 @@ def div2(a, b):
             return _zero_division(a, b)
         except OverflowError:
             return overflow("/", a, b)
+    if kind is MultipleValues or other is MultipleValues:
+        return div2(one(a), one(b))
     a, b = _complex_operands(need_number(a), need_number(b))
     try:
         return normal(a / b if kind is not int or other is not int else Fraction(a, b))

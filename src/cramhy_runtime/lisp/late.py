@@ -34,6 +34,8 @@ WHERE = {
     "reader": "read_from_stream",
     "evaluator": "evaluate macro_expander",
     "systems": "load_system",
+    "arrays": "aref",
+    "sequences": "length",
 }
 """Module → the names that the ground takes from it."""
 

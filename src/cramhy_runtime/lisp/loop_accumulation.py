@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from .data import Cons, lisp_list
 from .lambda_lists import gensym
-from .loop_support import COLLECT, COLLECT_APPEND, COLLECT_NCONC
+from .loop_support import CDR_OF_CONS, COLLECT, COLLECT_APPEND, COLLECT_NCONC
 from .loop_tokens import zero
 from .packages import is_symbol, sym
 
@@ -96,4 +96,4 @@ def result(loop):
     accumulator = loop.accumulators.get(None)
     if accumulator is None:
         return loop.default_result
-    return lisp_list(CDR, accumulator.header) if accumulator.kind == "LIST" else accumulator.variable
+    return lisp_list(CDR_OF_CONS, accumulator.header) if accumulator.kind == "LIST" else accumulator.variable

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from .data import Cons, lisp_list, list_from
 from .lambda_lists import gensym
-from .loop_support import END_LOOP, LOOP_SYMBOLS, LOOP_VECTOR, TABLE_ENTRIES
+from .loop_support import CAR_OF_CONS, CDR_OF_CONS, END_LOOP, LOOP_SYMBOLS, LOOP_VECTOR, TABLE_ENTRIES
 from .loop_tokens import zero
 from .packages import is_symbol, sym, symbol_name
 
@@ -229,8 +229,9 @@ def _for_in(loop, pattern, declared, word):
     rest = gensym("LIST")
     bindings = [(rest, loop.tokens.form())]
     step = _by(loop, bindings)
-    return Iteration(bindings, Turn(before=[lisp_list(ENDP, rest)], settings=[(pattern, lisp_list(CAR, rest))],
-                                    hidden=[(rest, _step_call(step, rest))]))
+    move = lisp_list(CDR_OF_CONS, rest) if isinstance(step, Cons) and step.cdr.car is CDR else _step_call(step, rest)
+    return Iteration(bindings, Turn(before=[lisp_list(ENDP, rest)], settings=[(pattern, lisp_list(CAR_OF_CONS, rest))],
+                                    hidden=[(rest, move)]))
 
 
 def _for_on(loop, pattern, declared, word):

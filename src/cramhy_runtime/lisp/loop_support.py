@@ -8,12 +8,23 @@ from __future__ import annotations
 
 from .conditions import type_error
 from .data import Cons, list_from
+from .lists import car, cdr
 from .packages import Package, find_package, find_package_or_error, intern, register
 
 if find_package("CRAMHY") is None:
     register(Package("CRAMHY"))
 NEXT_LOOP, END_LOOP = intern("NEXT-LOOP", "CRAMHY"), intern("END-LOOP", "CRAMHY")
 """The tags of a loop. ``(go cramhy::end-loop)`` is what ``loop-finish`` does."""
+
+
+def car_of_cons(cell):
+    """``car`` of what is known to be a cons; the compiler makes an attribute of it."""
+    return cell.car
+
+
+def cdr_of_cons(cell):
+    """``cdr`` of what is known to be a cons."""
+    return cell.cdr
 
 
 def collect(tail, item):
@@ -72,6 +83,7 @@ def loop_symbols(kind, package):
     return list_from(list(dict.fromkeys(found)))
 
 
-COLLECT, COLLECT_APPEND, COLLECT_NCONC, LOOP_VECTOR, TABLE_ENTRIES, LOOP_SYMBOLS = (
-    intern(name, "CRAMHY") for name in ("COLLECT", "COLLECT-APPEND", "COLLECT-NCONC", "LOOP-VECTOR", "TABLE-ENTRIES", "LOOP-SYMBOLS"))
+CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_APPEND, COLLECT_NCONC, LOOP_VECTOR, TABLE_ENTRIES, LOOP_SYMBOLS = (
+    intern(name, "CRAMHY") for name in """CAR-OF-CONS CDR-OF-CONS COLLECT COLLECT-APPEND COLLECT-NCONC LOOP-VECTOR TABLE-ENTRIES
+    LOOP-SYMBOLS""".split())
 """The symbols of these functions; `package.fill` defines them, because kept code calls them without LOOP having been loaded."""

@@ -168,6 +168,8 @@ def _rotatef(form, environment):
 def modify(place, environment, compute):
     """A form that stores ``compute(reading form)`` in ``place`` and returns it."""
     temporaries, forms, stores, setter, getter = setf_expansion(place, environment)
+    if is_symbol(getter):
+        return lisp_list(SETQ, getter, compute(getter))
     return _let([*zip(temporaries, forms), (stores[0], compute(getter))], setter)
 
 
@@ -187,6 +189,8 @@ _modifier("DECF", "-")
 @macro("PUSH")
 def _push(form, environment):
     item, place = list(form.cdr)
+    if is_symbol(place):
+        return modify(place, environment, lambda old: lisp_list(sym("CONS"), item, old))
     value = gensym("ITEM")
     return _let([(value, item)], modify(place, environment, lambda old: lisp_list(sym("CONS"), value, old)))
 
@@ -202,6 +206,8 @@ def _pushnew(form, environment):
 def _pop(form, environment):
     (place,) = list(form.cdr)
     temporaries, forms, stores, setter, getter = setf_expansion(place, environment)
+    if is_symbol(getter):
+        return lisp_list(sym("PROG1"), lisp_list(sym("CAR"), getter), lisp_list(SETQ, getter, lisp_list(sym("CDR"), getter)))
     old = gensym("LIST")
     bindings = [*zip(temporaries, forms), (old, getter), (stores[0], lisp_list(sym("CDR"), old))]
     return _let(bindings, setter, lisp_list(sym("CAR"), old))

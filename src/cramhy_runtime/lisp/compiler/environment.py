@@ -63,6 +63,9 @@ class Variable:
         self.captured = False
         self.assigned = False
         self.ignorable = False
+        self.reads = self.writes = 0  # these and the next are found by ``facts.py``
+        self.values = []
+        self.kind = None
 
     @property
     def fresh(self):
@@ -129,7 +132,9 @@ class Block:
 
 
 class Tagbody:
-    """A ``tagbody``; its tags are (this, index)."""
+    """A ``tagbody``; its tags are (this, index). ``structured``: it became a loop of Python."""
+
+    structured = False
 
     def __init__(self, owner):
         self.owner = owner

@@ -15,20 +15,16 @@ from . import core, nodes
 from .constants import Constants, float_model
 from .core import List, expression, word
 from .destinations import EFFECT, NONE, TRUE, VALUE, VALUES, Destination
+from .facts import study, walk
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
+from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
 
 
-ARITHMETIC = {sym(name): f"L{function}" for name, function in (
-    ("+", "add2"), ("-", "sub2"), ("*", "mul2"), ("/", "div2"), ("<", "lt2"), (">", "gt2"), ("<=", "le2"), (">=", "ge2"), ("=", "num_eq2"))}
+COLLECT = sym("CRAMHY::COLLECT")
 
 
-OPERATORS = {sym(name): name for name in "+-*"}
-COMPARISONS = {sym(name): name for name in ("<", ">", "<=", ">=")} | {sym("="): "="}
-STEPS = {sym("1+"): sym("+"), sym("1-"): sym("-")}
-
-
-class Generator(ExitGenerator, FunctionGenerator):
+class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
     """Generates one Python function at a time; `toplevel` is the entry."""
 
     def __init__(self, constants=None):
@@ -89,7 +85,7 @@ class Generator(ExitGenerator, FunctionGenerator):
         """Deliver an expression to its destination."""
         kind = destination.kind
         if not destination.multiple and not node.single and kind != "effect":
-            model = self.call("one", model)
+            model = self.first_value(model)
         if kind == "value":
             return model
         if kind == "return":
@@ -100,6 +96,13 @@ class Generator(ExitGenerator, FunctionGenerator):
             self.out.append(model)
             self.effects += 1
         return None
+
+    def first_value(self, model):
+        """The first of the values of ``model``; nearly always it is the only one."""
+        value = word("Lv")
+        several = expression(word("is-not"), expression(word("."), expression(word("setx"), value, model), word("__class__")),
+                             word("LMultipleValues"))
+        return expression(word("if"), several, value, self.call("one", value))
 
     def by_statements(self, node, destination, produce):
         """Generate through ``produce(destination)``, which delivers by statements; for a value use a variable."""
@@ -161,14 +164,23 @@ class Generator(ExitGenerator, FunctionGenerator):
         return self.finish(self.reference(node.variable), node, destination, pure=True)
 
     def GlobalVariable(self, node, destination):
-        constant = self.constant(node.symbol)
+        constant, value = self.constant(node.symbol), word("Lv")
         place = expression(word("."), constant, word("value"))
-        unbound = expression(word("is"), place, word("Lunbound"))
-        model = expression(word("if"), unbound, self.positioned(self.call("value", constant), node), place)
+        bound = expression(word("is-not"), expression(word("setx"), value, place), word("Lunbound"))
+        model = expression(word("if"), bound, value, self.positioned(self.call("value", constant), node))
         return self.finish(model, node, destination)
 
     def SetLocal(self, node, destination):
         variable = node.variable
+        value = node.value
+        if value.__class__ is nodes.Call and value.symbol is COLLECT and len(value.arguments) == 2 and destination.kind == "effect" \
+                and value.arguments[0].__class__ is nodes.LocalVariable and value.arguments[0].variable is variable and not variable.boxed:
+            cell, tail = word(self.temporary("Lnew")), word(variable.name)
+            item = self.value(value.arguments[1])
+            new = expression(word("setx"), cell, expression(word("LCons"), item))
+            self.emit(word("setv"), expression(word("."), tail, word("cdr")), new)
+            self.emit(word("setv"), tail, cell)
+            return None
         if not variable.boxed:
             self.gen(node.value, Destination("assign", variable.name))
         else:
@@ -198,38 +210,37 @@ class Generator(ExitGenerator, FunctionGenerator):
         return isinstance(symbol, Symbol) and symbol.package is COMMON_LISP and not isinstance(symbol.function, UndefinedFunction)
 
     def Call(self, node, destination):
-        symbol = node.symbol
-        arguments = self.arguments(node.arguments)
+        symbol, arguments = node.symbol, node.arguments
         if symbol in STEPS and len(arguments) == 1:
-            symbol, arguments = STEPS[symbol], [*arguments, 1]
-        if len(arguments) == 2 and symbol in ARITHMETIC:
-            model = self.positioned(expression(word(ARITHMETIC[symbol]), *arguments), node)
-            if symbol in OPERATORS:
-                quick = self.on_integers(arguments)
-                if quick is not None:
-                    model = expression(word("if"), quick, expression(word(OPERATORS[symbol]), *arguments), model)
-        elif symbol is NOT and len(arguments) == 1:
-            model = self.call("not", *arguments)
-        elif self.standard(symbol):
-            model = expression(word(self.constants.name("function", symbol)), *arguments)
+            symbol, arguments = STEPS[symbol], [*arguments, nodes.Constant(1)]
+        standard = self.standard(symbol) and destination.kind != "effect"
+        if standard and len(arguments) == 2 and symbol in ARITHMETIC:
+            if symbol not in COMPARISONS:
+                return self.finish(self.arithmetic(node, symbol, arguments), node, destination)
+            return self.finish(self.truth_value(self.comparison(node, symbol, arguments)), node, destination)
+        if symbol in NEGATIONS and len(arguments) == 1:
+            return self.finish(self.truth_value(expression(word("not"), self.test(arguments[0]))), node, destination)
+        if standard or symbol in KNOWN_PARTS:
+            test = self.small_test(node, symbol, arguments)
+            if test is not None:
+                return self.finish(self.truth_value(test), node, destination)
+            model = self.small_function(node, symbol, arguments)
+            if model is not None:
+                return self.finish(model, node, destination)
+        models = self.arguments(arguments)
+        if self.standard(symbol):
+            model = expression(word(self.constants.name("function", symbol)), *models)
         elif is_symbol(symbol) and not isinstance(symbol, Symbol):
-            model = self.call("undefined", self.constant(symbol), *arguments)
-        else:
-            model = expression(expression(word("."), self.constant(symbol), word("function")), *arguments)
+            model = self.call("undefined", self.constant(symbol), *models)
+        else:  # named, because Python takes longer to call an attribute of an object with slots
+            function = expression(word("setx"), word("Lf"), expression(word("."), self.constant(symbol), word("function")))
+            model = expression(function, *models)
         return self.finish(self.positioned(model, node), node, destination)
 
     @staticmethod
-    def on_integers(arguments):
-        """A Python test that all ``arguments`` are integers, worth making when each is a name or a number; else ``None``.
-
-        Loops count with integers, and Python's own operator is three times as fast as a call of the generic one.
-        """
-        names = [each for each in arguments if isinstance(each, core.Symbol)]
-        if not names or any(not isinstance(each, (core.Symbol, int)) for each in arguments):
-            return None
-        tests = [expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
-                 for name in dict.fromkeys(names)]
-        return tests[0] if len(tests) == 1 else expression(word("and"), *tests)
+    def truth_value(test):
+        """t or nil for a Python test."""
+        return expression(word("if"), test, TRUE, NONE)
 
     def CallLocal(self, node, destination):
         arguments = self.arguments(node.arguments)
@@ -238,7 +249,13 @@ class Generator(ExitGenerator, FunctionGenerator):
     def CallValue(self, node, destination):
         function, *arguments = self.arguments([node.function, *node.arguments])
         if not isinstance(node.function, nodes.Lambda):
-            function = self.call("callable", function)
+            if function.__class__ is core.Symbol:
+                name = function
+            else:
+                name = word(self.temporary())
+                function = expression(word("setx"), name, function)
+            plain = expression(word("is"), expression(word("."), function, word("__class__")), word("LFunction"))
+            function = expression(word("if"), plain, name, self.call("callable", name))
         return self.finish(self.positioned(expression(function, *arguments), node), node, destination)
 
     def CallSetf(self, node, destination):
@@ -298,21 +315,29 @@ class Generator(ExitGenerator, FunctionGenerator):
             name = self.temporary()
             self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
             return word(name)
-        if isinstance(node, nodes.Call) and node.symbol in COMPARISONS and len(node.arguments) == 2:
-            arguments = self.arguments(node.arguments)
-            slow = self.positioned(expression(word(ARITHMETIC[node.symbol]), *arguments), node)
-            slow = expression(word("is-not"), slow, NONE)
-            quick = self.on_integers(arguments)
-            if quick is None:
-                return slow
-            return expression(word("if"), quick, expression(word(COMPARISONS[node.symbol]), *arguments), slow)
-        value = self.value(node)
+        if isinstance(node, nodes.Call) and self.standard(node.symbol):
+            if node.symbol in COMPARISONS and len(node.arguments) == 2:
+                return self.comparison(node, node.symbol, node.arguments)
+            test = self.small_test(node, node.symbol, node.arguments)
+            if test is not None:
+                return test
         if node.boolean:
-            return expression(word("is-not"), value, NONE)
-        if isinstance(node, nodes.LocalVariable) and not node.variable.boxed:
-            return expression(word("and"), expression(word("is-not"), value, NONE),
-                              expression(word("is-not"), value, word("False")))
-        return self.call("truth", value)
+            return expression(word("is-not"), self.value(node), NONE)
+        if isinstance(node, nodes.LocalVariable):
+            kind, value = node.variable.kind, self.reference(node.variable)
+            if kind in ("int", "float"):
+                return TRUE
+            true = expression(word("is-not"), value, NONE)
+            return true if kind == "boolean" else expression(word("and"), true, expression(word("is-not"), value, word("False")))
+        model = self.gen(node, VALUES)
+        if model.__class__ is not core.Expression:
+            return self.call("truth", model)
+        value = word("Lv")
+        true = [expression(word("is-not"), expression(word("setx"), value, model), NONE), expression(word("is-not"), value, word("False"))]
+        if not node.single:
+            single = expression(word("is-not"), expression(word("."), value, word("__class__")), word("LMultipleValues"))
+            true.append(expression(word("or"), single, self.call("truth", self.call("one", value))))
+        return expression(word("and"), *true)
 
     @staticmethod
     def setting(name, value):
@@ -342,10 +367,28 @@ class Generator(ExitGenerator, FunctionGenerator):
 
     # ------------------------------------------------------------------------------------------------------------- binding
 
+    @staticmethod
+    def alike(variable, other, forms):
+        """Whether ``variable``, bound to the value of ``other`` while ``forms`` run, can do without a Python variable of its own."""
+        if variable.writes or variable.captured or other.boxed or variable.owner is not other.owner:
+            return False
+        if not other.writes:
+            return True
+        return not other.captured and not any(
+            item.__class__ is nodes.SetLocal and item.variable is other for item in walk(forms))
+
     def bind_variable(self, variable, value):
         self.assign(variable.name, self.call("cell", value) if variable.boxed else value)
 
     def Let(self, node, destination):
+        bindings = []
+        for variable, value in node.bindings:
+            plain = not isinstance(variable, Symbol) and value.__class__ is nodes.LocalVariable
+            if plain and self.alike(variable, value.variable, [node.body, *(other for _, other in node.bindings)]):
+                variable.name = value.variable.name
+            else:
+                bindings.append((variable, value))
+        node = nodes.Let(bindings, node.body)
         values = self.arguments([value for _, value in node.bindings])
         lexical = [(variable, value) for (variable, _), value in zip(node.bindings, values) if not isinstance(variable, Symbol)]
         dynamic = [(symbol, value) for (symbol, _), value in zip(node.bindings, values) if isinstance(symbol, Symbol)]
@@ -409,6 +452,7 @@ class Generator(ExitGenerator, FunctionGenerator):
         self.out, self.frames, self.scope = [], [], node.scope.parent or node.scope
         self.effects = 0
         self.jump_codes = {}
+        study(node)
         function = self.function(node, name)
         statements = self.out
         while self.hoisted:
@@ -418,6 +462,3 @@ class Generator(ExitGenerator, FunctionGenerator):
             statements = [*self.out, self.setting(loaded, self.call("one", expression(called))), *statements]
         return [*statements, self.setting(result, expression(function))]
 
-
-NOT = sym("NOT")
-NEGATIONS = {sym("NOT"), sym("NULL")}

@@ -1,9 +1,10 @@
 """Exits: ``block``, ``return-from``, ``tagbody``, ``go`` and ``unwind-protect``.
 
 Inside one Python function they become ``return``, ``break`` and ``continue``; only an exit from an inner function raises an
-exception. A ``tagbody`` is a ``while`` loop over its segments with a counter that says where to go on. A Python loop that is left
-for an outer one sets ``Lexit`` and breaks, and the code after the loop goes on from there. Every ``go`` backwards is a checkpoint
-of the kernel. Cleanup forms are shielded: no request to end the task interrupts them (law 2).
+exception. A ``tagbody`` that is a loop (``loop_shapes.py``) becomes Python's loop, any other one a loop over its segments with a
+counter that says where to go on. A Python loop that is left for an outer one sets ``Lexit`` and breaks, and the code after the
+loop goes on from there. Every turn of a loop counts as a checkpoint of the kernel: it takes one of `Lbudget.ticks`, and when
+these are used up, `Lrefill` lets others run. Cleanup forms are shielded: no request to end the task interrupts them (law 2).
 """
 
 from __future__ import annotations
@@ -11,14 +12,19 @@ from __future__ import annotations
 from . import nodes
 from .core import List, expression, word
 from .destinations import EFFECT, NONE, TRUE, VALUES
+from .loop_shapes import counting, loop_of
 
 
 class Frame:
-    """A Python loop around the code being generated; ``exits`` are outer targets that it is left for."""
+    """A Python loop around the code being generated.
 
-    def __init__(self, target, segment=0):
-        self.target = target
-        self.segment = segment
+    ``breaks`` and ``again`` are the targets that are reached by breaking it and by its next turn; ``exits`` are outer targets that
+    it is left for. A target is a block, a tagbody, or (tagbody, index of the segment).
+    """
+
+    def __init__(self, breaks=None, again=None):
+        self.breaks = breaks
+        self.again = again
         self.exits = {}
 
 
@@ -49,7 +55,7 @@ class ExitGenerator:
         if destination.kind == "return":
             self.gen(node.body, destination)
             return
-        frame = Frame(node.block)
+        frame = Frame(breaks=node.block)
         self.frames.append(frame)
         statements, _ = self.captured(lambda: self.gen(node.body, destination))
         self.frames.pop()
@@ -68,11 +74,10 @@ class ExitGenerator:
         return NONE if destination.kind == "value" else None
 
     def jump(self, target):
-        """Leave the Python loops between here and the frame of ``target``, then break it or, for a tagbody, go on in it."""
+        """Leave the Python loops between here and that of ``target``, then break it or go on with its next turn."""
         inner = self.frames[-1]
-        again = target.__class__.__name__ == "Tagbody"
-        if inner.target is target:
-            self.emit(word("continue" if again else "break"))
+        if target == inner.breaks or target == inner.again:
+            self.emit(word("break" if target == inner.breaks else "continue"))
             return
         code = self.jump_codes.setdefault(target, len(self.jump_codes) + 1)
         self.scope.exits_set += 1
@@ -84,7 +89,7 @@ class ExitGenerator:
         """After a loop: go on with the exits for which it was left."""
         for target, code in frame.exits.items():
             def onward(target=target):
-                if self.frames[-1].target is target:
+                if target in (self.frames[-1].breaks, self.frames[-1].again):
                     self.assign("Lexit", 0)
                 self.jump(target)
 
@@ -93,15 +98,97 @@ class ExitGenerator:
 
     def TagbodyNode(self, node, destination):
         tagbody = node.tagbody
+        loop = None if tagbody.escapes else loop_of(node)
+        if loop is None:
+            self.any_tagbody(node)
+        else:
+            self.loop(node, loop)
+        return self.finish(NONE, node, destination, pure=True)
+
+    def loop(self, node, loop):
+        """A tagbody that is a loop: what comes before it, Python's loop, what comes after it."""
+        tagbody, segments = node.tagbody, node.segments
+        end = (tagbody, loop.last + 1)
+        tagbody.structured = True
+        first = len(segments) if loop.first is None else loop.first
+
+        def before():
+            for segment in segments[:loop.last + 1] if loop.first is None else segments[:first]:
+                for item in segment:
+                    self.gen(item, EFFECT)
+            if loop.first is not None:
+                self.repeated(node, loop, end)
+
+        if loop.left_early:
+            frame = Frame(breaks=end)
+            self.frames.append(frame)
+            statements, _ = self.captured(before)
+            self.frames.pop()
+            self.emit(word("while"), TRUE, *statements, expression(word("break")))
+            self.continue_exits(frame)
+        else:
+            before()
+        for segment in segments[loop.last + 1:]:
+            for item in segment:
+                self.gen(item, EFFECT)
+
+    def repeated(self, node, loop, end):
+        """The loop itself."""
+        tagbody = node.tagbody
+        statements = [item for segment in node.segments[loop.first:loop.last + 1] for item in segment]
+        found = counting(statements, tagbody, loop.first, end[1], self.scope) if loop.first == loop.last else None
+        frame = Frame(breaks=end, again=(tagbody, loop.first))
+        self.frames.append(frame)
+        if found is not None:
+            source, target = self.counted(found)
+            body, _ = self.captured(lambda: [self.gen(item, EFFECT) for item in found.body])
+            self.frames.pop()
+            self.emit(word("for"), List([target, source]), *(body or [NONE]))
+            self.continue_exits(frame)
+            return
+
+        last = statements[-1] if statements else None
+        again = last.__class__ is nodes.Go and last.tagbody is tagbody and last.index == loop.first
+
+        def turn():
+            for item in statements[:-1] if again else statements:
+                self.gen(item, EFFECT)
+            if not again:
+                self.emit(word("break"))
+
+        body, _ = self.captured(turn)
+        self.frames.pop()
+        self.out.append(self.ticking(body))
+        self.effects += 1
+        self.continue_exits(frame)
+
+    @staticmethod
+    def ticking(body):
+        """An endless loop whose turns count."""
+        ticks = expression(word("."), word("Lbudget"), word("ticks"))
+        refill = expression(word("else"), expression(word("Lrefill")), expression(word("continue")))
+        return expression(word("while"), TRUE, expression(word("for"), List([word("Ltick"), ticks]), *(body or [NONE]), refill),
+                          expression(word("break")))
+
+    def counted(self, found):
+        """(what Python's ``for`` goes over, its target) of a `Counting`."""
+        if found.vector is not None:
+            return self.call("items", self.value(found.vector)), word(found.element.name)
+        variable = word(found.variable.name)
+        limit = self.value(found.limit)
+        return self.call("counting", variable, limit, found.step, TRUE if found.inclusive else NONE), variable
+
+    def any_tagbody(self, node):
+        """A tagbody of any shape: a loop over its segments."""
+        tagbody = node.tagbody
         tagbody.counter = self.temporary("Lpc")
-        frame = Frame(tagbody)
+        frame = Frame(again=tagbody)
         self.assign(tagbody.counter, 0)
         if tagbody.escapes:
             self.assign(tagbody.variable.name, self.call("block"))
         self.frames.append(frame)
         parts = []
         for index, segment in enumerate(node.segments):
-            frame.segment = index
             statements, _ = self.captured(lambda segment=segment: [self.gen(item, EFFECT) for item in segment])
             if statements:
                 test = expression(word("<="), word(tagbody.counter), index)
@@ -115,7 +202,7 @@ class ExitGenerator:
                                 self.call("block_value", word(exit_name), self.reference(tagbody.variable)))
             parts = [expression(word("try"), *parts, expression(
                 word("except"), List([word(exit_name), word("LBlockExit")]), target))]
-        loop = expression(word("while"), TRUE, *parts)
+        loop = self.ticking(parts)
         if tagbody.escapes:
             end = self.call("end_block", self.reference(tagbody.variable))
             self.emit(word("try"), loop, expression(word("finally"), end))
@@ -123,25 +210,18 @@ class ExitGenerator:
             self.out.append(loop)
             self.effects += 1
         self.continue_exits(frame)
-        return self.finish(NONE, node, destination, pure=True)
 
     def Go(self, node, destination):
         tagbody = node.tagbody
         if tagbody.owner is not self.scope:
             return self.finish(self.call("return_from", self.reference(tagbody.variable), node.index),
                                nodes.Constant(None), destination)
-        frame = next(frame for frame in self.frames if frame.target is tagbody)
-        if node.index <= frame.segment:
-            self.checkpoint()
-        self.assign(tagbody.counter, node.index)
-        self.jump(tagbody)
+        if tagbody.structured:
+            self.jump((tagbody, node.index))
+        else:
+            self.assign(tagbody.counter, node.index)
+            self.jump(tagbody)
         return NONE if destination.kind == "value" else None
-
-    def checkpoint(self):
-        """`kernel.checkpoint` of a loop, its counting done in place."""
-        left = expression(word("."), word("Lbudget"), word("left"))
-        self.emit(word("setv"), left, expression(word("-"), left, 1))
-        self.emit(word("when"), expression(word("<"), left, 0), self.call("checkpoint"))
 
     def UnwindProtect(self, node, destination):
         def produce(inner):

@@ -15,7 +15,7 @@ _LOAD, _STORE = ast.Load(), ast.Store()
 _JUMPS = (ast.Return, ast.Break, ast.Continue, ast.Raise)
 _COMPARISONS = {"is": ast.Is(), "is-not": ast.IsNot(), "=": ast.Eq(), "!=": ast.NotEq(), "<": ast.Lt(), "<=": ast.LtE(), ">": ast.Gt(),
                 ">=": ast.GtE(), "in": ast.In(), "not-in": ast.NotIn()}
-_OPERATORS = {"+": ast.Add(), "-": ast.Sub(), "*": ast.Mult(), "//": ast.FloorDiv(), "%": ast.Mod()}
+_OPERATORS = {"+": ast.Add(), "-": ast.Sub(), "*": ast.Mult(), "/": ast.Div(), "//": ast.FloorDiv(), "%": ast.Mod()}
 _CONSTANTS = {"None": None, "True": True, "False": False}
 
 

@@ -7,10 +7,12 @@ The names that generated code uses begin with ``L``: no Lisp name becomes such a
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import zip_longest
+from itertools import chain, islice, zip_longest
+from operator import length_hint
+from types import FunctionType
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.budget import budget
+from cramhy_runtime.kernel.budget import TICKS, budget
 
 from .. import arithmetic
 from ..backquote import Comma
@@ -20,6 +22,7 @@ from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbo
 from ..dynamic import Bindings, bind, unbind
 from ..functions import function_of
 from ..irrational import complex_
+from ..late import late
 from ..packages import intern, keyword, printed, sym
 
 
@@ -37,6 +40,60 @@ class BlockExit(BaseException):
 
     value = None
     active = True
+
+
+def counting(start, limit, step, inclusive):
+    """What a loop counts through: from ``start`` by the integer ``step`` up or down to ``limit``. An iterable of numbers.
+
+    Each turn is a checkpoint. A limit that is a float, or no number at all, is the generic functions' business.
+    """
+    if start.__class__ is not int or limit.__class__ is not int:
+        return _counting_by_comparison(start, limit, step, inclusive)
+    stop = limit + (1 if step > 0 else -1) if inclusive else limit
+    turns = range(start, stop, step)
+    if len(turns) <= TICKS:
+        budget.left -= len(turns)
+        if budget.left < 0:
+            kernel.slice_over()
+        return turns
+    return chain.from_iterable(_ticking(iter(turns)))
+
+
+def _counting_by_comparison(number, limit, step, inclusive):
+    past = (arithmetic.gt2 if inclusive else arithmetic.ge2) if step > 0 else (arithmetic.lt2 if inclusive else arithmetic.le2)
+    while past(number, limit) is None:
+        yield number
+        number = arithmetic.add2(number, step)
+        kernel.checkpoint()
+
+
+def _ticking(iterator):
+    """The parts of ``iterator``, a checkpoint for each of their elements."""
+    while length_hint(iterator):
+        yield islice(iterator, TICKS)
+        budget.left -= TICKS
+        if budget.left < 0:
+            kernel.slice_over()
+
+
+def items(vector):
+    """What a loop over the elements of ``vector`` goes through."""
+    if vector.__class__ is not list:
+        return _items(vector)
+    if len(vector) <= TICKS:
+        budget.left -= len(vector)
+        if budget.left < 0:
+            kernel.slice_over()
+        return vector
+    return chain.from_iterable(_ticking(iter(vector)))
+
+
+def _items(vector):
+    index, aref, length = 0, late.aref, late.length
+    while index < length(vector):
+        yield aref(vector, index)
+        index += 1
+        kernel.checkpoint()
 
 
 def block_value(exit_, token):
@@ -210,7 +267,8 @@ NAMESPACE = {
     "Lone": one, "Ltruth": truth, "Lnot": not_, "Lvalue": value_of, "Lfdefinition": fdefinition, "Lsetf_function": setf_function,
     "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
-    "Lreturn_from": return_from, "Lcheckpoint": kernel.checkpoint, "Lshield": kernel.shield,
+    "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
+    "LCons": Cons, "LFunction": FunctionType, "Lshield": kernel.shield,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,

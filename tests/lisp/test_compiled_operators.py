@@ -1,0 +1,140 @@
+"""Operators that stand alone in the Python code mean what the functions of Common Lisp mean, at every edge."""
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.repl.session import Session, condition_of
+
+
+@pytest.fixture(scope="module")
+def session():
+    yield Session(time="virtual", turtlesim=False)
+    kernel.stop()
+
+
+def answer(session, text):
+    try:
+        return " ".join(prin1_to_string(value) for value in session.evaluate_text(text))
+    except (Condition, Exception) as problem:
+        condition = condition_of(problem)
+        return f"{condition.lisp_name.rpartition(':')[2]}: {' '.join(condition.report().split())}"
+
+
+@pytest.mark.parametrize(("program", "wanted"), [
+    # t is no number although Python's True is
+    ("(let ((x t)) (+ x 1))", "TYPE-ERROR: The value T is not of type NUMBER"),
+    ("(funcall (lambda (x) (* x 2)) t)", "TYPE-ERROR: The value T is not of type NUMBER"),
+    ("(funcall (lambda (x y) (< x y)) 1 t)", "TYPE-ERROR: The value T is not of type REAL"),
+    ("(funcall (lambda (x y) (+ (* x x) (* y y))) 2 t)", "TYPE-ERROR: The value T is not of type NUMBER"),
+    ("(funcall (lambda (x) (zerop x)) nil)", "TYPE-ERROR: The value NIL is not of type NUMBER"),
+    # the numeric tower
+    ("(funcall (lambda (x y) (/ x y)) 6 4)", "3/2"),
+    ("(funcall (lambda (x y) (/ x y)) 6.0 4)", "1.5"),
+    ("(funcall (lambda (x y) (/ x y)) 6 0)", "DIVISION-BY-ZERO: arithmetic error DIVISION-BY-ZERO signalled Operation was (/ 6 0)."),
+    ("(funcall (lambda (x y) (/ x y)) 6.0 0.0)",
+     "DIVISION-BY-ZERO: arithmetic error DIVISION-BY-ZERO signalled Operation was (/ 6.0 0.0)."),
+    ("(funcall (lambda (x) (/ x 2)) 3)", "3/2"),
+    ("(funcall (lambda (x) (/ x 2)) 3.0)", "1.5"),
+    ("(let ((x 3) (y 2)) (/ x y))", "3/2"),
+    ("(let ((x 3.0) (y 0.0)) (handler-case (/ x y) (division-by-zero () :zero)))", ":ZERO"),
+    ("(funcall (lambda (x y) (+ (* x x) (* y y))) 1/2 0.5)", "0.5"),
+    ("(funcall (lambda (x y) (+ (* x x) (* y y))) 2 1.5d0)", "6.25d0"),
+    ("(funcall (lambda (x) (+ x 1)) 1.5d0)", "2.5d0"),
+    ("(funcall (lambda (x) (- x 1)) 3/2)", "1/2"),
+    ("(let ((x most-positive-fixnum)) (+ x 1))", "4611686018427387904"),
+    ("(let ((p 1)) (dotimes (i 70 p) (setq p (* p 2))))", "1180591620717411303424"),
+    ("(let ((x -0.0)) (list (* x 1) (- x) (+ x 0.0)))", "(-0.0 0.0 0.0)"),
+    ("(funcall (lambda (x) (minusp x)) -0.0)", "NIL"),
+    # floats that leave their range
+    ("(let ((x 1.0)) (handler-case (dotimes (i 400 x) (setq x (* x 1e10))) (floating-point-overflow () :overflow)))", ":OVERFLOW"),
+    ("(let ((x 1.0)) (dotimes (i 30) (setq x (* x 1e10))) (handler-case (+ 1.0 (* x x)) (floating-point-overflow () :overflow)))",
+     ":OVERFLOW"),
+    ("(let ((x 1.0)) (dotimes (i 30) (setq x (* x 1e10))) (funcall (lambda (x y) (handler-case (- y (* x x)) (error () :over))) x 1.0))",
+     ":OVER"),
+    # several values: the first counts
+    ("(+ (floor 7 2) (floor 9 2))", "7"),
+    ("(let ((x 1)) (* (values 3 4) (values) x))", "TYPE-ERROR: The value NIL is not of type NUMBER"),
+    ("(< (values 1 2) (floor 9 2) 7)", "T"),
+    ("(if (values nil t) 1 2)", "2"),
+    ("(if (funcall (lambda () (values))) 1 2)", "2"),
+    ("(mod (floor 17 5) 2)", "1"),
+    # order of evaluation, and variables that a later operand changes
+    ("(let ((x 1)) (+ x (setq x 5) x))", "11"),
+    ("(let ((x 1)) (flet ((f () (setq x 10))) (list (+ x (f)) x (< x (f)))))", "(11 10 NIL)"),
+    ("(let ((s nil)) (flet ((f (x) (push x s) x)) (list (- (f 1) (f 2)) (< (f 3) (f 4)) (* (f 5) (- (f 6) (f 7))) s)))",
+     "(-1 T -5 (7 6 5 4 3 2 1))"),
+    ("(let* ((x 1) (y x)) (setq x 2) (list x y))", "(2 1)"),
+    ("(let ((x 1)) (let ((y x) (z (setq x 3))) (list x y z)))", "(3 1 3)"),
+    # comparisons and predicates
+    ("(list (evenp 4) (oddp 4) (evenp -3) (oddp -3))", "(T NIL NIL T)"),
+    ("(funcall (lambda (x) (evenp x)) 2.0)", "TYPE-ERROR: The value 2.0 is not of type INTEGER"),
+    ("(funcall (lambda (x) (list (eq x 'a) (eql x nil) (eq x 1) (eql x #\\a))) 'a)", "(T NIL NIL NIL)"),
+    ("(funcall (lambda (x) (list (eql x 1) (eql x 1.0))) 1)", "(T NIL)"),
+    ("(funcall (lambda (x) (list (eql x 0.0) (eql x -0.0))) -0.0)", "(NIL T)"),
+    ("(funcall (lambda (x) (eql x 1)) t)", "NIL"),
+    ("(list (car nil) (cdr nil) (funcall (lambda (x) (first x)) nil))", "(NIL NIL NIL)"),
+    ("(funcall (lambda (x) (car x)) 5)", "TYPE-ERROR: The value 5 is not of type LIST when binding LIST"),
+    ("(funcall (lambda (x) (mod x 3)) -7)", "2"),
+    ("(funcall (lambda (x) (mod x 3)) -7.5)", "1.5"),
+    ("(let ((x 5)) (flet ((cons (a) (list :mine a))) (cons x)))", "(:MINE 5)"),
+])
+def test_the_operator_means_the_function(session, program, wanted):
+    assert answer(session, program) == wanted
+
+
+@pytest.mark.parametrize(("program", "wanted"), [
+    ("(let ((l nil)) (dotimes (i 3) (push (lambda () i) l)) (mapcar #'funcall l))", "(2 1 0)"),
+    ("(let ((l nil)) (dotimes (i 3) (push (lambda () (incf i)) l)) (mapcar #'funcall l))", "(3 2 1)"),
+    ("(let ((s 0)) (dotimes (i 5 (list i s)) (incf s i)))", "(5 10)"),
+    ("(dotimes (i -3 i))", "0"),
+    ("(let ((n 3) (s 0)) (dotimes (i n s) (setq n 100) (incf s)))", "3"),
+    ("(let ((s 0)) (dotimes (i 10 s) (when (= i 4) (return (list :at i s))) (incf s i)))", "(:AT 4 6)"),
+    ("(loop for i from 10 downto 1 by 3 collect i)", "(10 7 4 1)"),
+    ("(loop for i from 1 below 2.5 collect i)", "(1 2)"),
+    ("(loop for i from 1.0 to 2 by 1/2 collect i)", "(1.0 1.5 2.0)"),
+    ("(loop for i from 0 below 5 finally (return i))", "5"),
+    ("(loop for i from 0 below 5 do (setq i (+ i 1)) collect i)", "(1 3 5)"),
+    ("(loop for i below 'a collect i)", "TYPE-ERROR: The value A is not of type REAL"),
+    ("(loop for x across (vector 1 2.5 3/2) sum x)", "5.0"),
+    ("(loop for c across \"abc\" collect c)", "(#\\a #\\b #\\c)"),
+    ("(loop for x across (make-array 200 :initial-element 1) sum x)", "200"),
+    ("(loop for x across (vector 1 2 3) for i from 0 collect (* x i))", "(0 2 6)"),
+    ("(let ((v (make-array 5 :fill-pointer 2 :initial-element 7))) (loop for x across v collect x))", "(7 7)"),
+    ("(loop for (a b) across (vector '(1 2) '(3 4)) sum (* a b))", "14"),
+    ("(loop repeat 3 collect 1)", "(1 1 1)"),
+    ("(let ((n 3)) (loop repeat n do (decf n)) n)", "0"),
+    ("(loop for x in '(1 2 . 3) collect x)", "TYPE-ERROR: The value 3 is not of type LIST when binding SB-IMPL::OBJECT"),
+    ("(loop for x in '(1 2 3 4) by #'cddr collect x)", "(1 3)"),
+    ("(let ((r nil)) (dolist (x '(1 2 3 4 5) r) (when (= x 2) (go next)) (when (= x 5) (return (list :out r))) (push x r) next))",
+     "(:OUT (4 3 1))"),
+    ("(let ((r nil)) (dotimes (i 3 r) (dotimes (j 3) (when (= j 1) (return)) (when (= i 2) (return-from nil)) (push (list i j) r))))",
+     "((1 0) (0 0))"),
+    ("(block out (dotimes (i 3) (dotimes (j 3) (when (= (* i j) 2) (return-from out (list i j))))))", "(1 2)"),
+    ("(block out (loop (unwind-protect (return-from out 1) (print 2))))", "1"),
+    ("(let ((i 0) (r nil)) (tagbody a (incf i) b (push i r) (when (< i 3) (go a)) (when (< (length r) 6) (go b))) r)", "(3 3 3 3 2 1)"),
+    ("(let ((x 0)) (tagbody (when (= x 0) (go end)) (setq x 1) end (setq x (+ x 5))) x)", "5"),
+    ("(let ((r nil)) (loop for x = 1 then (* 2 x) while (< x 20) do (push x r)) r)", "(16 8 4 2 1)"),
+    ("(loop for i from 1 to 3 for l on '(a b c d) collect (cons i l))", "((1 A B C D) (2 B C D) (3 C D))"),
+    ("(do ((i 0 (1+ i)) (s 0 (+ s i))) ((>= i 5) (list i s)))", "(5 10)"),
+    ("(let ((l (list 1 2 3))) (list (pop l) l (push 5 l) (push (pop l) l)))", "(1 (2 3) (5 2 3) (5 2 3))"),
+])
+def test_the_loop_means_what_it_says(session, program, wanted):
+    assert answer(session, program) == wanted
+
+
+def test_a_function_that_is_defined_again_is_seen_by_its_callers(session):
+    session.evaluate_text("(defun inner (x) (+ x 1)) (defun outer (x) (* 2 (inner x)))")
+    assert answer(session, "(outer 1)") == "4"
+    session.evaluate_text("(defun inner (x) (+ x 10))")
+    assert answer(session, "(outer 1)") == "22"
+
+
+@pytest.mark.parametrize("loop", [
+    "(loop)", "(loop (setq x 1))", "(dotimes (i 1000000000) (setq x i))", "(loop for i from 0 do (setq x i))",
+    "(tagbody a (go b) c b (go a))", "(loop for i below 1000000000 do (list i))", "(let ((l (list 1))) (setf (cdr l) l) (dolist (e l) e))",
+])
+def test_an_endless_loop_lets_others_run_and_can_be_ended(session, loop):
+    plan = f"(cpl:top-level (let ((x 0)) (cpl:pursue (progn (cpl:sleep* 0.5) :slept) {loop})))"
+    assert answer(session, plan) == ":SLEPT"
