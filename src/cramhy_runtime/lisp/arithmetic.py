@@ -147,24 +147,14 @@ def _operate(operation, function, a, b):
         return overflow(operation, a, b)
 
 
-def _operate(operation, function, a, b):
-    if a.__class__ is MultipleValues or b.__class__ is MultipleValues:
-        return LISP_FUNCTIONS[operation](one(a), one(b))
-    a, b = _complex_operands(need_number(a), need_number(b))
-    try:
-        return normal(function(a, b))
-    except OverflowError:
-        return overflow(operation, a, b)
-
-
 def _complex_operands(a, b):
-    # Two contagions that Python does not know: of a double to a complex of singles, and none of a ratio to an exact one.
-    for one, other in ((a, b), (b, a)):
-        if isinstance(one, complex):
-            if other.__class__ is DoubleFloat and one.__class__ is complex:
-                return (DoubleComplex(a), b) if one is a else (a, DoubleComplex(b))
-            if other.__class__ is Fraction and isinstance(one, ExactComplex):
-                return (a, ExactComplex(b, 0)) if one is a else (ExactComplex(a, 0), b)
+    # Two contagions that Python does not know: of a double to a complex of singles, and none of a ratio to an exact number.
+    for number, other in ((a, b), (b, a)):
+        if isinstance(number, complex):
+            if other.__class__ is DoubleFloat and number.__class__ is complex:
+                return (DoubleComplex(a), b) if number is a else (a, DoubleComplex(b))
+            if other.__class__ is Fraction and isinstance(number, ExactComplex):
+                return (a, ExactComplex(b, 0)) if number is a else (ExactComplex(a, 0), b)
     return a, b
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from .conditions import type_error
 from .data import Cons, list_from
-from .lists import car, cdr
 from .packages import Package, find_package, find_package_or_error, intern, register
 
 if find_package("CRAMHY") is None:
