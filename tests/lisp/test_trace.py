@@ -160,11 +160,12 @@ def test_disassemble_shows_the_python(lisp):
     assert lisp("(disassemble 'several)") == "; Python of SEVERAL\ndef several():\n    return values(1, 2)\n"
     assert lisp("(disassemble #'several)") == lisp("(disassemble 'several)")
     assert lisp("(defun hi (x) (list x (fib x))) (disassemble 'hi)") == (
-        "; Python of HI\ndef hi(x):\n    return LCons(x, LCons(Lv if (Lv := (Lf := «FIB».function)(x)).__class__ is not LMultipleValues else Lone(Lv), None))\n")
-    assert lisp("(disassemble (lambda (x) (cons x 1)))").endswith("\nlambda x: cons(x, 1)\n")
+        "; Python of HI\ndef hi(x):\n"
+        "    return LCons(x, LCons(Lv if (Lv := (Lf := «FIB».function)(x)).__class__ is not LMultipleValues else Lone(Lv), None))\n")
+    assert lisp("(disassemble (lambda (x) (acons x 1 nil)))").endswith("\nlambda x: acons(x, 1, None)\n")
     assert "return lst.car" in lisp("(disassemble 'car)")
     assert "LOAD_FAST" in lisp("(disassemble '(lambda (x) x))")
-    assert "list_(x, 's')" in lisp("(disassemble 'area)")
+    assert "LCons(x, LCons('s', None))" in lisp("(disassemble 'area)")
     with pytest.raises(Condition) as caught:
         lisp("(disassemble 'no-such)")
     assert str(caught.value) == "The function COMMON-LISP-USER::NO-SUCH is undefined."
