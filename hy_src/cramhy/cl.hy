@@ -421,7 +421,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-open-stream [spec #* body]
   (setv #(variable form) spec)
-  `(let [[~variable ~form]] (unwind-protect (progn ~@body) (close ~variable))))
+  `(%with-open-stream (lambda [~variable] ~@body) ~form))
 
 (defoperator with-standard-io-syntax [#* body]
   `(%with-standard-io-syntax (lambda [] ~@body)))

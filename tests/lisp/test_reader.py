@@ -11,10 +11,11 @@ from cramhy_runtime.lisp import backquote
 from cramhy_runtime.lisp.conditions import Condition, Warning_, handler_bind, muffle_warning
 from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.file_streams import open_
 from cramhy_runtime.lisp.packages import find_package, intern, keyword, sym
 from cramhy_runtime.lisp.printer import prin1_to_string
 from cramhy_runtime.lisp.reader import Reader, incomplete, read, read_from_string
-from cramhy_runtime.lisp.streams import FileInput, InputStream, StringInputStream
+from cramhy_runtime.lisp.streams import InputStream, StringInputStream
 
 USER = "COMMON-LISP-USER"
 
@@ -196,18 +197,18 @@ def test_it_does_not_matter_in_which_pieces_a_text_arrives(texts):
 def test_a_file_stream_is_read_on_where_it_is(tmp_path):
     path = tmp_path / "data.lisp"
     path.write_text("skip\n(a) b")
-    with path.open() as file:
-        stream = FileInput(file)
-        stream.read_line()
-        assert prin1_to_string(read(stream)) == "(A)"
-        assert read(stream) is user("B")
-        assert read(stream, None, keyword("END")) is keyword("END")
+    stream = open_(path)
+    stream.read_line()
+    assert prin1_to_string(read(stream)) == "(A)"
+    assert read(stream) is user("B")
+    assert read(stream, None, keyword("END")) is keyword("END")
+    stream.close()
 
 
 def test_a_string_stream_stands_behind_the_object_and_one_blank():
     stream = StringInputStream("a  b")
     read(stream)
-    assert stream.position == 2
+    assert stream.position() == 2
 
 
 # -------------------------------------------------------------------------------------------------------------- any text

@@ -8,9 +8,9 @@ runtime's rooms) are themselves.
 
 from __future__ import annotations
 
-import pathlib
 import types as python_types
 from fractions import Fraction
+from pathlib import PurePath
 
 from .conditions import Condition, Restart
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
@@ -56,7 +56,7 @@ _MAP = {
     int: "FIXNUM", bool: "SYMBOL", float: "SINGLE-FLOAT", DoubleFloat: "DOUBLE-FLOAT", Fraction: "RATIO", complex: "COMPLEX",
     type(None): "NULL", Symbol: "SYMBOL", Keyword: "SYMBOL", Cons: "CONS", str: "SIMPLE-STRING", LispString: "STRING",
     Character: "CHARACTER", list: "SIMPLE-VECTOR", TypedVector: "VECTOR", Vector: "VECTOR", LispArray: "ARRAY",
-    bytes: "VECTOR", bytearray: "VECTOR", Package: "PACKAGE", pathlib.PurePath: "PATHNAME", RandomState: "RANDOM-STATE",
+    bytes: "VECTOR", bytearray: "VECTOR", Package: "PACKAGE", PurePath: "PATHNAME", RandomState: "RANDOM-STATE",
     Restart: "RESTART", python_types.FunctionType: "COMPILED-FUNCTION", python_types.BuiltinFunctionType: "COMPILED-FUNCTION",
 }
 

@@ -285,6 +285,14 @@ class StreamError(Error):
 
 
 @public
+class ClosedStreamError(StreamError):
+    lisp_name = "SB-INT::CLOSED-STREAM-ERROR"
+
+    def report(self):
+        return f"{shown(self.stream)} is closed"
+
+
+@public
 class EndOfFile(StreamError):
     lisp_name = "END-OF-FILE"
 
@@ -332,6 +340,11 @@ class FileError(SimpleCondition, Error):
         if self.format_control is UNBOUND:
             return f"error on file {shown(self.pathname)}"
         return super().report()
+
+
+@public
+class SimpleFileError(FileError):
+    lisp_name = "SB-INT::SIMPLE-FILE-ERROR"
 
 
 @public

@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-import gc
-import resource
-import sys
-
-from cramhy_runtime import kernel
-
 from . import conditions
-from .conditions import error, type_error
+from .conditions import type_error
 from .data import UNBOUND, Cons, Keyword, MultipleValues, Symbol, list_from, one
 from .definitions import data
 from .evaluator import compile_lambda, evaluate
@@ -20,13 +14,10 @@ from .packages import is_symbol, sym
 
 LISP_NAMES = """eval compiled-function-p fdefinition macro-function compiler-macro-function
 macroexpand macroexpand-1 special-operator-p constantp compile get-setf-expansion
-get-internal-real-time get-internal-run-time get-universal-time sleep lisp-implementation-type lisp-implementation-version
-machine-type machine-instance machine-version software-type software-version
 error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
 abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
 simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
-arithmetic-error-operation arithmetic-error-operands print-not-readable-object stream-error-stream file-error-pathname
-provide room ed"""
+arithmetic-error-operation arithmetic-error-operands print-not-readable-object stream-error-stream file-error-pathname"""
 
 
 compiled_function_p = functionp
@@ -125,60 +116,7 @@ def get_setf_expansion(place, environment=None):
     return expansion(place, environment)
 
 
-def get_internal_real_time():
-    return int(kernel.now() * 1_000_000)
-
-
-def get_internal_run_time():
-    return int(resource.getrusage(resource.RUSAGE_SELF).ru_utime * 1_000_000)
-
-
-def get_universal_time():
-    """Seconds since 1900, by the kernel's clock."""
-    return int(kernel.active().epoch + kernel.now()) + 2208988800
-
-
-def sleep(seconds):
-    """``cl:sleep``; a task sleeps by the kernel's clock, so it can be evaporated meanwhile."""
-    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) and not hasattr(seconds, "numerator"):
-        return type_error(seconds, "(REAL 0)")
-    if seconds < 0:
-        return type_error(seconds, "(REAL 0)")
-    kernel.sleep(float(seconds))
-    return None
-
-
-def lisp_implementation_type():
-    return "cramhy"
-
-
-def lisp_implementation_version():
-    import cramhy_runtime
-
-    return cramhy_runtime.__version__
-
-
-def machine_type():
-    return "Python"
-
-
-def machine_instance():
-    return "localhost"
-
-
-def machine_version():
-    return sys.version.split()[0]
-
-
-def software_type():
-    return sys.platform
-
-
-def software_version():
-    return ""
-
-
-signal, warn, cerror, break_ = conditions.signal, conditions.warn, conditions.cerror, conditions.break_
+error, signal, warn, cerror, break_ = conditions.error, conditions.signal, conditions.warn, conditions.cerror, conditions.break_
 invoke_debugger = conditions.invoke_debugger
 
 
@@ -237,29 +175,6 @@ stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname"
 def simple_condition_format_arguments(condition):
     arguments = condition.format_arguments
     return list_from(arguments) if isinstance(arguments, tuple) else arguments
-
-
-def provide(name):
-    return True
-
-
-def room(detail=sym(":DEFAULT")):
-    """``room``: print how much memory the process uses, and with t how many objects Python's collector knows; no values."""
-    from .streams import standard_output
-
-    used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-    output = standard_output()
-    output.fresh_line()
-    output.write(f"Dynamic space usage is:   {used:,} bytes at most so far.\n")
-    if detail is not None:
-        output.write(f"Garbage collection is currently {'enabled' if gc.isenabled() else 'disabled'}.\n")
-    if detail is True:
-        output.write(f"The collector watches {len(gc.get_objects()):,} objects.\n")
-    return MultipleValues()
-
-
-def ed(target=None):
-    return error("There is no editor here: edit the file with your own.")
 
 
 SETTERS = {"MACRO-FUNCTION": set_macro_function, "COMPILER-MACRO-FUNCTION": set_compiler_macro_function}

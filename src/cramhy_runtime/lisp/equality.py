@@ -11,13 +11,14 @@ object lives, so whoever stores the key keeps the object too. Source: ANSI 5.3; 
 
 from __future__ import annotations
 
-import pathlib
 from fractions import Fraction
 from math import copysign
+from pathlib import PurePath
 from zlib import crc32
 
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
 from .late import late
+from .pathname_objects import Pathname
 from .vectors import LispArray, is_bit_vector
 
 LISP_NAMES = "eq eql equal equalp sxhash"
@@ -60,7 +61,7 @@ def equal(x, y):
         return True if isinstance(y, (str, LispString)) and str(x) == str(y) else None
     if is_bit_vector(x):
         return True if is_bit_vector(y) and list(x) == list(y) else None
-    if isinstance(x, pathlib.PurePath):
+    if isinstance(x, (Pathname, PurePath)):
         return True if x == y else None
     return eql(x, y)
 
@@ -164,7 +165,7 @@ def equal_key(x):
         return _cons_key(x, equal_key)
     if is_bit_vector(x):
         return ("bits", tuple(x))
-    if isinstance(x, pathlib.PurePath):
+    if isinstance(x, (Pathname, PurePath)):
         return ("content", x)
     return eql_key(x)
 

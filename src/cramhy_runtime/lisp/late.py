@@ -13,8 +13,11 @@ from importlib import import_module
 
 WHERE = {
     "conditions": "error package_error package_does_not_exist program_error type_error undefined_function",
-    "condition_types": "StreamError StyleWarning",
+    "condition_types": "ClosedStreamError SimpleTypeError StyleWarning UnboundVariable",
     "packages": "intern",
+    "data": "Character",
+    "equality": "equal",
+    "namestrings": "namestring native_namestring",
     "classes": "class_name find_class make_instance",
     "slots": "missing_value",
     "structures": "slots_of",

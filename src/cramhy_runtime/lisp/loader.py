@@ -23,6 +23,7 @@ from .conditions import CompileError, Condition, FileError, error
 from .data import Cons
 from .dynamic import binding
 from .evaluator import PACKAGE, Unit, new_namespace
+from .files import lisp_path
 from .packages import sym, symbol_name
 from .places_in_source import locate as locate_by_traceback
 
@@ -80,7 +81,7 @@ def load_file(path, chain="", finished=None):
         return error(FileError(str(path), "Cannot load ~A: it is no UTF-8 text (line ~D, byte ~D of the file). Save it as UTF-8.",
                                str(path), line, problem.start))
     fingerprint = hashlib.sha256(f"{stamp()}{chain}{path}".encode() + text.encode()).hexdigest()
-    with binding(PACKAGE, PACKAGE.value, LOAD_PATHNAME, str(path), LOAD_TRUENAME, str(path)):
+    with binding(PACKAGE, PACKAGE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
         codes = _kept(path, fingerprint)
         if codes is not None:
             namespace = new_namespace(str(path))
@@ -172,10 +173,14 @@ def _keep(path, fingerprint, codes):
         pass  # a folder that cannot be written only means compiling again next time
 
 
+def folder_of_load():
+    """The folder of the file being loaded, else the working directory."""
+    return Path(LOAD_TRUENAME.value).parent if LOAD_TRUENAME.value is not None else Path.cwd()
+
+
 def load(designator, *, verbose=None, print=None, if_does_not_exist=True, external_format=None):
     """``cl:load``: load a file by its name, looked for beside the file being loaded; ``.lisp`` may be left out."""
-    base = Path(LOAD_PATHNAME.value).parent if isinstance(LOAD_PATHNAME.value, str) else Path.cwd()
-    path = base / str(designator)
+    path = folder_of_load() / str(designator)
     for candidate in (path, path.with_name(path.name + ".lisp"), path.with_name(path.name + ".hy")):
         if candidate.is_file():
             load_file(candidate)

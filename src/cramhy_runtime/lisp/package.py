@@ -13,7 +13,8 @@ from .packages import sym
 
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
-    class_definition slots protocol generic structures streams stream_functions file_streams pathnames printer pretty pprint_dispatch
+    class_definition slots protocol generic structures streams stream_functions file_streams pathnames wild_pathnames
+    logical_pathnames files file_stream_functions universal_time environment printer pretty pprint_dispatch
     format reader tokens readtables reader_functions symbols declarations control documentation describing
     inspecting apropos disassembling tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
@@ -26,7 +27,7 @@ HELPERS = {
     "types": "define-type",
     "printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
         make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
-    "file_streams": "with-open-file",
+    "file_streams": "with-open-file with-open-stream",
     "assertions": "assertion-failed assertion-prompt",
     "control": "define-compiler-macro",
     "declarations": "declaim",
@@ -55,7 +56,8 @@ def fill():
             sym(constant).constant = True
         for lisp_name, setter in getattr(module, "SETTERS", {}).items():
             sym(lisp_name).setf_function = lispify(setter)
-    importlib.import_module(f"{__package__}.clos_printing")  # teaches the printer about classes and generic functions
+    for name in ("clos_printing", "file_printers"):  # teach the printer about classes, pathnames, streams
+        importlib.import_module(f"{__package__}.{name}")
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})
     extension_packages.define_faces()

@@ -63,7 +63,7 @@ def make_fill_pointer_output_stream(string):
 
 def stream_position(stream):
     """The index of the next character of a string input stream."""
-    return stream.position
+    return stream.position()
 
 
 _OFF = """

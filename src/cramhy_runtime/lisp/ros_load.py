@@ -9,7 +9,7 @@ from .conditions import error
 from .data import Cons, lisp_list, truth
 from .dynamic import binding
 from .faces import define_face
-from .loader import LOAD_PATHNAME, load
+from .loader import folder_of_load, load
 from .packages import string_designator, sym
 
 
@@ -68,10 +68,7 @@ def _defsystem(form, environment):
 
 def define_system_here(form):
     """A ``defsystem`` evaluated outside an ``.asd`` file: its folder is that of the file being loaded."""
-    from pathlib import Path
-
-    folder = Path(LOAD_PATHNAME.value).parent if isinstance(LOAD_PATHNAME.value, str) else Path.cwd()
-    return systems.define_system(form, folder).name
+    return systems.define_system(form, folder_of_load()).name
 
 
 def define_faces():

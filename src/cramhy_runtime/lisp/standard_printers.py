@@ -7,7 +7,6 @@ ANSI 22.1.3.
 
 from __future__ import annotations
 
-import pathlib
 import weakref
 
 from . import print_controls as controls
@@ -23,7 +22,7 @@ from .print_arrays import print_array
 from .print_controls import PRINT_ESCAPE, PRINT_PRETTY, bound, deeper, length_limit, too_deep
 from .print_names import integer_text, string_text, symbol_text, symbol_with_prefix
 from .printer import class_symbol, define_printer, escaping, output_object, print_unreadable
-from .streams import ConsoleInput, FileInput, FileOutput, Stream, SynonymStream
+from .streams import SynonymStream
 from .vectors import LispArray
 
 
@@ -230,10 +229,6 @@ def _print_class(cls, stream):
     print_unreadable(cls, stream, f"{kind} {symbol_with_prefix(class_symbol(cls))}")
 
 
-def _print_path(path, stream):
-    stream.write("#P" + string_text(str(path)) if escaping() else str(path))
-
-
 def _print_complex(number, stream):
     stream.write("#C(")
     real, imaginary = parts(number)
@@ -278,19 +273,13 @@ def _register():
         (list, print_array),
         (LispArray, print_array),
         (complex, _print_complex),
-        (pathlib.PurePath, _print_path),
         (_Verbatim, lambda obj, stream: stream.write(obj.text)),
         (Comma, _print_comma),
         (SynonymStream, _print_synonym),
         (Package, lambda obj, stream: print_unreadable(obj, stream, "PACKAGE " + string_text(obj.name))),
-        (Stream, lambda obj, stream: print_unreadable(obj, stream, type_=True, identity=True)),
         (bytes, lambda obj, stream: print_array(list(obj), stream)),
     ):
         define_printer(cls, function)
-    for cls in (FileOutput, FileInput, ConsoleInput):
-        define_printer(
-            cls, lambda obj, stream: print_unreadable(obj, stream, "for " + string_text(obj.label), True, True)
-        )
 
 
 _register()

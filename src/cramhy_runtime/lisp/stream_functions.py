@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from . import streams
 from .conditions import EndOfFile, error, type_error
-from .data import Character, LispString, MultipleValues, boolean
+from .data import Character, Cons, LispString, MultipleValues, Symbol, boolean, list_from
+from .packages import sym
+from .sequence_types import bounds, elements, part
 from .streams import (
     BroadcastStream,
     ConcatenatedStream,
@@ -66,10 +68,20 @@ def write_char(character, stream=None):
 
 
 def write_sequence(sequence, stream, *, start=0, end=None):
-    """``write-sequence``: the elements of ``sequence``, characters, to ``stream``. Returns ``sequence``."""
-    if sequence is not None:
-        text = _characters(sequence) if not isinstance(sequence, (str, LispString)) else str(sequence)
-        output_stream(stream).write((type_error(sequence, "STRING") if text is None else text)[start:end])
+    """``write-sequence``: the elements of ``sequence``, characters or bytes, to ``stream``. Returns ``sequence``."""
+    stream = output_stream(stream)
+    if isinstance(sequence, (str, LispString)):
+        text = str(sequence)
+        start, end = bounds(start, end, len(text))
+        stream.write(text[start:end])
+        return sequence
+    for element in part(sequence, start, end):
+        if isinstance(element, Character):
+            stream.write(element.char)
+        elif hasattr(stream, "write_byte"):
+            stream.write_byte(element)
+        else:
+            type_error(element, "CHARACTER")
     return sequence
 
 
@@ -92,6 +104,8 @@ def clear_output(stream=None):
     """``clear-output``: there is never anything to throw away."""
     output_stream(stream)
 
+
+CHARACTER = sym("CHARACTER")
 
 # ---------------------------------------------------------------------------------------------------------------- input
 
@@ -146,18 +160,28 @@ def read_line(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
 
 
 def read_sequence(sequence, stream, *, start=0, end=None):
-    """``read-sequence``: fill ``sequence`` (a vector or LispString) with characters; the index of the first not
-    filled.
-    """
+    """``read-sequence``: fill ``sequence`` with characters or bytes; the index of the first element that was not filled."""
     stream = input_stream(stream)
-    is_string = isinstance(sequence, LispString)
-    elements = sequence.chars if is_string else sequence
-    for index in range(start, len(sequence) if end is None else end):
-        character = stream.read_char()
-        if not character:
+    start, end = bounds(start, end, len(elements(sequence)))
+    is_string, cell = isinstance(sequence, LispString), sequence
+    for _ in range(start if isinstance(sequence, Cons) else 0):
+        cell = cell.cdr
+    next_element = stream.read_char if is_string or stream.element_type() is CHARACTER else stream.read_byte
+    for index in range(start, end):
+        element = next_element()
+        if element == "" or element is None:
             return index
-        elements[index] = character if is_string else Character(character)
-    return len(sequence) if end is None else end
+        if is_string:
+            sequence.chars[index] = element
+            continue
+        element = Character(element) if element.__class__ is str else element
+        if isinstance(sequence, Cons):
+            cell.car, cell = element, cell.cdr
+        elif isinstance(sequence, str):
+            type_error(sequence, "(AND SEQUENCE (NOT (SATISFIES SB-KERNEL:LITERAL)))")
+        else:
+            sequence[index] = element
+    return end
 
 
 def listen(stream=None):
@@ -177,34 +201,43 @@ def make_string_output_stream(*, element_type=None):
 
 def get_output_stream_string(stream):
     """``get-output-stream-string``: what was written to ``stream`` since the last time this was asked."""
-    return stream.take() if isinstance(stream, StringOutputStream) else type_error(stream, "STRING-OUTPUT-STREAM")
+    return stream.take() if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
 
 
 def make_string_input_stream(string, start=0, end=None):
-    return StringInputStream(_text(string)[:end], start or 0)
+    text = _text(string)
+    start, end = bounds(start or 0, end, len(text))
+    return StringInputStream(text[:end], start)
+
+
+def _all(streams, predicate, name):
+    for stream in streams:
+        if not isinstance(stream, Stream):
+            type_error(stream, "STREAM")
+        if not isinstance(stream, SynonymStream) and not getattr(stream, predicate):
+            type_error(stream, f"(SATISFIES {name})")
+    return streams
 
 
 def make_broadcast_stream(*targets):
-    return BroadcastStream(*targets)
+    return BroadcastStream(*_all(targets, "is_output", "OUTPUT-STREAM-P"))
 
 
 def broadcast_stream_streams(stream):
-    from .data import list_from
-
     return list_from(stream.streams)
 
 
 def make_concatenated_stream(*sources):
-    return ConcatenatedStream(*sources)
+    return ConcatenatedStream(*_all(sources, "is_input", "INPUT-STREAM-P"))
 
 
 def concatenated_stream_streams(stream):
-    from .data import list_from
-
     return list_from(stream.streams)
 
 
 def make_two_way_stream(source, sink):
+    _all([source], "is_input", "INPUT-STREAM-P")
+    _all([sink], "is_output", "OUTPUT-STREAM-P")
     return TwoWayStream(source, sink)
 
 
@@ -217,6 +250,8 @@ def two_way_stream_output_stream(stream):
 
 
 def make_echo_stream(source, sink):
+    _all([source], "is_input", "INPUT-STREAM-P")
+    _all([sink], "is_output", "OUTPUT-STREAM-P")
     return EchoStream(source, sink)
 
 
@@ -225,7 +260,7 @@ echo_stream_output_stream = two_way_stream_output_stream
 
 
 def make_synonym_stream(symbol):
-    return SynonymStream(symbol)
+    return SynonymStream(symbol) if isinstance(symbol, Symbol) else type_error(symbol, "SYMBOL")
 
 
 def synonym_stream_symbol(stream):
@@ -253,11 +288,11 @@ def _stream(thing):
 
 
 def input_stream_p(stream):
-    return boolean(_stream(stream).is_input)
+    return boolean(_stream(stream).is_input and not stream.closed)
 
 
 def output_stream_p(stream):
-    return boolean(_stream(stream).is_output)
+    return boolean(_stream(stream).is_output and not stream.closed)
 
 
 def interactive_stream_p(stream):
@@ -269,15 +304,14 @@ def open_stream_p(stream):
 
 
 def close(stream, *, abort=None):
-    _stream(stream).close()
+    """``close``: end the stream; with ``abort`` what was written to a file counts as never written. Returns T."""
+    _stream(stream).close(abort=abort is not None)
     return True
 
 
 def stream_element_type(stream):
-    from .packages import sym
-
-    _stream(stream)
-    return sym("CHARACTER")
+    """``stream-element-type``: CHARACTER, or the type of the bytes of a binary stream."""
+    return _stream(stream).element_type()
 
 
 def _ask(control, args, question):

@@ -1,148 +1,35 @@
-"""Streams: where text comes from and where it goes.
+"""Streams made of other streams, the console, and the variables that hold the standard ones.
 
 A Lisp program prints to a stream, and ``*standard-output*`` may be bound to another one for the extent of a form. So
-the runtime's own printing never touches ``sys.stdout``; it writes to an `OutputStream`, which knows the column it is
-in: ``fresh-line`` needs it, and so does the pretty printer. `ConsoleOutput` looks its Python file up at every write,
-because pytest and REPLs replace ``sys.stdout``. Source: ANSI chapter 21.
-
-Input streams deliver Python strings of one character, and ``""`` at the end. The functions that Lisp programs call
-are in ``stream_functions.py``.
+the runtime's own printing never touches ``sys.stdout``; it writes to an output stream. `ConsoleOutput` looks its Python file
+up at every write, because pytest and REPLs replace ``sys.stdout``. Source: ANSI chapter 21.
 """
 
 from __future__ import annotations
 
+import select
 import sys
 import weakref
 
+from cramhy_runtime import kernel
+
+from .basic_streams import (
+    FileOutput,
+    InputStream,
+    OutputStream,
+    Stream,
+    StringInputStream,
+    StringOutputStream,
+    StringStream,
+    complain_closed,
+    misused,
+)
+from .data import UNBOUND, lisp_list, one
 from .dynamic import special
 from .late import late
-from .packages import Package, find_package, register
+from .packages import sym
 
-for _package, _external in (("SB-SYS", "FD-STREAM"), ("SB-IMPL", ""), ("SB-PRETTY", ""), ("SB-FORMAT", "FORMAT-ERROR")):
-    _home = find_package(_package) or register(
-        Package(_package)
-    )  # SBCL's names of classes, which users see in error messages
-    for _name in _external.split():
-        _home.export(_home.intern(_name))
-
-
-class Stream:
-    """A source or a sink of characters."""
-
-    lisp_name = "STREAM"
-    is_input = False
-    is_output = False
-    is_pretty = False
-    is_interactive = False
-    closed = False
-
-    def close(self):
-        self.closed = True
-
-
-class OutputStream(Stream):
-    """A sink of text. Subclasses define ``emit(text)``; ``column`` is where the next character goes.
-
-    ``line_length`` is the width of a line in characters, ``None`` when the stream has no opinion.
-    """
-
-    is_output = True
-    column = 0
-    line_length = None
-
-    def write(self, text):
-        if not text:
-            return
-        self.emit(text)
-        newline = text.rfind("\n")
-        if newline < 0:
-            self.column += len(text)
-        else:
-            self.column = len(text) - newline - 1
-
-    def emit(self, text):
-        raise NotImplementedError
-
-    def fresh_line(self):
-        """Start a new line unless at the beginning of one; ``True`` when a newline was written."""
-        if self.column:
-            self.write("\n")
-            return True
-        return False
-
-    def flush(self):
-        """Deliver what was written."""
-
-
-def _complain_closed(stream):
-    condition = late.StreamError(stream)
-    condition.report = lambda: f"{late.prin1_to_string(stream)} is closed"
-    late.error(condition)
-
-
-class StringOutputStream(OutputStream):
-    """Collects what is written; `take` gives it and starts anew. With ``target``, a string with a fill pointer, it
-    goes there.
-    """
-
-    lisp_name = "SB-IMPL::STRING-OUTPUT-STREAM"
-
-    def __init__(self, target=None):
-        self.parts = []
-        self.target = target
-        if target is not None:
-            text = str(target)
-            self.column = len(text) - text.rfind("\n") - 1
-
-    def emit(self, text):
-        if self.target is None:
-            self.parts.append(text)
-            return
-        target = self.target
-        if target.fill_pointer is not None:
-            del target.chars[target.fill_pointer :]
-            target.fill_pointer += len(text)
-        target.chars.extend(text)
-
-    def text(self):
-        """What was written since the last `take`."""
-        return "".join(self.parts)
-
-    def take(self):
-        text = "".join(self.parts)
-        self.parts = []
-        self.column = 0
-        return text
-
-
-class FileOutput(OutputStream):
-    """Writes to a Python text file (anything with ``write``)."""
-
-    lisp_name = "SB-SYS::FD-STREAM"
-
-    def __init__(self, file, label=None):
-        self._file = file
-        self.label = label or f"file {getattr(file, 'name', '')}"
-
-    @property
-    def file(self):
-        return self._file
-
-    def emit(self, text):
-        if self.closed:
-            _complain_closed(self)
-        file = self.file
-        if file is not None:
-            file.write(text)
-
-    def flush(self):
-        file = self.file
-        if file is not None and hasattr(file, "flush"):
-            file.flush()
-
-    def close(self):
-        super().close()
-        self.file.close()
+__all__ = ["FileOutput", "InputStream", "OutputStream", "Stream", "StringInputStream", "StringOutputStream", "StringStream"]
 
 
 class ConsoleOutput(FileOutput):
@@ -156,7 +43,7 @@ class ConsoleOutput(FileOutput):
     def file(self):
         return getattr(sys, self.name)
 
-    def close(self):
+    def close(self, abort=False):
         self.flush()
 
 
@@ -183,101 +70,21 @@ class BroadcastStream(OutputStream):
         for stream in self.streams:
             stream.flush()
 
+    def close(self, abort=False):
+        self.closed, self.write = True, lambda text: complain_closed(self)
 
-class InputStream(Stream):
-    """A source of characters. Subclasses define ``more()``: the next piece of text, ``""`` at the end."""
+    def element_type(self):
+        return self.streams[-1].element_type() if self.streams else True
 
-    is_input = True
+    def external_format(self):
+        return self.streams[-1].external_format() if self.streams else sym(":DEFAULT")
 
-    def __init__(self, text=""):
-        self._text = text
-        self._position = 0
-
-    def more(self):
-        return ""
-
-    def _available(self):
-        if self._position < len(self._text):
-            return True
-        piece = self.more()
-        if not piece:
-            return False
-        self._text, self._position = self._text[-1:] + piece, len(self._text[-1:])
-        return True
-
-    def read_char(self):
-        """The next character, ``""`` at the end."""
-        if not self._available():
-            return ""
-        character = self._text[self._position]
-        self._position += 1
-        return character
-
-    def peek_char(self):
-        """The next character, which stays; ``""`` at the end."""
-        return self._text[self._position] if self._available() else ""
-
-    def unread_char(self, character):
-        """Put back the character that was read last."""
-        if self._position:
-            self._position -= 1
-        else:
-            self._text = character + self._text
-
-    def read_line(self):
-        """(line without its newline, whether the text ended before a newline); ``("", True)`` at the end."""
-        parts = []
-        while self._available():
-            end = self._text.find("\n", self._position)
-            if end >= 0:
-                parts.append(self._text[self._position : end])
-                self._position = end + 1
-                return "".join(parts), False
-            parts.append(self._text[self._position :])
-            self._position = len(self._text)
-        return "".join(parts), True
-
-    def listen(self):
-        """Whether a character can be read without waiting."""
-        return self._position < len(self._text)
-
-    def clear(self):
-        """Forget what has arrived and was not read."""
-        self._position = len(self._text)
-
-
-class StringInputStream(InputStream):
-    """Reads ``text``; ``position`` is the index of the next character."""
-
-    lisp_name = "SB-IMPL::STRING-INPUT-STREAM"
-
-    def __init__(self, text, start=0):
-        super().__init__(text)
-        self._position = start
-
-    @property
     def position(self):
-        return self._position
+        return self.streams[-1].position() if self.streams else 0
 
-
-class FileInput(InputStream):
-    """Reads a Python text file line by line."""
-
-    lisp_name = "SB-SYS::FD-STREAM"
-
-    def __init__(self, file, label=None):
-        super().__init__()
-        self._file = file
-        self.label = label or f"file {getattr(file, 'name', '')}"
-
-    def more(self):
-        if self.closed:
-            _complain_closed(self)
-        return self._file.readline()
-
-    def close(self):
-        super().close()
-        self._file.close()
+    def write_byte(self, byte):
+        for stream in self.streams:
+            stream.write_byte(byte)
 
 
 class ConsoleInput(InputStream):
@@ -285,14 +92,24 @@ class ConsoleInput(InputStream):
 
     lisp_name = "SB-SYS::FD-STREAM"
     label = "standard input"
-    is_interactive = True
+
+    @property
+    def is_interactive(self):
+        return sys.stdin is not None and sys.stdin.isatty()
 
     def more(self):
-        from cramhy_runtime import kernel
-
         if sys.stdin is None:
             return ""
         return kernel.run_blocking(sys.stdin.readline)
+
+    def listen(self):
+        return super().listen() or self.is_interactive and bool(select.select([sys.stdin], [], [], 0)[0])
+
+    def close(self, abort=False):
+        """The console stays open: the prompt needs it."""
+
+    def external_format(self):
+        return sym(":UTF-8")
 
 
 class ConcatenatedStream(InputStream):
@@ -311,6 +128,20 @@ class ConcatenatedStream(InputStream):
                 return character
             self.streams.pop(0)
         return ""
+
+    def listen(self):
+        return super().listen() or any(stream.listen() for stream in self.streams[:1])
+
+    def read_byte(self):
+        while self.streams:
+            byte = self.streams[0].read_byte()
+            if byte is not None:
+                return byte
+            self.streams.pop(0)
+        return None
+
+    def element_type(self):
+        return self.streams[0].element_type() if self.streams else None
 
 
 class _Delegate(OutputStream, InputStream):
@@ -354,6 +185,12 @@ class _Delegate(OutputStream, InputStream):
     def clear(self):
         self.source.clear()
 
+    def read_byte(self):
+        return self.source.read_byte()
+
+    def write_byte(self, byte):
+        self.sink.write_byte(byte)
+
 
 class TwoWayStream(_Delegate):
     """Reads from ``source``, writes to ``sink``."""
@@ -367,21 +204,47 @@ class TwoWayStream(_Delegate):
     def is_interactive(self):
         return self.source.is_interactive
 
+    def element_type(self):
+        mine, other = self.source.element_type(), self.sink.element_type()
+        return mine if late.equal(mine, other) else lisp_list(sym("AND"), mine, other)
+
+    def close(self, abort=False):
+        # the streams behind it stay open
+        self.closed = True
+        self.write = self.read_char = self.peek_char = self.read_line = lambda *rest: complain_closed(self)
+
 
 class EchoStream(TwoWayStream):
     """As a two-way stream; what is read appears in the output too."""
 
     lisp_name = "ECHO-STREAM"
 
+    returned = False
+
     def read_char(self):
         character = self.source.read_char()
-        self.sink.write(character)
+        if self.returned:  # it was echoed when it was read first
+            self.returned = False
+        else:
+            self.sink.write(character)
         return character
+
+    def unread_char(self, character):
+        self.returned = True
+        self.source.unread_char(character)
 
     def read_line(self):
         line, ended = self.source.read_line()
-        self.sink.write(line if ended else line + "\n")
+        shown = line if ended else line + "\n"
+        self.sink.write(shown[1:] if self.returned else shown)
+        self.returned = False
         return line, ended
+
+    def read_byte(self):
+        byte = self.source.read_byte()
+        if byte is not None:
+            self.sink.write_byte(byte)
+        return byte
 
 
 class SynonymStream(_Delegate):
@@ -399,6 +262,29 @@ class SynonymStream(_Delegate):
     @property
     def source(self):
         return input_stream(self.symbol.value)
+
+    @property
+    def stream(self):
+        value = self.symbol.value
+        if not isinstance(value, Stream):
+            return late.type_error(value, "STREAM") if value is not UNBOUND else late.error(late.UnboundVariable(self.symbol))
+        return value
+
+    def element_type(self):
+        return self.stream.element_type()
+
+    def external_format(self):
+        return self.stream.external_format()
+
+    def position(self):
+        return self.stream.position()
+
+    def set_position(self, position):
+        return self.stream.set_position(position)
+
+    @property
+    def pathname(self):
+        return self.stream.pathname
 
     @property
     def is_input(self):
@@ -440,6 +326,8 @@ def output_stream(designator):
         return STANDARD_OUTPUT.value
     if designator is True:
         return TERMINAL_IO.value
+    if isinstance(designator, Stream):
+        return misused(designator, "character output")
     if hasattr(designator, "write"):
         if designator not in _wrapped:
             _wrapped[designator] = FileOutput(designator)
@@ -456,7 +344,8 @@ def input_stream(designator):
         return STANDARD_INPUT.value
     if designator is True:
         return TERMINAL_IO.value
-
+    if isinstance(designator, Stream):
+        return misused(designator, "character input")
     return late.type_error(designator, "STREAM")
 
 
@@ -470,8 +359,6 @@ def warning_line(condition):
 
 def ask_for_form(prompt):
     """Print ``prompt`` to ``*query-io*``, read a form from there and return the value of it."""
-    from .data import one
-
     stream = QUERY_IO.value
     stream.fresh_line()
     stream.write(prompt)

@@ -9,8 +9,8 @@ defined later is found then, because unknown names are not remembered. ``subtype
 from __future__ import annotations
 
 import importlib
-import pathlib
 from fractions import Fraction
+from pathlib import PurePath
 
 from .arithmetic import is_integer, is_number, is_rational, is_real
 from .builtin_classes import BuiltInClass, lisp_mro
@@ -23,6 +23,7 @@ from .element_types import upgraded_element_type
 from .equality import eql, equal
 from .generic import GenericFunction
 from .packages import Package, is_symbol, sym
+from .pathname_objects import Pathname
 from .structures import StructureObject
 from .vectors import LispArray, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
 
@@ -84,7 +85,7 @@ _ATOMIC = {
     "FUNCTION": _is_function, "COMPILED-FUNCTION": lambda obj: _is_function(obj) and not isinstance(obj, GenericFunction),
     "GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction),
     "STANDARD-GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction),
-    "PACKAGE": lambda obj: isinstance(obj, Package), "PATHNAME": lambda obj: isinstance(obj, pathlib.PurePath),
+    "PACKAGE": lambda obj: isinstance(obj, Package), "PATHNAME": lambda obj: isinstance(obj, (Pathname, PurePath)),
     "CLASS": lambda obj: isinstance(obj, type), "STANDARD-CLASS": lambda obj: isinstance(obj, type) and class_of(obj) is not BuiltInClass,
     "STRUCTURE-OBJECT": lambda obj: isinstance(obj, StructureObject),
     "STANDARD-OBJECT": lambda obj: StandardObject in lisp_mro(obj.__class__),

@@ -8,6 +8,7 @@ callback whose message has arrived has run before the next prompt.
 from __future__ import annotations
 
 import linecache
+import os
 import signal
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,12 +18,15 @@ from cramhy_runtime.lisp import conditions, evaluator, systems
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values, list_from
 from cramhy_runtime.lisp.faces import define_face
+from cramhy_runtime.lisp.namestrings import parse_native
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
+from cramhy_runtime.lisp.pathnames import DEFAULTS
 from cramhy_runtime.lisp.places_in_source import locate, user_position
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
 LAST_FORMS = [sym(name) for name in ("+", "++", "+++")]
+THIS_FORM = sym("-")
 
 
 def leave(*, code=0, unix_status=0, abort=None, timeout=None, recklessly_p=None):
@@ -53,9 +57,10 @@ class Session:
         image.fresh_start(time, backend, seed, time_limit, turtlesim)
         evaluator.PACKAGE.value = COMMON_LISP_USER
         define_leaving()
-        for variables in (HISTORY, LAST_VALUES, LAST_FORMS):
+        for variables in (HISTORY, LAST_VALUES, LAST_FORMS, [THIS_FORM]):
             for variable in variables:
                 variable.value = None
+        DEFAULTS.value = parse_native(os.getcwd() + "/")
         self.virtual = time == "virtual"
         self.texts = 0
 
@@ -108,7 +113,7 @@ class Session:
 
     def evaluate(self, form, reader=None):
         """The values of ``form`` as a list. Conditions that nobody handles are raised, with their place if it is known."""
-        LAST_FORMS[0].value, LAST_FORMS[1].value, LAST_FORMS[2].value = form, LAST_FORMS[0].value, LAST_FORMS[1].value
+        THIS_FORM.value = form
         try:
             if reader is None:
                 values = all_values(evaluator.evaluate(form))
@@ -122,6 +127,7 @@ class Session:
             raise
         finally:
             kernel.interrupt_over()
+            LAST_FORMS[0].value, LAST_FORMS[1].value, LAST_FORMS[2].value = form, LAST_FORMS[0].value, LAST_FORMS[1].value
         if values:
             HISTORY[0].value, HISTORY[1].value, HISTORY[2].value = values[0], HISTORY[0].value, HISTORY[1].value
         LAST_VALUES[0].value, LAST_VALUES[1].value, LAST_VALUES[2].value = list_from(values), LAST_VALUES[0].value, LAST_VALUES[1].value
