@@ -1,0 +1,67 @@
+;;;; Explaining the results of a run.
+
+(in-package #:it.bese.fiveam)
+
+(defvar *verbose-failures* nil "Whether the form of each failed check is printed too.")
+
+(defclass explainer () ())
+(defclass detailed-text-explainer (explainer) ())
+(defclass simple-text-explainer (explainer) ())
+
+(defgeneric explain (explainer results &optional stream recursive-depth)
+  (:documentation "Print what RESULTS mean."))
+
+(defun explain! (result-list)
+  "Print what RESULT-LIST means in detail; whether nothing failed."
+  (explain (make-instance 'detailed-text-explainer) result-list *test-dribble*)
+  (values (results-status result-list)))
+
+(defun counts (results)
+  "The numbers of passed, skipped and failed results."
+  (flet ((number-of (class) (count-if (lambda (result) (typep result class)) results)))
+    (values (number-of 'test-passed) (number-of 'test-skipped) (number-of 'test-failure))))
+
+(defmethod explain ((explainer detailed-text-explainer) results &optional (stream *test-dribble*) (recursive-depth 0))
+  (flet ((output (control &rest arguments)
+           (format stream "~&~vT" recursive-depth)
+           (apply #'format stream control arguments)))
+    (when (null results)
+      (output "Didn't run anything...huh?")
+      (return-from explain nil))
+    (output "Did ~D check~:P.~%" (length results))
+    (multiple-value-bind (passed skipped failed) (counts results)
+      (loop for (name count) in `(("Pass" ,passed) ("Skip" ,skipped) ("Fail" ,failed))
+            do (output "   ~A: ~D (~2D%)~%" name count (floor (* 100 count) (length results))))
+      (output-newline stream)
+      (when (plusp failed)
+        (output "Failure Details:~%")
+        (dolist (failure (reverse results))
+          (when (typep failure 'test-failure)
+            (let ((test (test-case failure)))
+              (output "--------------------------------~%")
+              (output "~A ~@[in ~A ~][~A]: ~%" (name test) (and (test-suite test) (name (test-suite test))) (description test))
+              (output "     ~A~%" (reason failure))
+              (when (typep failure 'for-all-test-failed)
+                (output "Results collected with failure data:~%")
+                (explain explainer (result-list failure) stream (+ 4 recursive-depth)))
+              (when (and *verbose-failures* (test-expr failure))
+                (output "    ~S~%" (test-expr failure)))
+              (output "--------------------------------~%"))))
+        (output-newline stream))
+      (when (plusp skipped)
+        (output "Skip Details:~%")
+        (dolist (skip results)
+          (when (typep skip 'test-skipped)
+            (output "~A [~A]: ~%" (name (test-case skip)) (description (test-case skip)))
+            (output "    ~A~%" (reason skip))))
+        (output-newline stream)))))
+
+(defun output-newline (stream)
+  (format stream "~%"))
+
+(defmethod explain ((explainer simple-text-explainer) results &optional (stream *test-dribble*) (recursive-depth 0))
+  (multiple-value-bind (passed skipped failed) (counts results)
+    (format stream "~&~vTRan ~D checks, ~D passed" recursive-depth (length results) passed)
+    (when (plusp skipped)
+      (format stream ", ~D skipped " skipped))
+    (format stream " and ~D failed.~%" failed)))
