@@ -192,3 +192,9 @@ def test_progv_that_meets_no_variable_leaves_nothing_bound(evaluate):
     assert evaluate("(defparameter *kept* 1) (list (ignore-errors (progv '(*kept* 5) '(2 3) 4)) *kept*)").endswith("(NIL 1)")
     assert "PROGV cannot bind 5" in evaluate("(handler-case (progv '(5) '(1) 2) (error (e) (princ-to-string e)))")
     assert evaluate("(progv '(*kept* *other*) '(7) (list *kept* (boundp '*other*)))") == "(7 NIL)"
+
+
+def test_both_operands_of_a_quotient_are_evaluated(evaluate):
+    assert evaluate("""(labels ((mean (s) (/ (reduce #'+ s) (length s))) (part (s) (/ (car s) (length s)))
+                              (whole (s) (/ (length s) (car s))))
+                         (list (mean '(1 2)) (mean '(1.0 2)) (part '(1 2)) (whole '(1.0 2)) (whole '(4 5))))""") == "(3/2 1.5 1/2 2.0 1/2)"

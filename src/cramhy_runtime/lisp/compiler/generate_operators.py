@@ -115,14 +115,17 @@ class OperatorGenerator:
 
     @staticmethod
     def guard(first, later, kinds, wanted):
-        """A test that the operands of unknown kind are of the class ``wanted``; ``None`` when another one cannot be."""
+        """A test that the operands of unknown kind are of the class ``wanted``; ``None`` when another one cannot be.
+
+        Both operands are evaluated in it, whatever the class of the first.
+        """
         tests = []
         for use, name, kind in zip(first, later, kinds):
             if kind is None:
-                tests.append(expression(IS, class_of(use), wanted))
+                tests.append(class_of(use))
             elif (kind == "int") is not (wanted is INT) and name.__class__ is not int:
                 return None
-        return tests[0] if len(tests) == 1 else expression(AND, *tests)
+        return expression(IS, *tests, wanted)
 
     @staticmethod
     def shared_class(first, later):
