@@ -303,8 +303,8 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defn %note-special [name]
   "The forms after a definition see the variable as special even before the definition has run."
-  (import cramhy_runtime.lisp.definitions [proclaim-special])
-  (proclaim-special name))
+  (import cramhy_runtime.lisp.definitions [note-special])
+  (note-special name))
 
 (defoperator defconstant [name value [documentation None]]
   `(%define-constant (quote ~name) ~value ~documentation))
@@ -320,6 +320,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv #(function documentation) (type-function-form name lambda-list (list-from body)))
   `(%define-type (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
+(defoperator "sb-ext::without-package-locks" [#* body]
+  `(%call-unlocked t (lambda [] ~@body)))
+
+(defoperator "sb-ext::with-unlocked-packages" [packages #* body]
+  `(%call-unlocked (quote ~packages) (lambda [] ~@body)))
+
 (defoperator defpackage [name #* options]
   `(%define-package (quote ~name) (quote ~options)))
 
@@ -328,6 +334,8 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-package-iterator [spec #* body]
   (setv #(name packages #* kinds) spec)
+  (import cramhy_runtime.lisp.package-definition [check-kinds])
+  (check-kinds kinds)
   (setv iterator (gensym "ITERATOR"))
   `(let [[~iterator (%package-iterator ~packages (quote ~kinds))]]
      (macrolet [[~name [] (quote (funcall ~iterator))]] ~@body)))

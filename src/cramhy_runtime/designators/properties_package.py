@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..lisp.data import python_list
-from ..lisp.expansion_support import define_package
+from ..lisp.package_definition import define_package
 from ..lisp.packages import symbol_name
 from .symbols import DESIG_PROPS
 

@@ -24,6 +24,7 @@ from .conditions import SimpleError, error
 from .data import UNBOUND, Symbol, list_from, one, python_list
 from .faces import python_name
 from .generic import add_method, ensure_generic_function, remove_method
+from .package_errors import check_symbol
 from .packages import is_symbol, sym, symbol_name
 from .slots import reader_for, writer_for
 from .streams import StringOutputStream
@@ -54,6 +55,7 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
     symbol; only STANDARD-CLASS is built, others are remembered for printing. documentation: a string.
     """
     slots = python_list(slots)
+    check_symbol(name, "defining ~S as a class", name)
     _check_slots(name, slots, "DEFCLASS")
     bases = [_superclass(name, base) for base in python_list(superclasses)]
     bases = [base for base in bases if base is not object]
@@ -200,6 +202,7 @@ def define_condition(name, parents=None, slots=None, *, report=None, default_ini
     function of condition and stream, or nil to inherit the text. default_initargs, documentation: as for `define_class`.
     """
     slots = python_list(slots)
+    check_symbol(name, "defining ~S as a condition", name)
     _check_slots(name, slots, "DEFINE-CONDITION")
     bases = [find_class_or_error(parent) for parent in python_list(parents)] or [Condition]
     for base in bases:

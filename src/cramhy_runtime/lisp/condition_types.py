@@ -13,7 +13,7 @@ from cramhy_runtime import kernel
 
 from .data import UNBOUND, Cons
 from .late import late
-from .packages import is_symbol, printed, symbol_name
+from .packages import Package, is_symbol, printed, symbol_name
 
 __all__ = []
 
@@ -271,6 +271,8 @@ class PackageDoesNotExist(PackageError):
     lisp_name = "SB-EXT::PACKAGE-DOES-NOT-EXIST"
 
     def report(self):
+        if isinstance(self.package, Package):
+            return f"The package {shown(self.package)} has been deleted."
         return f"The name {shown(self.package)} does not designate any package."
 
 

@@ -22,7 +22,7 @@ from .condition_types import *  # noqa: F403  the classes are this module's inte
 from .data import Symbol, UNBOUND, truth
 from .dynamic import binding
 from .late import late
-from .packages import is_symbol, printed, sym
+from .packages import CURRENT, find_package_or_error, is_symbol, printed, sym
 
 _handlers = Symbol("*HANDLER-CLUSTERS*")
 _handlers.value = None
@@ -471,7 +471,12 @@ def package_error(package, text):
 
 
 def package_does_not_exist(name):
-    return error(types.PackageDoesNotExist(name))
+    """Signal that ``name`` designates no package (or is a deleted one); the restarts give a package."""
+    current = CURRENT.value
+    restarts = [(sym("CONTINUE"), lambda: current, lambda: f"Use the current package, {current.name}."),
+                (sym("RETRY"), lambda: find_package_or_error(name), "Retry finding the package."),
+                (sym("USE-VALUE"), find_package_or_error, "Specify a different package", _ask_value)]
+    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(name)))
 
 
 def program_error(control, *arguments):

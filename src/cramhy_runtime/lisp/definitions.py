@@ -13,15 +13,13 @@ from .evaluator import macro_lambda
 from .equality import eql
 from .faces import python_name
 from .late import late
-from .packages import COMMON_LISP, printed, sym, symbol_name
+from .package_errors import check_symbol, locked
+from .packages import printed, sym, symbol_name
 
 
 def _check_name(symbol, what):
     if not isinstance(symbol, Symbol):
         return error(CompileError("~S cannot be defined as a ~A: its name must be a symbol.", symbol, what))
-    if symbol.package is COMMON_LISP:
-        return error(CompileError("~S belongs to Common Lisp and cannot be redefined as a ~A. Choose another name, or shadow the "
-                                  "symbol with (:shadow #:~A) in the package definition.", symbol, what, symbol.name.lower()))
     return symbol
 
 
@@ -41,10 +39,13 @@ def define_function(name, function, documentation=None, lambda_list=UNSUPPLIED):
         function.__lisp_lambda_list__ = lambda_list
     if isinstance(name, Cons):
         symbol = name.cdr.car
+        check_symbol(symbol, "setting fdefinition of ~S", name)
         function.__lisp_name__ = name
         symbol.setf_function = traced_like(symbol.setf_function, function)
         return name
     _check_name(name, "function")
+    new = isinstance(name.function, UndefinedFunction)
+    check_symbol(name, "proclaiming ~S as a function" if new else "setting fdefinition of ~S", name)
     function.__lisp_name__ = name
     function.__name__ = function.__qualname__ = python_name(symbol_name(name))
     old = name.function
@@ -71,6 +72,7 @@ class RedefinitionWarning(condition_types.SimpleWarning):
 def define_macro(name, expander, documentation=None, lambda_list=None):
     """``defmacro``: ``expander`` is a function of the form and the environment. Returns the name."""
     _check_name(name, "macro")
+    check_symbol(name, "defining ~S as a macro", name)
     expander.__doc__ = documentation
     expander.__lisp_name__ = name
     name.macro = lambda form, environment: one(expander(form, environment))
@@ -110,6 +112,7 @@ def define_constant(symbol, value, documentation=None):
     """``defconstant``: a value that is not ``eql`` to the one before is an error with the restarts CONTINUE and ABORT."""
     if not isinstance(symbol, Symbol):
         return error("The NAME argument to DEFCONSTANT, ~S, is not a symbol.", symbol)
+    check_symbol(symbol, "defining ~S as a constant", symbol)
     if symbol.constant and not eql(symbol.value, value):
         unequal = ConstantChanged(symbol, symbol.value, value)
         keep = restart_case([(sym("CONTINUE"), lambda: False, "Go ahead and change the value."),
@@ -123,9 +126,16 @@ def define_constant(symbol, value, documentation=None):
     return symbol
 
 
+def note_special(symbol):
+    """What the compiler does when it meets a ``defvar``. Whether the variable may be defined is asked when it is."""
+    if isinstance(symbol, Symbol) and not locked(symbol.package):
+        proclaim_special(symbol)
+
+
 def proclaim_special(symbol):
     if not isinstance(symbol, Symbol):
         return type_error(symbol, "SYMBOL")
+    check_symbol(symbol, "globally declaring ~S SPECIAL", symbol)
     if symbol.constant:
         return error("The constant ~S cannot be a variable.", symbol)
     symbol.special = True
@@ -133,6 +143,7 @@ def proclaim_special(symbol):
 
 
 def define_symbol_macro(symbol, expansion):
+    check_symbol(symbol, "defining ~S as a symbol-macro", symbol)
     if not isinstance(symbol, Symbol) or symbol.special:
         return program_error("Symbol macro name already declared SPECIAL: ~S.", symbol)
     data(symbol)["symbol-macro"] = expansion

@@ -6,12 +6,10 @@ A macro only rearranges forms; the work is done here. Users do not call these by
 from __future__ import annotations
 
 from . import conditions
-from .conditions import CaseFailure, CompileError, SimpleTypeError, error, program_error
+from .conditions import CaseFailure, SimpleTypeError, error, program_error
 from .data import Cons, MultipleValues, list_from, truth
-from .evaluator import PACKAGE
 from .hash_tables import need_table
-from .packages import (all_packages, defined_by_program, find_package, find_package_or_error, is_symbol, keyword, make_package, near_names,
-                       string_designator, sym, symbol_name)
+from .packages import is_symbol, keyword, sym, symbol_name
 
 # ------------------------------------------------------------------------------------------------------------ destructuring
 
@@ -141,104 +139,7 @@ def next_method_exists(next_method):
     return next_method.exists
 
 
-# ------------------------------------------------------------------------------------------------------------------ packages
-
-
-def define_package(name, options):
-    """``defpackage``: make or update the package; clauses as in the standard. Returns the package."""
-    name = string_designator(name)
-    clauses = {}
-    for option in options or ():
-        clauses.setdefault(symbol_name(option.car), []).append(list(option.cdr or ()))
-
-    def names(clause):
-        return [string_designator(item) for items in clauses.get(clause, ()) for item in items]
-
-    unknown = set(clauses) - {"NICKNAMES", "USE", "SHADOW", "SHADOWING-IMPORT-FROM", "IMPORT-FROM", "EXPORT", "INTERN", "SIZE",
-                              "DOCUMENTATION", "DESIG-PROPERTIES", "LOCK", "IMPLEMENT"}
-    if unknown:
-        return error(CompileError("DEFPACKAGE ~A: there is no option :~A. Did you forget a parenthesis?", name, sorted(unknown)[0]))
-    defined_by_program([name, *names("NICKNAMES")])
-    package = find_package(name)
-    if package is None:
-        package = make_package(name, names("NICKNAMES"))
-    else:
-        for nickname in names("NICKNAMES"):
-            if find_package(nickname) is not package:
-                package.nicknames.append(nickname)
-                from .packages import register
-
-                register(package)
-    for symbol in names("SHADOW"):
-        package.shadow(symbol)
-    for source, *imported in clauses.get("SHADOWING-IMPORT-FROM", ()):
-        for symbol in imported:
-            package.shadowing_import(_existing(source, symbol, name))
-    for other in names("USE"):
-        package.use_package(find_package_or_error(other))
-    for source, *imported in clauses.get("IMPORT-FROM", ()):
-        for symbol in imported:
-            package.import_symbol(_existing(source, symbol, name))
-    for symbol in names("INTERN"):
-        package.intern(symbol)
-    for symbol in names("EXPORT"):
-        package.export(package.intern(symbol))
-    for text in clauses.get("DOCUMENTATION", ()):
-        package.documentation = text[0]
-    return package
-
-
-def _existing(source, symbol, importer):
-    package = find_package_or_error(source)
-    name = string_designator(symbol)
-    found, status = package.lookup(name)
-    if not status:
-        near = near_names(name, [*package.external, *package.internal])
-        hint = f" Did you mean {' or '.join(near)}?" if near else ""
-        return conditions.package_error(package, f"DEFPACKAGE {importer}: no symbol named {name} in package {package.name}.{hint}")
-    return found
-
-
-def set_package(designator):
-    """``in-package``: make it the current package; one that does not exist is an error that names its neighbours."""
-    package = find_package_or_error(designator)
-    PACKAGE.value = package
-    return package
-
-
-def package_symbols(package, external_only):
-    package = find_package_or_error(package)
-    symbols = dict(package.external)
-    if not truth(external_only):
-        symbols.update(package.internal)
-        for other in package.use:
-            for name, symbol in other.external.items():
-                symbols.setdefault(name, symbol)
-    return list_from(list(symbols.values()))
-
-
-def all_symbols():
-    return list_from([symbol for package in all_packages() for table in (package.external, package.internal)
-                      for symbol in table.values()])
-
-
-def package_iterator(packages, kinds):
-    """The generator function of ``with-package-iterator``: four values a call, nil at the end."""
-    kinds = {kind.name for kind in kinds or ()}
-
-    def entries():
-        items = packages if isinstance(packages, Cons) else [packages]
-        for designator in items:
-            package = find_package_or_error(designator)
-            for kind, tables in (("EXTERNAL", [package.external]), ("INTERNAL", [package.internal]),
-                                 ("INHERITED", [other.external for other in package.use])):
-                if kind in kinds:
-                    for table in tables:
-                        for symbol in table.values():
-                            yield MultipleValues((True, symbol, keyword(kind), package))
-
-    iterator = entries()
-    return lambda: next(iterator, None)
+# ----------------------------------------------------------------------------------------------------------------- iteration
 
 
 def hash_table_iterator(table):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from . import environment, files, hash_tables, pathnames, protocol, random_state
+from . import environment, files, hash_tables, package_functions, pathnames, protocol, random_state
 from .data import DoubleFloat
 from .faces import define_face
 from .packages import sym
@@ -19,6 +19,7 @@ INFINITIES = {f"{kind}-float-{sign}-infinity": value
 def define_faces():
     """Declare the packages; called once, by `package.fill`."""
     define_face("SB-EXT", functions={hash_tables: hash_tables.EXTENSION_NAMES, random_state: random_state.EXTENSION_NAMES,
+                                     package_functions: package_functions.EXTENSION_NAMES,
                                      pathnames: pathnames.EXTENSION_NAMES, files: files.EXTENSION_NAMES,
                                      environment: environment.EXTENSION_NAMES},
                 variables={**INFINITIES, **environment.EXTENSION_VARIABLES})

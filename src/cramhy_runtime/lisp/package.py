@@ -9,13 +9,13 @@ import importlib
 
 from . import cl_names, extension_packages
 from .faces import define_face, lispify
-from .packages import sym
+from .packages import COMMON_LISP, sym
 
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
     class_definition slots protocol generic structures streams stream_functions file_streams pathnames wild_pathnames
     logical_pathnames files file_stream_functions universal_time environment printer pretty pprint_dispatch
-    format reader tokens readtables reader_functions symbols declarations control documentation describing
+    format reader tokens readtables reader_functions symbols package_functions declarations control documentation describing
     inspecting apropos disassembling tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
@@ -37,9 +37,9 @@ HELPERS = {
     "places": "define-modifier define-setf-function define-setf-form define-expander",
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
         handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart
-        signal-with-restarts with-condition-restarts define-package set-package
-        package-symbols all-symbols package-iterator hash-table-iterator
+        signal-with-restarts with-condition-restarts hash-table-iterator
         put-property remove-property next-method-exists""",
+    "package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",
     "tracing": "trace untrace time step",
 }
 
@@ -61,6 +61,7 @@ def fill():
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})
     extension_packages.define_faces()
+    COMMON_LISP.locked = True
 
 
 _standard = set(cl_names.NAMES.split())

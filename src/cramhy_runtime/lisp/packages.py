@@ -8,7 +8,7 @@ message texts are SBCL's.
 from __future__ import annotations
 
 from . import cl_names
-from .data import Keyword, Symbol
+from .data import Character, Keyword, LispString, Symbol
 from .late import late
 
 
@@ -22,17 +22,20 @@ class Package:
         self.used_by = []
         self.internal = {}
         self.external = {}
-        self.shadowing = set()
+        self.shadowing = {}  # names, in the order in which they were shadowed
+        self.locked = False
+        self.local_nicknames = {}  # names that mean a package only while this one is current
         self.documentation = documentation
+        self.defined = False  # by ``defpackage``, whose second call looks for differences
         for other in self.use:
             other.used_by.append(self)
 
     def __repr__(self):
-        return f'#<PACKAGE "{self.name}">'
+        return f'#<PACKAGE "{self.name}">' if self.name is not None else "#<PACKAGE (deleted)>"
 
     @property
     def names(self):
-        return [self.name, *self.nicknames]
+        return [self.name, *self.nicknames] if self.name is not None else []
 
     def lookup(self, name):
         """(symbol, status): status is ``"internal"``, ``"external"``, ``"inherited"`` or ``None``."""
@@ -78,13 +81,13 @@ class Package:
         name = symbol_name(symbol)
         self.external.pop(name, None)
         self.internal[name] = symbol
-        self.shadowing.add(name)
+        self.shadowing[name] = True
 
     def shadow(self, name):
         """Make sure that a symbol ``name`` is present here, whatever is inherited."""
         if not self.present(name):
             self.internal[name] = Symbol(name, self)
-        self.shadowing.add(name)
+        self.shadowing[name] = True
         return self.intern(name)
 
     def export(self, symbol):
@@ -105,7 +108,7 @@ class Package:
         for table in (self.external, self.internal):
             if table.get(name, table) is symbol:
                 del table[name]
-                self.shadowing.discard(name)
+                self.shadowing.pop(name, None)
                 if isinstance(symbol, Symbol) and symbol.package is self:
                     symbol.package = None
                 return True
@@ -132,6 +135,7 @@ class Package:
 _packages: dict[str, Package] = {}
 on_demand: dict[str, str] = {}
 """Packages of libraries that come with cramhy → the system that defines each; it is loaded when somebody asks for the package."""
+CURRENT = Symbol("*PACKAGE*")  # that of COMMON-LISP takes its place below
 
 
 def register(package):
@@ -155,10 +159,16 @@ def make_package(name, nicknames=(), use=()):
 
 
 def delete_package(package):
+    """Take ``package`` out of the world: nobody uses it any more, its symbols have no home, it has no name."""
     for name in package.names:
         _packages.pop(name, None)
     for other in list(package.use):
         package.unuse_package(other)
+    for table in (package.external, package.internal):
+        for symbol in table.values():
+            if isinstance(symbol, Symbol) and symbol.package is package:
+                symbol.package = None
+    package.name = None
 
 
 def rename_package(package, name, nicknames=()):
@@ -205,11 +215,19 @@ def string_designator(designator):
     return str(getattr(designator, "char", designator))
 
 
+def is_string_designator(thing):
+    """Whether ``thing`` is a string, a symbol or a character."""
+    return isinstance(thing, (str, LispString, Character)) or is_symbol(thing)
+
+
 def find_package(designator):
     """The package a name, symbol or package stands for, or ``None``."""
     if isinstance(designator, Package):
         return designator
     name = string_designator(designator)
+    nicknames = getattr(CURRENT.value, "local_nicknames", None)
+    if nicknames and name in nicknames:
+        return nicknames[name]
     if name in on_demand:
         late.load_system(on_demand[name])
     return _packages.get(name)
@@ -222,10 +240,13 @@ def defined_by_program(names):
 
 
 def find_package_or_error(designator):
+    """The package; a name without one is an error whose restarts may give another."""
     package = find_package(designator)
     if package is None:
+        if not is_string_designator(designator):
+            return late.type_error(designator, "(OR STRING SYMBOL CHARACTER PACKAGE)")
         return late.package_does_not_exist(designator)
-    return package
+    return package if package.name is not None else late.package_does_not_exist(package)
 
 
 def near_names(name, candidates, most=3):
@@ -273,5 +294,6 @@ def keyword(name):
 KEYWORD = register(Package("KEYWORD"))
 COMMON_LISP = register(Package("COMMON-LISP", ["CL"]))
 COMMON_LISP.external.update({name.upper(): Symbol(name.upper(), COMMON_LISP) for name in cl_names.NAMES.split()}, NIL=None, T=True)
+CURRENT = COMMON_LISP.external["*PACKAGE*"]
 COMMON_LISP_USER = register(Package("COMMON-LISP-USER", ["CL-USER"], [COMMON_LISP]))
 CRAMHY = register(Package("CRAMHY"))  # what macros expand into: functions of the runtime that users do not name

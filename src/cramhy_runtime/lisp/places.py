@@ -15,6 +15,7 @@ from .data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, o
 from .definitions import data
 from .lambda_lists import destructure, gensym, parse, support
 from .macros import macroexpand_1, malformed
+from .package_errors import check_symbol
 from .packages import is_symbol, sym
 
 LET_STAR, PROGN, SETQ = sym("LET*"), sym("PROGN"), sym("SETQ")
@@ -271,6 +272,7 @@ def _defsetf(form, environment):
 
 
 def _define_place(name, expander, documentation):
+    check_symbol(name, "defining a setf-expander for ~S", name)
     data(name)["setf-expander"] = expander
     data(name)["setf-documentation"] = documentation
     return name

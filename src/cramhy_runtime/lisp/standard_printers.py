@@ -264,6 +264,12 @@ def _print_comma(comma, stream):
     output_object(comma.form, stream)
 
 
+def print_package(package, stream):
+    if package.name is None:
+        return print_unreadable(package, stream, "PACKAGE (deleted)", identity=True)
+    return print_unreadable(package, stream, "PACKAGE " + string_text(package.name))
+
+
 def _register():
     for cls, function in (
         (object, print_python_object),
@@ -276,7 +282,7 @@ def _register():
         (_Verbatim, lambda obj, stream: stream.write(obj.text)),
         (Comma, _print_comma),
         (SynonymStream, _print_synonym),
-        (Package, lambda obj, stream: print_unreadable(obj, stream, "PACKAGE " + string_text(obj.name))),
+        (Package, print_package),
         (bytes, lambda obj, stream: print_array(list(obj), stream)),
     ):
         define_printer(cls, function)

@@ -15,6 +15,7 @@ from .data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_f
 from .faces import python_name
 from .generic import add_method
 from .late import late
+from .package_errors import check_symbol
 from .packages import Package, intern, is_symbol, keyword, string_designator, sym, symbol_name
 
 LISP_NAMES = "copy-structure"
@@ -191,6 +192,7 @@ def define_structure(name, slots=None, *, conc_name=UNSUPPLIED, constructors=UNS
     replace slots of it. type: ``list`` or ``vector`` or ``(vector ...)``. named: t for ``:named``. initial_offset: a number.
     print_function: a function of object, stream and depth. print_object: a function of object and stream.
     """
+    check_symbol(name, "defining ~S as a structure", name)
     parent = find_structure(include) if include is not None else None
     own = python_list(slots)
     representation = symbol_name(type.car if isinstance(type, Cons) else type) if type is not None else None

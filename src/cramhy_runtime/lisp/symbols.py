@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from . import packages
 from .conditions import error, type_error
-from .data import Cons, Keyword, MultipleValues, Symbol, UNBOUND, UndefinedFunction, list_from, python_list, truth
+from .data import Cons, Keyword, Symbol, UNBOUND, UndefinedFunction, truth
 from .definitions import traced_like
 from .evaluator import PACKAGE
-from .packages import Package, find_package_or_error, is_symbol, keyword, string_designator, sym
+from .package_errors import check_symbol
+from .packages import find_package_or_error, is_symbol, sym
 
 LISP_NAMES = """symbolp keywordp symbol-name symbol-package symbol-value set symbol-function boundp fboundp makunbound fmakunbound
-make-symbol gensym gentemp copy-symbol intern find-symbol unintern export unexport import shadow shadowing-import use-package
-unuse-package find-package package-name package-nicknames package-use-list package-used-by-list package-shadowing-symbols
-list-all-packages make-package delete-package rename-package packagep find-all-symbols package-error-package"""
+make-symbol gensym gentemp copy-symbol"""
 
 
 def _symbol(obj):
@@ -59,6 +58,7 @@ def symbol_function(symbol):
 
 
 def set_symbol_function(function, symbol):
+    check_symbol(symbol, "setting the symbol-function of ~S", symbol)
     symbol.function = traced_like(symbol.function, function)
     return function
 
@@ -80,11 +80,13 @@ def fboundp(name):
 
 
 def makunbound(symbol):
+    check_symbol(symbol, "unbinding the symbol ~S", symbol)
     symbol.value = UNBOUND
     return symbol
 
 
 def fmakunbound(name):
+    check_symbol(name.cdr.car if isinstance(name, Cons) else name, "removing the function or macro definition of ~S", name)
     if isinstance(name, Cons):
         name.cdr.car.setf_function = None
     else:
@@ -109,7 +111,7 @@ def gensym(prefix="G"):
 
 
 def gentemp(prefix="T", package=None):
-    home = _package(package)
+    home = PACKAGE.value if package is None else find_package_or_error(package)
     while True:
         GENSYM_COUNTER.value += 1
         name = f"{prefix}{GENSYM_COUNTER.value}"
@@ -122,135 +124,6 @@ def copy_symbol(symbol, properties=None):
     if truth(properties):
         copy.value, copy.function, copy.plist = symbol.value, symbol.function, symbol.plist
     return copy
-
-
-def _package(designator):
-    return PACKAGE.value if designator is None else find_package_or_error(designator)
-
-
-def _status(status):
-    return keyword(status.upper()) if status else None
-
-
-def intern(name, package=None):
-    """Two values: the symbol, and how it was there (nil: it is new)."""
-    home = _package(package)
-    name = str(name)
-    found, status = home.lookup(name)
-    if not status:
-        found = home.intern(name)
-    return MultipleValues((found, _status(status)))
-
-
-def find_symbol(name, package=None):
-    found, status = _package(package).lookup(str(name))
-    return MultipleValues((found, _status(status)))
-
-
-def unintern(symbol, package=None):
-    return _package(package).unintern(symbol)
-
-
-def _each(symbols, action):
-    for symbol in [symbols] if is_symbol(symbols) and symbols is not None else python_list(symbols):
-        action(symbol)
-    return True
-
-
-def export(symbols, package=None):
-    return _each(symbols, _package(package).export)
-
-
-def unexport(symbols, package=None):
-    return _each(symbols, _package(package).unexport)
-
-
-def import_(symbols, package=None):
-    return _each(symbols, _package(package).import_symbol)
-
-
-def shadow(names, package=None):
-    home = _package(package)
-    for name in python_list(names) if isinstance(names, Cons) or names is None else [names]:
-        home.shadow(string_designator(name))
-    return True
-
-
-def shadowing_import(symbols, package=None):
-    return _each(symbols, _package(package).shadowing_import)
-
-
-def _designators(items):
-    return python_list(items) if isinstance(items, Cons) or items is None else [items]
-
-
-def use_package(used, package=None):
-    for designator in _designators(used):
-        _package(package).use_package(find_package_or_error(designator))
-    return True
-
-
-def unuse_package(used, package=None):
-    for designator in _designators(used):
-        _package(package).unuse_package(find_package_or_error(designator))
-    return True
-
-
-def find_package(designator):
-    return packages.find_package(designator)
-
-
-def package_name(designator):
-    return find_package_or_error(designator).name
-
-
-def package_nicknames(designator):
-    return list_from(find_package_or_error(designator).nicknames)
-
-
-def package_use_list(designator):
-    return list_from(find_package_or_error(designator).use)
-
-
-def package_used_by_list(designator):
-    return list_from(find_package_or_error(designator).used_by)
-
-
-def package_shadowing_symbols(designator):
-    package = find_package_or_error(designator)
-    return list_from([package.intern(name) for name in package.shadowing])
-
-
-def list_all_packages():
-    return list_from(packages.all_packages())
-
-
-def make_package(name, *, nicknames=None, use=None):
-    return packages.make_package(string_designator(name), [string_designator(item) for item in python_list(nicknames)], python_list(use))
-
-
-def delete_package(designator):
-    packages.delete_package(find_package_or_error(designator))
-    return True
-
-
-def rename_package(designator, name, nicknames=None):
-    names = [string_designator(item) for item in python_list(nicknames)]
-    return packages.rename_package(find_package_or_error(designator), string_designator(name), names)
-
-
-def packagep(obj):
-    return True if isinstance(obj, Package) else None
-
-
-def find_all_symbols(name):
-    name = string_designator(name)
-    found = [package.lookup(name) for package in packages.all_packages() if package.present(name)]
-    return list_from(list(dict.fromkeys(symbol for symbol, _ in found)))
-
-
-def package_error_package(condition):
-    return condition.package
 
 
 SETTERS = {"SYMBOL-VALUE": set_symbol_value, "SYMBOL-FUNCTION": set_symbol_function, "FDEFINITION": set_symbol_function}

@@ -14,6 +14,7 @@ from __future__ import annotations
 from . import reader_errors, tokens
 from .backquote import QUASIQUOTE, Comma
 from .data import NO_VALUES, UNBOUND, Character, Cons, MultipleValues, Symbol, one
+from .package_errors import check_package
 from .packages import COMMON_LISP_USER, KEYWORD, find_package, sym
 from .reader_errors import LineIndex, fail
 from .readtables import READTABLE, UPCASE, DispatchTable, call
@@ -461,6 +462,8 @@ class Reader(InputStream):
         if package is None:
             return reader_errors.no_package(self, start, package_name, name)
         if count == 2 or package is KEYWORD:
+            if package.locked and not package.lookup(name)[1]:
+                check_package(package, "interning ~A", name)
             return package.intern(name)
         found, status = package.lookup(name)
         if status == "external":

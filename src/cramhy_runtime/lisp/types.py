@@ -22,6 +22,7 @@ from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, Und
 from .element_types import upgraded_element_type
 from .equality import eql, equal
 from .generic import GenericFunction
+from .package_errors import check_symbol
 from .packages import Package, is_symbol, sym
 from .pathname_objects import Pathname
 from .structures import StructureObject
@@ -340,7 +341,8 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     expander: a function of the whole specifier, a list ``(symbol . arguments)``, and an environment (nil), as macro functions
     are; it returns the specifier that is meant. Optional arguments default to ``*`` (ANSI 3.4.8), which the macro sees to.
     """
-    if sym("CAR").package is symbol.package and symbol in _BUILT_IN:
+    check_symbol(symbol, "defining ~S as a type specifier", symbol)
+    if symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
     expander.__doc__, expander.__lisp_lambda_list__ = documentation, lambda_list
     _expanders[symbol] = expander
