@@ -10,6 +10,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.compiler import support
 from cramhy_runtime.lisp.conditions import CompileError, Condition
+from cramhy_runtime.lisp.package_errors import SymbolPackageLockedError
 from cramhy_runtime.lisp.printer import prin1_to_string
 from cramhy_runtime.repl.session import condition_of
 
@@ -65,8 +66,6 @@ MALFORMED = [
     ("(dolist (x) 1)", f"The DOLIST form (DOLIST (X) 1) is {SHAPE}"),
     ("(push 1)", f"The PUSH form (PUSH 1) is {SHAPE}"),
     ("(handler-case 1 2)", f"The HANDLER-CASE form (HANDLER-CASE 1 2) is {SHAPE}"),
-    ("(defun car (x) x)", "CAR belongs to Common Lisp and cannot be redefined as a function. Choose another name, or shadow the "
-                          "symbol with (:shadow #:car) in the package definition."),
 ]
 
 
@@ -77,6 +76,16 @@ def test_a_malformed_form_is_a_compile_error_with_its_place(session, text, repor
         session.evaluate_text(text)
     assert caught.value.position[1:] == (1, 1) or report is None
     assert report is None or " ".join(caught.value.report().split()) == report
+
+
+def test_a_name_of_common_lisp_is_locked(session):
+    session.package = "CL-USER"
+    with pytest.raises(SymbolPackageLockedError) as caught:
+        session.evaluate_text("(defun car (x) x)")
+    assert caught.value.position[1:] == (1, 1)
+    assert " ".join(caught.value.report().split()) == (
+        "Lock on package COMMON-LISP violated when setting fdefinition of CAR while in package COMMON-LISP-USER.")
+    assert caught.value.hint == "Choose another name, or shadow the symbol: (:shadow #:car) in the definition of your package."
 
 
 def test_the_place_is_that_of_the_innermost_form(session):

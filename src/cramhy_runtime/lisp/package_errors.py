@@ -121,7 +121,7 @@ def unlocked(packages=True):
 def check_package(package, control, *arguments):
     """Signal, if ``package`` is locked, that it is about to be changed: ``check_package(package, "interning ~A", name)``."""
     if package.locked and locked(package):
-        _violated(package, PackageLockedError(package, control, *arguments))
+        violated(PackageLockedError(package, control, *arguments))
 
 
 def check_symbol(symbol, control, *arguments):
@@ -131,12 +131,13 @@ def check_symbol(symbol, control, *arguments):
         condition = SymbolPackageLockedError(package, control, *arguments, symbol=symbol)
         condition.hint = (f"Choose another name, or shadow the symbol: (:shadow #:{symbol_name(symbol).lower()}) in the definition of your "
                           "package.")
-        _violated(package, condition)
+        violated(condition)
 
 
-def _violated(package, condition):
+def violated(condition):
+    """Signal a lock violation; returns when a restart says to go ahead."""
     def unlock():
-        package.locked = False
+        condition.package.locked = False
 
     restart_case([(sym("CONTINUE"), lambda: None, "Ignore the package lock."),
                   (IGNORE_ALL, lambda: None, "Ignore all package locks in the context of this operation."),

@@ -13,6 +13,7 @@ from . import conditions
 from .condition_types import EndOfFile, ReaderError, ReaderPackageError, SimpleStyleWarning, shown
 from .conditions import restart_case
 from .data import Symbol
+from .package_errors import PackageLockedError, locked, violated
 from .packages import find_package, find_package_or_error, near_names, package_names, sym
 
 
@@ -187,6 +188,16 @@ def no_external(reader, offset, package, name, found):
             hint += f" Did you mean {_either([f'{_prefix(package)}:{other.lower()}' for other in near])}?"
     return restart_case([(sym("CONTINUE"), lambda: package.intern(name), "Use symbol anyway.")],
                         lambda: fail(reader, offset, text, name, package.name, hint=hint, kind=ReaderPackageError))
+
+
+def new_in_locked_package(reader, offset, package, name):
+    """Signal that reading ``package::name`` would put a new symbol into a locked package; returns when it may."""
+    if locked(package):
+        if reader.quiet:
+            raise QuietFailure(name)
+        near = near_names(name, package.external)
+        hint = f"{package.name} has no symbol {name}." + (f" Did you mean {_either(near)}?" if near else "")
+        violated(place(PackageLockedError(package, "interning ~A", name), reader, offset, hint))
 
 
 def _prefix(package):

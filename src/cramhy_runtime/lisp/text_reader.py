@@ -14,7 +14,6 @@ from __future__ import annotations
 from . import reader_errors, tokens
 from .backquote import QUASIQUOTE, Comma
 from .data import NO_VALUES, UNBOUND, Character, Cons, MultipleValues, Symbol, one
-from .package_errors import check_package
 from .packages import COMMON_LISP_USER, KEYWORD, find_package, sym
 from .reader_errors import LineIndex, fail
 from .readtables import READTABLE, UPCASE, DispatchTable, call
@@ -463,7 +462,7 @@ class Reader(InputStream):
             return reader_errors.no_package(self, start, package_name, name)
         if count == 2 or package is KEYWORD:
             if package.locked and not package.lookup(name)[1]:
-                check_package(package, "interning ~A", name)
+                reader_errors.new_in_locked_package(self, start, package, name)
             return package.intern(name)
         found, status = package.lookup(name)
         if status == "external":
