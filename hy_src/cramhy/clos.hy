@@ -15,17 +15,26 @@
 (defn quoted-list [items]
   `(quote ~(list-from items)))
 
+(setv slot-options #{"INITARG" "INITFORM" "READER" "WRITER" "ACCESSOR" "ALLOCATION" "TYPE" "DOCUMENTATION"})
+
 (defn slot-specification [slot]
   "The form that makes the description of a slot of `defclass` and `define-condition`."
   (setv #(name #* rest) (if (listp slot) slot [slot]))
   (setv options (options-of rest))
   (defn every [key] (lfor #(option value) options :if (= option key) value))
-  (defn only [key] (if (every key) (get (every key) 0) None))
+  (defn only [key]
+    (when (> (len (every key)) 1)
+      (program-error "Duplicate slot option :~A for slot ~S." key name))
+    (if (every key) (get (every key) 0) None))
+  (for [#(option _) options]
+    (when (not-in option slot-options)
+      (program-error "There is no slot option :~A, which slot ~S has. The options are ~{:~A~^, ~}." option name
+                     (list-from (sorted slot-options)))))
   (setv initforms (every "INITFORM"))
   `(%slot-spec (quote ~name)
      :initargs ~(quoted-list (every "INITARG"))
-     :initform ~(if initforms `(lambda [] ~(get initforms 0)) None)
      :initform-source (quote ~(only "INITFORM"))
+     :initform ~(if initforms `(lambda [] ~(get initforms 0)) None)
      :readers ~(quoted-list (every "READER"))
      :writers ~(quoted-list (every "WRITER"))
      :accessors ~(quoted-list (every "ACCESSOR"))
@@ -149,13 +158,17 @@
 
 (defoperator defgeneric [name lambda-list #* options]
   (setv methods [] arguments [])
+  (for [item (elements lambda-list)]
+    (when (and (listp item) (listp item.cdr))
+      (error "Invalid argument specifier ~S in a generic function lambda list ~S: only methods give defaults." item lambda-list)))
   (for [option options]
     (match (symbol-name option.car)
       "METHOD" (.append methods (method-option name option))
       "DOCUMENTATION" (.extend arguments [(sym ":DOCUMENTATION") option.cdr.car])
       "METHOD-COMBINATION" (.extend arguments [(sym ":METHOD-COMBINATION") `(quote ~option.cdr)])
       "ARGUMENT-PRECEDENCE-ORDER" (.extend arguments [(sym ":ARGUMENT-PRECEDENCE-ORDER") `(quote ~option.cdr)])
-      _ None))
+      (| "DECLARE" "GENERIC-FUNCTION-CLASS" "METHOD-CLASS") None
+      _ (raise (ValueError (+ "there is no option :" (symbol-name option.car) ".")))))
   `(%define-generic (quote ~name) (quote ~lambda-list) :methods (list ~@methods) ~@arguments))
 
 (defoperator define-method-combination [name #* rest]
@@ -175,12 +188,32 @@
   (setv options (dict (options-of rest)))
   [variable (list-from patterns) (.get options "ORDER") (.get options "REQUIRED")])
 
+(defn combination-options [body]
+  "(arguments lambda list, variable of the generic function, documentation, forms) of the long form's body."
+  (setv forms (list body) options {"ARGUMENTS" None "GENERIC-FUNCTION" None} documentation None)
+  (while (> (len forms) 1)
+    (setv head (get forms 0))
+    (cond
+      (and (listp head) (isinstance head.car LispSymbol) (in head.car.name options))
+        (setv (get options head.car.name) (if (= head.car.name "ARGUMENTS") head.cdr head.cdr.car))
+      (and (isinstance head str) (is documentation None)) (setv documentation head)
+      True (break))
+    (.pop forms 0))
+  #((get options "ARGUMENTS") (get options "GENERIC-FUNCTION") documentation forms))
+
 (defn long-combination [name lambda-list groups #* body]
-  (setv parts (lfor group (elements groups) (group-parts group)) options (gensym "OPTIONS") generic (gensym "GENERIC"))
-  (setv forms (lfor form body :if (not (and (listp form) (in (symbol-name form.car) ["ARGUMENTS" "GENERIC-FUNCTION"]))) form))
-  `(%define-long-combination (quote ~name) (quote ~(list-from (lfor part parts (list-from part))))
-     (lambda [~generic ~options ~@(lfor part parts (get part 0))]
-       (destructuring-bind ~lambda-list ~options ~@forms))))
+  (import cramhy_runtime.lisp.lambda-lists [variables-of])
+  (setv parts (lfor group (elements groups) (group-parts group)) options (gensym "OPTIONS"))
+  (setv #(arguments generic documentation forms) (combination-options body))
+  `(%define-long-combination (quote ~name) (quote ~(list-from (lfor part parts (get part 1))))
+     (lambda [~options]
+       (destructuring-bind ~lambda-list ~options
+         (list ~@(lfor #(_ _ order required) parts `(cons ~order ~required)))))
+     (lambda [~(or generic (gensym "GENERIC")) ~options ~@(lfor part parts (get part 0))]
+       (destructuring-bind ~lambda-list ~options
+         (let [~@(lfor variable (variables-of arguments) [variable `(quote ~variable)])]
+           ~@forms)))
+     :lambda-list (quote ~arguments) :documentation ~documentation))
 
 (defoperator with-slots [slots instance #* body]
   (setv variable (gensym "INSTANCE"))

@@ -6,7 +6,7 @@ runtime's helpers are, and `pkg::name` to that package. Lists in brackets are li
 
 (import cramhy_runtime.lisp.macros [define-operator malformed]
         cramhy_runtime.lisp.data [Cons Symbol :as LispSymbol list-from lisp-list]
-        cramhy_runtime.lisp.conditions [error]
+        cramhy_runtime.lisp.conditions [error program-error]
         cramhy_runtime.lisp.lambda-lists [gensym]
         cramhy_runtime.lisp.packages [sym is-symbol symbol-name])
 

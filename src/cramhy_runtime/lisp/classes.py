@@ -146,7 +146,7 @@ def class_of(object_):
         return metaclass_of(object_)
     for candidate in lisp_mro(cls):
         if isinstance(candidate, BuiltInClass):
-            return candidate
+            return CLASSES["FUNCTION"] if candidate is CLASSES["COMPILED-FUNCTION"] else candidate  # the former is a mere type
         if candidate is not object and _own_name(candidate):
             return candidate
     return object

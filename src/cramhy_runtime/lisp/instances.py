@@ -138,8 +138,14 @@ def _check_finalized(cls):
     for base in cls.__mro__:
         if vars(base).get("lisp_forward_reference"):
             error(SimpleError("While computing the class precedence list of the class named ~A.~%The class named ~A is a forward "
-                              "referenced class.~%It is named as a superclass, but no defclass for it has been seen.",
-                              qualified(class_name(cls)), qualified(class_name(base))))
+                              "referenced class.~%The class named ~A is a direct superclass of the class named ~A.",
+                              qualified(class_name(cls)), qualified(class_name(base)), qualified(class_name(base)),
+                              qualified(class_name(_child(cls, base)))))
+
+
+def _child(cls, base):
+    """The class among ``cls`` and its superclasses that names ``base`` as its superclass."""
+    return next(each for each in cls.__mro__ if base in each.__bases__)
 
 
 def _python_init(cls, slots):

@@ -114,6 +114,15 @@ def _key(item, default):
     return keyword(symbol_name(variable)), variable, default, supplied
 
 
+def variables_of(lambda_list):
+    """The variables that an ordinary lambda list binds."""
+    parsed = parse(lambda_list)
+    found = [*parsed.required, parsed.rest, *(variable for variable, _ in parsed.aux)]
+    for variable, _, supplied in [*parsed.optional, *(key[1:] for key in parsed.keys)]:
+        found += [variable, supplied]
+    return [variable for variable in found if variable is not None]
+
+
 def support(name):
     """The symbol of the runtime function ``name`` that expansions call: ``CRAMHY::NAME``."""
     return sym(f"CRAMHY::{name}")

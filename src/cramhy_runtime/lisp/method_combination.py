@@ -235,11 +235,11 @@ class HookCombination(Combination):
 
 
 class LongCombination(Combination):
-    """The long form: ``groups`` sort the methods, ``expand`` computes the form that runs them."""
+    """The long form: ``groups`` sort the methods, ``expand`` computes the form that runs them; see `define_long_combination`."""
 
-    def __init__(self, name, groups, expand):
+    def __init__(self, name, groups, traits, expand, lambda_list):
         super().__init__(name)
-        self.groups, self.expand = groups, expand
+        self.groups, self.traits, self.expand, self.lambda_list = groups, traits, expand, lambda_list
 
     def knows(self, qualifiers):
         return any(group.takes(qualifiers) for group in self.groups)
@@ -254,21 +254,21 @@ class LongCombination(Combination):
             else:
                 return _invalid(generic_function, method, f"has qualifiers that the method combination type {printed(self.name)} "
                                                           f"does not know.")
-        for group, members in zip(self.groups, lists):
-            if group.order == "MOST-SPECIFIC-LAST":
+        options = lisp_list(*generic_function.combination_options)
+        for members, traits in zip(lists, python_list(one(self.traits(options)))):
+            if traits.car is not None and symbol_name(traits.car) == "MOST-SPECIFIC-LAST":
                 members.reverse()
-            if group.required and not members:
+            if truth(traits.cdr) and not members:
                 return lambda *arguments, **keywords: _retrying(generic_function, arguments, no_primary_method_error)
-        form = one(self.expand(generic_function, lisp_list(*generic_function.combination_options),
-                               *[list_from(members) for members in lists]))
-        return late.function_of_form(form, generic_function, classes)
+        form = one(self.expand(generic_function, options, *[list_from(members) for members in lists]))
+        return late.function_of_form(form, generic_function, classes, self.lambda_list)
 
 
 class MethodGroup:
-    """A method group of the long form: ``takes(qualifiers)``, its order, and whether it may be empty."""
+    """A method group of the long form: ``takes(qualifiers)`` says which methods belong to it."""
 
-    def __init__(self, patterns, order="MOST-SPECIFIC-FIRST", required=False):
-        self.patterns, self.order, self.required = patterns, order, required
+    def __init__(self, patterns):
+        self.patterns = patterns
 
     def takes(self, qualifiers):
         return any(self._fits(pattern, qualifiers) for pattern in self.patterns)
@@ -331,20 +331,15 @@ def define_short_combination(name, *, operator=None, identity_with_one_argument=
     return name
 
 
-def define_long_combination(name, groups, expand, *, documentation=None):
+def define_long_combination(name, patterns, traits, expand, *, lambda_list=None, documentation=None):
     """``define-method-combination``, long form; returns the name.
 
-    groups: a list of lists (variable patterns order required), patterns being a list of qualifier patterns (lists, ``*``) or
-    predicates (symbols), order a keyword or nil, required true or nil, as in the macro's method group specifiers.
-    expand: a function of the generic function, the list of combination options, and one list of methods per group; it returns
-    the effective form, with ``call-method`` and ``make-method``.
+    patterns: for each method group a list of qualifier patterns (lists, ``*``) or predicates (symbols). traits: a function of the
+    list of combination options that gives (order . required) for each group. expand: a function of the generic function, the list
+    of options, and one list of methods per group; it returns the effective form, with ``call-method`` and ``make-method``.
+    lambda_list: that of the option ``:arguments``.
     """
-    specifications = []
-    for group in python_list(groups):
-        _, patterns, order, required = python_list(group)
-        specifications.append(MethodGroup(python_list(patterns), symbol_name(order) if order is not None else "MOST-SPECIFIC-FIRST",
-                                          truth(required)))
-    combination = LongCombination(name, specifications, expand)
+    combination = LongCombination(name, [MethodGroup(python_list(each)) for each in python_list(patterns)], traits, expand, lambda_list)
     combination.documentation = documentation
     _combinations[name] = combination
     return name

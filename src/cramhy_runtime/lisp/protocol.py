@@ -14,7 +14,7 @@ from .class_definition import define_class
 from .classes import class_name
 from .condition_types import shown
 from .conditions import SimpleError, error, type_error
-from .data import MultipleValues, Symbol, lisp_list, list_from, python_list
+from .data import MultipleValues, lisp_list, list_from, python_list
 from .generic import EqlSpecializer, GenericFunction, find_method_or_none, generic, specializer_of, when_methods_change
 from .generic_errors import no_next_method_error
 from .packages import sym, symbol_name
@@ -129,21 +129,25 @@ def slot_names(object_):
 
 
 make_load_form = protocol_function("MAKE-LOAD-FORM", "(object &optional environment)",
-                           lambda object_, environment=None: make_load_form_saving_slots(object_))
+                           lambda object_, environment=None: _cannot_be_dumped(object_))
+
+
+def _cannot_be_dumped(obj):
+    return error(SimpleError("don't know how to dump ~S (default ~S method called).", obj, sym("MAKE-LOAD-FORM")))
 
 
 def make_load_form_saving_slots(object, **keywords):
-    """The form that makes a copy of ``object`` when it is evaluated: ``make-instance`` with its slots set."""
-    name = class_name(type(object))
-    setters = []
-    for slot in slot_names(object):
-        if slots.slot_boundp(object, slot):
-            place = lisp_list(sym("SLOT-VALUE"), Symbol("OBJECT"), lisp_list(sym("QUOTE"), slot))
-            setters.append((place, lisp_list(sym("QUOTE"), slots.slot_value(object, slot))))
-    variable = Symbol("OBJECT")
-    forms = [lisp_list(sym("SETF"), lisp_list(place.car, variable, place.cdr.cdr.car), value) for place, value in setters]
-    binding = lisp_list(variable, lisp_list(sym("ALLOCATE-INSTANCE"), lisp_list(sym("FIND-CLASS"), lisp_list(sym("QUOTE"), name))))
-    return lisp_list(sym("LET"), lisp_list(binding), *forms, variable)
+    """Two values: the form that makes an object of the class of ``object``, and the one that sets its slots.
+
+    slot_names: the slots to be set, by default all. The second form names the object itself, as a constant.
+    """
+    quote = sym("QUOTE")
+    wanted = python_list(keywords["slot_names"]) if keywords.get("slot_names") is not None else slot_names(object)
+    creation = lisp_list(sym("ALLOCATE-INSTANCE"), lisp_list(sym("FIND-CLASS"), lisp_list(quote, class_name(type(object)))))
+    setters = [lisp_list(sym("SETF"), lisp_list(sym("SLOT-VALUE"), lisp_list(quote, object), lisp_list(quote, slot)),
+                         lisp_list(quote, slots.slot_value(object, slot)))
+               for slot in wanted if slots.slot_boundp(object, slot)]
+    return MultipleValues((creation, lisp_list(sym("PROGN"), *setters)))
 
 
 def make_instances_obsolete(class_):
