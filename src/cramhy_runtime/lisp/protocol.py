@@ -65,13 +65,14 @@ update_instance_for_redefined_class = protocol_function(
     instances.default_update_for_redefined_class)
 slot_unbound = protocol_function("SLOT-UNBOUND", "(class instance slot-name)", slots.unbound_slot_error)
 
-_OPERATIONS = {"SLOT-VALUE": "read the slot's value (slot-value)", "SETF": "set the slot's value (SETF of SLOT-VALUE)",
+_OPERATIONS = {"SLOT-VALUE": "read the slot's value (slot-value)", "SETF": "set the slot's value to {new} (SETF of SLOT-VALUE)",
                "SLOT-BOUNDP": "test to see whether slot is bound (SLOT-BOUNDP)",
                "SLOT-MAKUNBOUND": "make the slot unbound (SLOT-MAKUNBOUND)"}
 
 
 def _slot_missing(cls, instance, slot_name, operation, new_value=None):
-    return error(slots.MissingSlot(slot_name, instance, _OPERATIONS.get(symbol_name(operation), symbol_name(operation))))
+    what = _OPERATIONS.get(symbol_name(operation), symbol_name(operation)).replace("{new}", shown(new_value))
+    return error(slots.MissingSlot(slot_name, instance, what))
 
 
 slot_missing = protocol_function("SLOT-MISSING", "(class instance slot-name operation &optional new-value)", _slot_missing)
