@@ -3,7 +3,8 @@
 Each is what the standard says that it expands into; see the section of ANSI in its comment where that is not plain."
 
 (require cramhy.operators [defoperator])
-(import cramhy.operators *)
+(import cramhy.operators *
+        cramhy_runtime.lisp.compilation-unit [duplicate-keys])
 
 (setv package "COMMON-LISP")
 
@@ -60,10 +61,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (list-from (sum (lfor clause clauses (if (listp clause.car) (elements clause.car) [clause.car])) [])))
 
 (defoperator case [key #* clauses]
+  (duplicate-keys "CASE" clauses)
   (setv variable (gensym "KEY"))
   `(let [[~variable ~key]] ~(choose variable clauses key-test None)))
 
 (defoperator ecase [key #* clauses]
+  (duplicate-keys "ECASE" clauses)
   (setv variable (gensym "KEY"))
   `(let [[~variable ~key]]
      ~(choose variable clauses key-test `(%case-failure ~variable "ECASE" (quote ~(all-keys clauses))))))
@@ -166,11 +169,11 @@ Each is what the standard says that it expands into; see the section of ANSI in 
        (tagbody
          ~next
          (if (>= ~counter ~limit) (go ~end))
-         (let [[~variable ~counter]] ~@declarations (tagbody ~@forms))
+         (let [[~variable ~counter]] (declare (ignorable ~variable)) ~@declarations (tagbody ~@forms))
          (setq ~counter (1+ ~counter))
          (go ~next)
          ~end)
-       ~(if (is result None) None `(let [[~variable (max ~limit 0)]] ~@declarations ~variable ~result)))))
+       ~(if (is result None) None `(let [[~variable (max ~limit 0)]] (declare (ignorable ~variable)) ~@declarations ~result)))))
 
 (defoperator dolist [spec #* body]
   (setv #(variable items result) (iteration-spec #* spec))
@@ -181,11 +184,11 @@ Each is what the standard says that it expands into; see the section of ANSI in 
        (tagbody
          ~next
          (if (endp ~rest) (go ~end))
-         (let [[~variable (%car-of-cons ~rest)]] ~@declarations (tagbody ~@forms))
+         (let [[~variable (%car-of-cons ~rest)]] (declare (ignorable ~variable)) ~@declarations (tagbody ~@forms))
          (setq ~rest (%cdr-of-cons ~rest))
          (go ~next)
          ~end))
-     ~(if (is result None) None `(let [[~variable nil]] ~variable ~result))))
+     ~(if (is result None) None `(let [[~variable nil]] (declare (ignorable ~variable)) ~result))))
 
 (defn step-parts [bindings]
   "(variables with their first values, pairs of variable and step form) of `do`."
@@ -202,6 +205,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv next (gensym "NEXT") done (gensym "DONE") #(test #* result) end)
   `(block nil
      (~bind ~initial
+       (declare (ignorable ~@(lfor item initial item.car)))
        ~@declarations
        (tagbody
          ~next
@@ -419,13 +423,14 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv options (dict (zip (lfor option (cut options 0 None 2) option.name) (cut options 1 None 2))))
   (setv index (.get options "INDEX"))
   `(let [[~variable (make-string-input-stream ~string ~(.get options "START" 0) ~(.get options "END"))]]
+     (declare (ignorable ~variable))
      ~(if (is index None)
           `(progn ~@body)
           `(multiple-value-prog1 (progn ~@body) (setf ~index (%stream-position ~variable))))))
 
 (defoperator with-open-file [spec #* body]
   (setv #(variable path #* options) spec)
-  `(%with-open-file (lambda [~variable] ~@body) ~path ~@options))
+  `(%with-open-file (lambda [~variable] (declare (ignorable ~variable)) ~@body) ~path ~@options))
 
 (defoperator with-open-stream [spec #* body]
   (setv #(variable form) spec)
@@ -446,6 +451,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv variable (if (and (isinstance stream LispSymbol)) stream (gensym "STREAM")))
   `(%pprint-logical-block
      (lambda [~variable]
+       (declare (ignorable ~variable))
        (macrolet [[pprint-pop [] (quote (%pprint-pop ~variable))]
                   [pprint-exit-if-list-exhausted [] (quote (if (%pprint-list-exhausted ~variable) (return nil) nil))]]
          (block nil ~@body)))
@@ -466,7 +472,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%step (quote ~form) (lambda [] ~form)))
 
 (defoperator with-compilation-unit [options #* body]
-  `(progn ~@body))
+  `(%with-compilation-unit (lambda [] ~@body) ~@options))
 
 (defoperator with-hash-table-iterator [spec #* body]
   (setv #(name table) spec)

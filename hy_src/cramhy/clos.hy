@@ -126,6 +126,14 @@
     (.append plain (sym "&ALLOW-OTHER-KEYS")))
   #((list-from plain) `(list ~@specializers)))
 
+(defn required-names [plain]
+  "The variables of a lambda list up to the first of its keywords."
+  (setv names [])
+  (for [item (elements plain)]
+    (when (and (isinstance item LispSymbol) (.startswith item.name "&")) (break))
+    (.append names item))
+  names)
+
 (defn method-function [name lambda-list body]
   "(function form, whether it takes the next methods)"
   (setv block (if (listp name) name.cdr.car name) #(plain _) (plain-parameters lambda-list))
@@ -133,6 +141,7 @@
   (while (and (> (len forms) 1) (isinstance (get forms 0) str)) (.pop forms 0))
   (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) (sym "DECLARE")))
     (.append declarations (.pop forms 0)))
+  (.append declarations `(declare (ignorable ~@(required-names plain))))  ; their classes choose the method, which is a use
   (if (mentions-next (list-from body))
       (do
         (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))

@@ -88,9 +88,9 @@ UNDEFINED-FUNCTION:
     ("(list 1\n  turtle-pose)", """\
 UNBOUND-VARIABLE:
   The variable TURTLE-POSE is unbound.
-  at {file}:1:1
-    (list 1
-    ^
+  at {file}:2:3
+      turtle-pose)
+      ^
 """),
     ("(labels ((f (x) x))\n  (list (f 1 2)))", """\
 SB-INT:SIMPLE-PROGRAM-ERROR:

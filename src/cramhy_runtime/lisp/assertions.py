@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from . import conditions
 from .conditions import SimpleError, error, types
-from .control import SPECIAL_OPERATORS, constantp
+from .forms import SPECIAL_OPERATORS, constantp
 from .data import UNSUPPLIED, Cons, Symbol, lisp_list, list_from, truth
 from .lambda_lists import gensym, support
 from .late import late

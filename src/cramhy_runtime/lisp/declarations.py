@@ -6,15 +6,19 @@ checked for its shape all the same, so that a slip of the pen is found.
 
 from __future__ import annotations
 
-from .conditions import program_error, type_error
+from .compilation_unit import muffle
+from .conditions import program_error, type_error, warn
 from .data import Cons, MultipleValues, Symbol, list_from
+from .declaration_names import EXTENSIONS, is_declared, is_extension
 from .definitions import data, proclaim_special
 from .lambda_lists import KEYWORDS
 from .packages import sym
+from .types import is_known_type
 
 LISP_NAMES = "proclaim"
 NAMING = {sym(name) for name in ("SPECIAL", "TYPE", "FTYPE", "DECLARATION")}
 """The proclamations of which ``declaim`` gives the names that they are about."""
+PROCLAIMED = {sym(name) for name in ("INLINE", "NOTINLINE", "OPTIMIZE")}
 
 
 def proclaim(specifier):
@@ -45,6 +49,10 @@ def _proclaim(specifier):
     elif kind is sym("DECLARATION"):
         for symbol in names:
             data(symbol)["declaration"] = True
+    elif is_extension(kind, "MUFFLE-CONDITIONS", "UNMUFFLE-CONDITIONS"):
+        muffle(names, kind.name == "MUFFLE-CONDITIONS")
+    elif not (kind in PROCLAIMED or is_extension(kind, *EXTENSIONS) or is_declared(kind) or is_known_type(kind)):
+        warn("unrecognized proclamation ~S", specifier)
     return list_from(names) if kind in NAMING else None
 
 

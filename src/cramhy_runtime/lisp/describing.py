@@ -16,7 +16,7 @@ from .builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from .characters import char_name
 from .class_objects import direct_slots, effective_slots
 from .classes import class_name, class_of, metaclass_of, symbol_class
-from .control import SPECIAL_OPERATORS
+from .forms import SPECIAL_OPERATORS
 from .data import NO_VALUES, UNBOUND, Character, Cons, Keyword, LispString, Symbol, UndefinedFunction, list_from
 from .documentation import documentation
 from .dynamic import binding

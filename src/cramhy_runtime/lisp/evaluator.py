@@ -7,10 +7,12 @@ loader compiles whole files with `Unit`, whose code can be kept. Top-level ``pro
 
 from __future__ import annotations
 
+from .compilation_unit import compilation_unit, current
 from .compiler.environment import EXECUTE, SITUATIONS
 from .compiler.support import NAMESPACE
 from .conditions import CompileError, Condition, error
 from .data import Cons, Keyword, Symbol, lisp_list, list_from, one
+from .form_places import FormPlaces
 from .lambda_lists import destructure, gensym
 from .late import late
 from .packages import COMMON_LISP, sym
@@ -41,17 +43,18 @@ class Unit:
     def __init__(self, filename="<form>", positions=None, namespace=None, stored=False):
         backend = compiler()
         self.filename = filename
-        self.positions = positions if positions is not None else {}
+        self.positions = positions if positions is not None else FormPlaces()
         self.namespace = namespace if namespace is not None else new_namespace(filename)
         self.stored = stored
         self.situations = SITUATIONS if stored else EXECUTE
         self.constants = backend.Constants()
         self.names = {}
+        self.alone, self.source = False, None
 
     def statements(self, form):
         """The statements (core forms) that one top-level form is compiled to. They leave its values in the global ``Lresult``."""
         backend = compiler()
-        analyzer = backend.Analyzer(self.filename, self.positions)
+        analyzer = backend.Analyzer(self.filename, self.positions, at_once=self.situations is EXECUTE)
         analyzer._at = self.positions.get(id(form))
         try:
             node = analyzer.toplevel(form, self.names)
@@ -84,25 +87,32 @@ class Unit:
     def evaluate(self, form):
         """Compile and run one form; top-level forms with forms inside go one by one."""
         result = None
-        for part in self.toplevel_parts(form):
-            result = self.run(self.compile(part))
+        with compilation_unit("form") as notes:
+            for part in self.toplevel_parts(form):
+                code = self.compile(part)
+                if self.alone:  # nothing that follows in the form can define what this part uses
+                    notes.finish()
+                result = self.run(code)
         return result
 
-    def toplevel_parts(self, form):
-        """The forms that ``form`` consists of as a top-level form, each after the one before it has been dealt with."""
+    def toplevel_parts(self, form, alone=True):
+        """The forms that ``form`` consists of as a top-level form, each after the one before it has been dealt with.
+
+        While a part is being dealt with, ``self.alone`` says whether it is the only one.
+        """
         if isinstance(form, Cons) and isinstance(form.car, Symbol):
             head = form.car
             if head is PROGN:
                 if form.cdr is None:
                     yield None
                 for part in form.cdr or ():
-                    yield from self.toplevel_parts(part)
+                    yield from self.toplevel_parts(part, False)
                 return
             if head is EVAL_WHEN and isinstance(form.cdr, Cons) and isinstance(form.cdr.car, Cons):
                 if not SITUATIONS.issuperset(form.cdr.car):
                     yield form  # the compiler says what is wrong with it
                 elif not self.situations.isdisjoint(form.cdr.car):
-                    yield from self.toplevel_parts(Cons(PROGN, form.cdr.cdr))
+                    yield from self.toplevel_parts(Cons(PROGN, form.cdr.cdr), False)
                 return
             if head in (MACROLET, SYMBOL_MACROLET, LOCALLY) and isinstance(form.cdr, Cons):
                 yield from self._scoped_parts(form)
@@ -110,8 +120,9 @@ class Unit:
             if not compiler().is_special(head):
                 expansion, expanded = self.expand(form)
                 if expanded:
-                    yield from self.toplevel_parts(expansion)
+                    yield from self.toplevel_parts(expansion, alone)
                     return
+        self.alone = alone
         yield form
 
     def _scoped_parts(self, form):
@@ -122,29 +133,31 @@ class Unit:
         while forms and isinstance(forms[0], Cons) and forms[0].car is DECLARE:
             around.append(forms.pop(0))
         if len(forms) < 2 and not (forms and isinstance(forms[0], Cons) and forms[0].car is PROGN):
+            self.alone = False
             yield form
             return
         for part in forms:
             inner = list(part.cdr or ()) if isinstance(part, Cons) and part.car is PROGN else [part]
             for item in inner:
                 scoped = list_from([*around, item])
-                if id(form) in self.positions:
-                    self.positions.setdefault("kept", []).append(scoped)
-                    self.positions.setdefault(id(scoped), self.positions[id(form)])
+                self.positions.inherit(scoped, form)
+                self.alone = False
                 yield scoped
 
     def expand(self, form):
         from .macros import macroexpand_1
 
+        unit = current()
+        if unit is not None and id(form) in self.positions:
+            unit.here = (self.filename, *self.positions[id(form)][:2])
         try:
             expansion, expanded = macroexpand_1(form)
         except Condition as problem:
             if getattr(problem, "position", None) is None and id(form) in self.positions:
                 problem.position = (self.filename, *self.positions[id(form)][:2])
             raise
-        if expanded and isinstance(expansion, Cons) and id(form) in self.positions:
-            self.positions.setdefault("kept", []).append(expansion)
-            self.positions.setdefault(id(expansion), self.positions[id(form)])
+        if expanded:
+            self.positions.inherit(expansion, form)
         return expansion, expanded
 
 
@@ -184,7 +197,7 @@ def evaluate(form, filename=None, positions=None):
     if filename is None:
         return unit.evaluate(form)
     outer = unit.filename, unit.positions
-    unit.filename, unit.positions = filename, positions if positions is not None else {}
+    unit.filename, unit.positions = filename, positions if positions is not None else FormPlaces()
     try:
         return unit.evaluate(form)
     finally:
@@ -205,15 +218,20 @@ def _atom(form):
 QUOTE = sym("QUOTE")
 
 
-def compile_lambda(form, environment=None):
-    """The function of a lambda expression; ``environment`` gives the local macros that it may use."""
+def compile_lambda(form, environment=None, text=None):
+    """The function of a lambda expression; ``environment`` gives the local macros that it may use.
+
+    text: what knows the file name and the positions of the text that it stands in: an analyzer, or a `Unit`.
+    """
     unit = session_unit()
     backend = compiler()
-    analyzer = backend.Analyzer(unit.filename, unit.positions)
+    text = text or unit
+    analyzer = backend.Analyzer(text.filename, text.positions)
+    analyzer.source, analyzer._at = text.source, text.positions.get(id(text.source))
     node = analyzer.toplevel(form) if environment is None else backend.toplevel_with_macros(analyzer, form, environment)
     statements = backend.Generator(unit.constants).toplevel(node)
     unit.namespace.update(unit.constants.take_objects())
-    return one(unit.run(compile(backend.python_tree(statements, unit.filename), unit.filename, "exec")))
+    return one(unit.run(compile(backend.python_tree(statements, text.filename), text.filename, "exec")))
 
 
 def macro_lambda(name, lambda_list, body, definer="DEFMACRO", default=None):
@@ -238,8 +256,8 @@ def macro_lambda(name, lambda_list, body, definer="DEFMACRO", default=None):
     return lisp_list(sym("LAMBDA"), lisp_list(form, environment), let), documentation
 
 
-def macro_expander(name, lambda_list, body, environment=None):
-    """The expander function of a local macro."""
+def macro_expander(name, lambda_list, body, environment=None, text=None):
+    """The expander function of a local macro. ``text``: see `compile_lambda`."""
     function, _ = macro_lambda(name, lambda_list, body, "MACROLET")
-    compiled = compile_lambda(function, environment)
+    compiled = compile_lambda(function, environment, text)
     return lambda form, env: one(compiled(form, env))

@@ -22,7 +22,9 @@ def define_faces():
                                      package_functions: package_functions.EXTENSION_NAMES,
                                      pathnames: pathnames.EXTENSION_NAMES, files: files.EXTENSION_NAMES,
                                      environment: environment.EXTENSION_NAMES},
-                variables={**INFINITIES, **environment.EXTENSION_VARIABLES})
+                variables={**INFINITIES, **environment.EXTENSION_VARIABLES},
+                export="""muffle-conditions unmuffle-conditions disable-package-locks enable-package-locks
+                maybe-inline truly-dynamic-extent global always-bound freeze-type deprecated inhibit-warnings""")
     for name in INFINITIES:
         sym(f"SB-EXT::{name.upper()}").constant = True
     define_face("SB-MOP", functions={protocol: protocol.MOP_NAMES})

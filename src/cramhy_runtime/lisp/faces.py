@@ -93,6 +93,7 @@ def define_face(name, nicknames=(), use=(), shadow=(), functions=None, variables
     package = find_package(name)
     if package is None:
         package = register(Package(name, nicknames))
+    package.built_in = True
     for symbol_name in shadow.split() if isinstance(shadow, str) else shadow:
         package.shadow(symbol_name.upper())
     for other, names in (imports or {}).items():

@@ -19,6 +19,7 @@ import os
 import sys
 from pathlib import Path
 
+from .compilation_unit import compilation_unit
 from .conditions import CompileError, Condition, FileError, error
 from .data import Cons
 from .dynamic import binding
@@ -88,7 +89,8 @@ def load_file(path, chain="", finished=None):
             for code in codes:
                 exec(code, namespace)
         else:
-            codes = load_text(text, str(path), stored=True)
+            with compilation_unit("file"):
+                codes = load_text(text, str(path), stored=True)
             if codes is not None:
                 _keep(path, fingerprint, codes)
         if finished is not None:

@@ -32,7 +32,7 @@ from .loop_support import END_LOOP, NEXT_LOOP
 from .loop_tokens import Tokens
 from .packages import is_symbol, sym, symbol_name
 
-BLOCK, TAGBODY, GO, IF, LET, LET_STAR, PROGN = map(sym, "BLOCK TAGBODY GO IF LET LET* PROGN".split())
+BLOCK, TAGBODY, GO, IF, LET, LET_STAR, PROGN, DECLARE, IGNORABLE = map(sym, "BLOCK TAGBODY GO IF LET LET* PROGN DECLARE IGNORABLE".split())
 RETURN_FROM, MACROLET, QUOTE, LOOP_FINISH, NOT = map(sym, "RETURN-FROM MACROLET QUOTE LOOP-FINISH NOT".split())
 
 
@@ -134,7 +134,8 @@ class Loop:
         result = loop_accumulation.result(self)
         inner = [tagbody] if result is None else [tagbody, result]
         for bindings in self._nested_bindings():
-            inner = [Cons(bindings[0], Cons(bindings[1], list_from(inner)))]
+            unread = lisp_list(DECLARE, Cons(IGNORABLE, list_from([binding.car for binding in bindings[1] or ()])))
+            inner = [Cons(bindings[0], Cons(bindings[1], Cons(unread, list_from(inner))))]
         if _mentions(self.items, LOOP_FINISH):
             finish = lisp_list(LOOP_FINISH, None, lisp_list(QUOTE, lisp_list(GO, END_LOOP)))
             inner = [Cons(MACROLET, Cons(lisp_list(finish), list_from(inner)))]

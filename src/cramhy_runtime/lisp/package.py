@@ -15,7 +15,7 @@ MODULES = tuple("""equality functions lists list_search sequences sequence_chang
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
     class_definition slots protocol generic structures streams stream_functions file_streams pathnames wild_pathnames
     logical_pathnames files file_stream_functions universal_time environment printer pretty pprint_dispatch
-    format reader tokens readtables reader_functions symbols package_functions declarations control documentation describing
+    format reader tokens readtables reader_functions symbols package_functions declarations control forms documentation describing
     inspecting apropos disassembling tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
@@ -29,8 +29,9 @@ HELPERS = {
         make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
     "file_streams": "with-open-file with-open-stream",
     "assertions": "assertion-failed assertion-prompt",
-    "control": "define-compiler-macro",
+    "forms": "define-compiler-macro",
     "declarations": "declaim",
+    "compilation_unit": "with-compilation-unit",
     "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
     "loop_support": "car-of-cons cdr-of-cons collect collect-append collect-nconc loop-vector table-entries loop-symbols",
     "places_in_source": "source-position",

@@ -13,7 +13,9 @@ from .late import late
 
 
 class Package:
-    """A package. ``internal`` and ``external`` map names to the symbols present in it."""
+    """A package. ``internal`` and ``external`` map names to the symbols present in it; ``built_in``: it is part of cramhy."""
+
+    built_in = False
 
     def __init__(self, name, nicknames=(), use=(), documentation=None):
         self.name = name

@@ -13,8 +13,10 @@ from .classes import StructureClass, register_class, registered_class
 from .conditions import SimpleError, error, program_error, type_error
 from .data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
 from .faces import python_name
+from .function_shapes import shape_of
 from .generic import add_method
 from .late import late
+from .methods import Shape
 from .package_errors import check_symbol
 from .packages import Package, intern, is_symbol, keyword, string_designator, sym, symbol_name
 
@@ -343,7 +345,12 @@ def _define_constructor(structure, constructor):
     if constructor is None:
         return
     if not isinstance(constructor, (Cons, list, tuple)):
-        _function(constructor, lambda *initargs, **keywords: structure.construct(*initargs, **keywords))
+        def construct(*initargs, **keywords):
+            return structure.construct(*initargs, **keywords)
+
+        construct.shape = Shape()
+        construct.shape.has_keys, construct.shape.keys = True, [keyword(symbol_name(slot.name)) for slot in structure.slots]
+        _function(constructor, construct)
         return
     symbol, variables, function = python_list(constructor)
     indexes = {symbol_name(variable): index for index, variable in enumerate(python_list(variables))}
@@ -354,6 +361,7 @@ def _define_constructor(structure, constructor):
         return structure.make([slot.value_or_initform(values[index] if index is not None else UNSUPPLIED)
                                for slot, index in zip(structure.slots, order)])
 
+    construct.shape = shape_of(function)
     _function(symbol, construct)
 
 

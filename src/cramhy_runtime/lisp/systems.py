@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from . import loader
+from .compilation_unit import compilation_unit
 from .conditions import CompileError, SimpleError, error, style_warn
 from .data import Cons, Symbol, list_from
 from .dynamic import binding
@@ -253,11 +254,16 @@ def find_system(name, required_by=None):
     return system
 
 
-def load_system(name, force=False, required_by=None):
+def load_system(name, force=False):
     """Load the system ``name`` and what it depends on, each file that has changed or was not loaded yet.
 
     Returns the fingerprint of all that was loaded. A circle of dependencies is an error.
     """
+    with compilation_unit("file"):
+        return _load_system(name, force)
+
+
+def _load_system(name, force=False, required_by=None):
     name = string_designator(name).lower()
     if name in built_in:
         return name
@@ -266,7 +272,7 @@ def load_system(name, force=False, required_by=None):
     _loading.append(name)
     try:
         system = find_system(name, required_by)
-        chain = "".join(load_system(other, required_by=name) for other in system.depends_on)
+        chain = "".join(_load_system(other, required_by=name) for other in system.depends_on)
         for component, path in files_of(system):
             chain = _load_component(system, component, path, chain, force)
         return chain

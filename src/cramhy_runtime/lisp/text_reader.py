@@ -14,6 +14,7 @@ from __future__ import annotations
 from . import reader_errors, tokens
 from .backquote import QUASIQUOTE, Comma
 from .data import NO_VALUES, UNBOUND, Character, Cons, MultipleValues, Symbol, one
+from .form_places import FormPlaces
 from .packages import COMMON_LISP_USER, KEYWORD, find_package, sym
 from .reader_errors import LineIndex, fail
 from .readtables import READTABLE, UPCASE, DispatchTable, call
@@ -35,8 +36,9 @@ _DOT = object()  # the tail of a list frame just after the dot
 class Reader(InputStream):
     """Reads ``text``, of the file ``filename``, whose first character is at ``line`` and ``column`` (counted from 1).
 
-    ``positions`` maps ``id(form)`` of every list read, and of the last symbol read at top level, to (line, column, end line, end
-    column), the end being that of its last character. The forms are kept alive, so an id stays valid as long as the reader.
+    ``positions``, a `FormPlaces`, maps ``id(form)`` of every list read, and of the last symbol read at top level, to (line, column,
+    end line, end column), the end being that of its last character. The forms are kept alive, so an id stays valid as long as the
+    reader.
 
     strict: an unmatched ``)`` is an error, as for programs that call ``read``; otherwise it is warned about and ignored.
     A reader is an input stream of Lisp, because reader macro functions get it as one.
@@ -49,7 +51,7 @@ class Reader(InputStream):
         self.label = f"file {filename}"
         self.filename = filename
         self.offset = 0
-        self.positions = {}
+        self.positions = FormPlaces(self.place)
         self.strict = strict
         self.quiet = False
         self.backquotes = 0
@@ -184,6 +186,7 @@ class Reader(InputStream):
             text, table = self.text, READTABLE.value
             match = table.scanner.match(text, self.offset)
             start, end = match.span(1)
+            at = start
             if match.end(2) > end:
                 found = self._escaped_token(start, table)
             elif end > start:
@@ -206,8 +209,9 @@ class Reader(InputStream):
                 char = text[end]
                 self.offset = end + 1
                 handler = table.macros[char]
+                at = end
                 if handler is read_list:
-                    frames.append([[], end, _OPEN, "("])
+                    frames.append([[], end, _OPEN, "(", []])
                     continue
                 if handler is read_close:
                     if len(frames) > base and frames[-1][0] is not None:
@@ -234,6 +238,8 @@ class Reader(InputStream):
                 frame = frames[-1]
                 if frame[0] is not None:
                     if frame[2] is _OPEN:
+                        if found.__class__ is Symbol:
+                            frame[4].append((len(frame[0]), at))
                         frame[0].append(found)
                     elif frame[2] is _DOT:
                         frame[2] = found
@@ -242,7 +248,7 @@ class Reader(InputStream):
                                     hint="After the dot and one object the list must end.")
                     break
                 frames.pop()
-                found = self._prefixed(frame, found)
+                found = self._prefixed(frame, found, at)
 
     # --------------------------------------------------------------------------------------------------- lists and prefixes
 
@@ -257,7 +263,7 @@ class Reader(InputStream):
         frame[2] = _DOT
 
     def _closed_list(self, frame, close):
-        items, start, tail, _ = frame
+        items, start, tail, _, symbols = frame
         if tail is _OPEN:
             tail = None
         elif tail is _DOT:
@@ -267,8 +273,12 @@ class Reader(InputStream):
                 tail = Cons(item, tail)
             return fail(self, start, "~S contains a splicing comma after a dot", tail,
                         hint="After a dot write , instead of ,@.")
+        index, offsets = len(items), self.positions.symbols
         for item in reversed(items):
             tail = Cons(item, tail)
+            index -= 1
+            if symbols and symbols[-1][0] == index:
+                offsets[id(tail)] = symbols.pop()[1]
         if SUPPRESS.value is not None:
             return None
         if tail is not None:
@@ -295,11 +305,14 @@ class Reader(InputStream):
             self.backquotes -= 1
         return [None, start, symbol, opener]
 
-    def _prefixed(self, frame, found):
+    def _prefixed(self, frame, found, at):
         _, start, symbol, opener = frame
         if symbol is Comma:
             self.backquotes += 1
-            return Comma(opener, found)
+            comma = Comma(opener, found)
+            if found.__class__ is Symbol:
+                self.positions.symbols[id(comma)] = at
+            return comma
         if symbol is QUASIQUOTE:
             self.backquotes -= 1
             if isinstance(found, Comma) and found.splicing:
@@ -482,7 +495,7 @@ def _case_function(table):
 def read_list(stream, character):
     """``(``: a list."""
     reader = as_reader(stream)
-    return reader.next_object([[], reader.offset - 1, _OPEN, "("])
+    return reader.next_object([[], reader.offset - 1, _OPEN, "(", []])
 
 
 def read_close(stream, character):

@@ -13,9 +13,9 @@ import sys
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions, streams
+from cramhy_runtime.lisp.advice import explanation
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
-from cramhy_runtime.lisp.places_in_source import describe, excerpt
 
 from . import commands
 from . import session
@@ -28,23 +28,6 @@ def condition_type(condition):
 
     name = class_name(type(condition))
     return symbol_name(name) if symbol_package(name) in (COMMON_LISP, None) else printed(name)
-
-
-def explanation(condition):
-    """What, where, why and what to try: the lines that describe ``condition``."""
-    from .advice import hint_for, report_text
-
-    lines = [f"  {line}" for line in report_text(condition).splitlines() or [""]]
-    position = getattr(condition, "position", None)
-    if position:
-        lines.append(f"  at {describe(position)}")
-    shown = getattr(condition, "excerpt", None) or excerpt(position)
-    if shown.strip(" ^\n"):
-        lines += [f"  {line}" for line in shown.splitlines()]
-    hint = hint_for(condition)
-    if hint:
-        lines.append(f"  {hint}")
-    return "\n".join(lines)
 
 
 def report(condition, file=None):

@@ -1,7 +1,8 @@
 """``cramhy eval``: forms and answers as JSON, one object a line.
 
 In: ``{"form": "..."}``. Out: ``{"output": printed text, "values": [printed values], "error": null}``, or for a form that fails
-``"error": {"type", "message", "restarts"}`` with ``"where"`` and ``"hint"`` when they are known. A line that is no such object
+``"error": {"type", "message", "restarts"}`` with ``"where"`` and ``"hint"`` when they are known. What the compiler warned of is a
+list ``"warnings"`` of such objects, when there is something. A line that is no such object
 gets an error answer, and the next line is read. For the forms standard input is empty: its lines are requests.
 """
 
@@ -10,12 +11,12 @@ from __future__ import annotations
 import json
 import sys
 
-from cramhy_runtime.lisp import conditions, streams
+from cramhy_runtime.lisp import compilation_unit, conditions, streams
+from cramhy_runtime.lisp.advice import hint_for, report_text
 from cramhy_runtime.lisp.classes import class_name
 from cramhy_runtime.lisp.packages import COMMON_LISP, symbol_name, symbol_package
 from cramhy_runtime.lisp.places_in_source import describe
 
-from .advice import hint_for, report_text
 from .session import Interruption, condition_of, signalled_here
 
 
@@ -55,6 +56,18 @@ def answer(session, line):
 
 def evaluate(session, text):
     """Evaluate the forms of ``text``; output of all tasks is collected."""
+    warnings = []
+    reporter = compilation_unit.report_to(warnings.extend)
+    try:
+        found = _evaluate(session, text)
+    finally:
+        compilation_unit.report_to(reporter)
+    if warnings:
+        found["warnings"] = [_warning(warning) for warning in warnings]
+    return found
+
+
+def _evaluate(session, text):
     output = streams.StringOutputStream()
     saved = streams.STANDARD_OUTPUT.value, streams.ERROR_OUTPUT.value, streams.TRACE_OUTPUT.value
     streams.STANDARD_OUTPUT.value = streams.ERROR_OUTPUT.value = streams.TRACE_OUTPUT.value = output
@@ -76,13 +89,22 @@ def evaluate(session, text):
     return {"output": output.take(), "values": printed, "error": None}
 
 
-def _condition(output, condition):
+def _type(condition):
     name = class_name(type(condition))
     package = symbol_package(name)
-    prefix = "" if package is COMMON_LISP or package is None else f"{package.name}::"
+    return ("" if package is COMMON_LISP or package is None else f"{package.name}::") + symbol_name(name)
+
+
+def _condition(output, condition):
     restarts = [symbol_name(restart.name) for restart in condition.restarts or ()]
-    return _failure(output, prefix + symbol_name(name), report_text(condition), restarts or ["ABORT"], describe(condition.position)
+    return _failure(output, _type(condition), report_text(condition), restarts or ["ABORT"], describe(condition.position)
                     if getattr(condition, "position", None) else None, hint_for(condition))
+
+
+def _warning(condition):
+    shown = {"type": _type(condition), "message": report_text(condition), "where": describe(condition.position),
+             "hint": hint_for(condition)}
+    return {key: value for key, value in shown.items() if value}
 
 
 def _failure(output, kind, message, restarts=("ABORT",), where=None, hint=None):

@@ -10,13 +10,16 @@ from __future__ import annotations
 from ..conditions import CompileError, Condition, SimpleProgramError, error
 from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list
 from ..faces import python_name
+from ..form_places import FormPlaces
 from ..lambda_lists import parse
 from ..macros import ensure_loaded, macroexpand_1
+from ..methods import Shape
 from ..packages import is_symbol, sym
 from . import nodes
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable
 from .nodes import (Call, CallLocal, CallSetf, CallValue, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,
                     Parameters, Progn, SetGlobal, SetLocal)
+from .scrutiny import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
 """Symbol → method (analyzer, form, env) → node; filled by ``special_forms.py``."""
@@ -26,13 +29,15 @@ LAMBDA = sym("LAMBDA")
 SETF = sym("SETF")
 
 
-class Analyzer:
-    """Turns the forms of one text into nodes. ``positions`` maps ``id`` of a cons to its place in the text."""
+class Analyzer(Scrutiny):
+    """Turns the forms of one text into nodes. ``positions`` are its `FormPlaces`; ``at_once``: the code runs as soon as it is made."""
 
-    def __init__(self, filename="<form>", positions=None):
+    def __init__(self, filename="<form>", positions=None, at_once=False):
         self.filename = filename
-        self.positions = positions if positions is not None else {}
+        self.positions = positions if positions is not None else FormPlaces()
+        self.at_once = at_once
         self._at = None
+        self.begin_scrutiny()
 
     # ------------------------------------------------------------------------------------------------------------ errors
 
@@ -53,6 +58,7 @@ class Analyzer:
             if position is None:
                 return self._compound(form, env)
             outer, self._at = self._at, position
+            around, self.source = self.source, self.positions.source(form)
             try:
                 node = self._compound(form, env)
                 if node.position is None:
@@ -63,7 +69,7 @@ class Analyzer:
                     problem.position = self.place()
                 raise
             finally:
-                self._at = outer
+                self._at, self.source = outer, around
         if isinstance(form, Symbol) and not isinstance(form, Keyword):
             return self._variable(form, env)
         if form.__class__ is bool:
@@ -73,13 +79,16 @@ class Analyzer:
     def _variable(self, symbol, env):
         found = env.variable(symbol)
         if isinstance(found, Variable):
+            self.read_variable(found)
             return LocalVariable(found.used_from(env.scope))
         if isinstance(found, SymbolMacro):
             return self.form(found.expansion, env)
         if found is None and symbol.compiler_data is not None and "symbol-macro" in symbol.compiler_data:
             return self.form(symbol.compiler_data["symbol-macro"], env)
+        if found is None:
+            self.free_variable(symbol, env)
         node = GlobalVariable(symbol)
-        node.position = self._at
+        node.position = self.symbol_position(symbol) or self._at
         return node
 
     def _compound(self, form, env):
@@ -94,6 +103,7 @@ class Analyzer:
                 return self.fail("~S stands where a form must stand: declarations belong at the beginning of a body, before all forms.",
                                  form)
             if isinstance(local, LocalFunction):
+                self.local_call(head, local.shape, tuple_of(form))
                 return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
             expansion, expanded = self.expand(form, env)
             if expanded:
@@ -105,20 +115,17 @@ class Analyzer:
 
     def expand(self, form, env):
         """(expansion, whether expanded); the expansion inherits the place of ``form``."""
+        if self.unit is not None:
+            self.unit.here = self.place()
         try:
             expansion, expanded = macroexpand_1(form, env)
         except Condition as problem:
             if getattr(problem, "position", None) is None:
                 problem.position = self.place()
             raise
-        if expanded and isinstance(expansion, Cons) and id(expansion) not in self.positions and self._at is not None:
-            self._keep(expansion)
-            self.positions[id(expansion)] = self._at
+        if expanded:
+            self.positions.inherit(expansion, form)
         return expansion, expanded
-
-    def _keep(self, form):
-        # ids are only unique among living objects: expansions live as long as the positions do
-        self.positions.setdefault("kept", []).append(form)
 
     def arguments(self, form, env):
         nodes, cell = [], form.cdr
@@ -130,6 +137,10 @@ class Analyzer:
         return nodes
 
     def _call(self, form, env):
+        if form.car.package is CRAMHY:
+            self.mention_definition(form)
+        else:
+            self.mention(form.car, env, form, tuple_of(form))
         node = Call(form.car, self.arguments(form, env))
         node.position = self._at
         traits = BUILTIN_TRAITS.get(form.car)
@@ -196,10 +207,13 @@ class Analyzer:
     def lambda_(self, lambda_list, body, env, name=None, block=None):
         """A function with ``lambda_list`` and the forms ``body``; ``block`` names an implicit block around them."""
         parsed = parse(lambda_list)
+        if name is not None and env.function(_name_key(name)) is None:
+            self.defines(name, Shape(lambda_list))
         scope = FunctionScope(env.scope)
         inner = Env(env, scope)
         specifiers, documentation, forms = self.declarations(body, env, documentation=True)
         specials = self.specials(specifiers)
+        own = []
         parameters = Parameters(has_keys=parsed.has_keys, allow_other_keys=parsed.allow_other_keys)
         dynamic = []
 
@@ -213,6 +227,8 @@ class Analyzer:
             variable = inner.variables[symbol] = Variable(symbol, scope)
             if special:
                 dynamic.append((symbol, variable))
+            else:
+                own.append(variable)
             return variable
 
         parameters.required = [parameter(symbol) for symbol in parsed.required]
@@ -229,6 +245,8 @@ class Analyzer:
         bindings = [(symbol, LocalVariable(variable)) for symbol, variable in dynamic]
         for symbol in [*(symbol for symbol, _ in dynamic), *specials]:
             inner.variables[symbol] = SpecialVariable(symbol)
+        muffled = self.muffled
+        self.declare(specifiers, own, inner)
         if parsed.aux:
             aux = lisp_list(*(lisp_list(symbol, form) for symbol, form in parsed.aux))
             declared = [Cons(DECLARE, lisp_list(*specifiers))] if specifiers else []
@@ -237,6 +255,8 @@ class Analyzer:
             body_node = SPECIAL_FORMS[sym("LET*")](self, lisp_list(sym("LET*"), aux, *declared, *forms), inner)
         else:
             body_node = self._blocked(block, forms, inner)
+        self.unused(own)
+        self.muffled = muffled
         if bindings:
             body_node = Let(bindings, body_node)
         node = Lambda(name, parameters, body_node, scope, documentation)
@@ -255,6 +275,7 @@ class Analyzer:
             local = env.function(("setf", name.cdr.car))
             if isinstance(local, LocalFunction):
                 return LocalVariable(local.variable.used_from(env.scope))
+            self.mention(("setf", name.cdr.car), env)
             return FunctionReference(name.cdr.car, setf=True)
         if not is_symbol(name):
             return self.fail("~S is no name of a function.", name)
@@ -264,6 +285,8 @@ class Analyzer:
         if local is not None or (isinstance(name, Symbol) and (name.macro is not None or name in SPECIAL_FORMS)
                                  and isinstance(name.function, UndefinedFunction)):
             return self.fail("~S names a macro, not a function, so #' cannot refer to it.", name)
+        if isinstance(name, Symbol):
+            self.mention(name, env)
         return FunctionReference(name)
 
     def set_variable(self, symbol, node, env):
@@ -272,7 +295,10 @@ class Analyzer:
             return self.fail("~S cannot be assigned.", symbol)
         found = env.variable(symbol)
         if isinstance(found, Variable):
+            self.set_ignored(found)
             return SetLocal(found.used_from(env.scope, assign=True), node)
+        if found is None:
+            self.free_variable(symbol, env, assigned=True)
         return SetGlobal(symbol, node)
 
     def toplevel(self, form, names=None):
@@ -281,6 +307,10 @@ class Analyzer:
         scope = FunctionScope(names=names)
         env = Env(None, scope)
         return Lambda(None, Parameters(), self.form(form, env), scope)
+
+
+def _name_key(name):
+    return ("setf", name.cdr.car) if isinstance(name, Cons) else name
 
 
 BUILTIN_TRAITS: dict = {}

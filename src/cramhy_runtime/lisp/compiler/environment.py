@@ -62,7 +62,7 @@ class Variable:
         self.in_loop = owner.loop_depth > 0
         self.captured = False
         self.assigned = False
-        self.ignorable = False
+        self.used = self.ignored = self.ignorable = False
         self.reads = self.writes = 0  # these and the next are found by ``facts.py``
         self.values = []
         self.kind = None
@@ -76,6 +76,7 @@ class Variable:
         return self.fresh and self.assigned
 
     def used_from(self, scope, assign=False):
+        self.used = True
         if assign:
             self.assigned = True
         if scope is not self.owner:
@@ -103,10 +104,11 @@ class SymbolMacro:
 
 
 class LocalFunction:
-    """A function of ``flet`` or ``labels``: the value of a variable."""
+    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes."""
 
-    def __init__(self, variable):
+    def __init__(self, variable, shape=None):
         self.variable = variable
+        self.shape = shape
 
 
 class LocalMacro:

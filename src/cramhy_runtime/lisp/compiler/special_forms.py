@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..conditions import Condition
 from ..data import Cons, Symbol, lisp_list, list_from, truth
 from ..lambda_lists import gensym
+from ..methods import Shape
 from ..late import late
 from ..packages import is_symbol, sym
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
@@ -165,7 +166,7 @@ def _let(analyzer, form, env):
     inner = env.child()
     bindings = [(analyzer.bind(symbol, inner, specials), value) for (symbol, _), value in zip(pairs, values)]
     _free_specials(specials, inner, {symbol for symbol, _ in pairs})
-    body = analyzer.body(forms, inner)
+    body = analyzer.scope([variable for variable, _ in bindings], specifiers, forms, inner)
     return _bound(body, Let(bindings, body)) if bindings else body
 
 
@@ -182,7 +183,7 @@ def _let_star(analyzer, form, env):
         bindings.append((analyzer.bind(symbol, inner, specials), node))
     inner = inner.child()
     _free_specials(specials, inner, {binding[0] if isinstance(binding[0], Symbol) else binding[0].symbol for binding in bindings})
-    node = analyzer.body(forms, inner)
+    node = analyzer.scope([variable for variable, _ in bindings], specifiers, forms, inner)
     for binding in reversed(bindings):
         node = _bound(node, Let([binding], node))
     return node
@@ -193,7 +194,7 @@ def _locally(analyzer, form, env):
     specifiers, _, forms = analyzer.declarations(_parts(analyzer, form, 0), env)
     inner = env.child()
     _free_specials(analyzer.specials(specifiers), inner, ())
-    return analyzer.body(forms, inner)
+    return analyzer.scope((), specifiers, forms, inner)
 
 
 def _definitions(analyzer, form):
@@ -215,8 +216,8 @@ def _local_functions(analyzer, form, env, recursive):
     definitions, forms = _definitions(analyzer, form)
     inner = env.child()
     variables = [Variable(symbol, env.scope) for _, symbol, _, _ in definitions]
-    for (key, *_), variable in zip(definitions, variables):
-        inner.functions[key] = LocalFunction(variable)
+    for (key, _, lambda_list, _), variable in zip(definitions, variables):
+        inner.functions[key] = LocalFunction(variable, Shape(lambda_list))
     functions = []
     for (_, symbol, lambda_list, body), variable in zip(definitions, variables):
         if recursive:
@@ -224,7 +225,7 @@ def _local_functions(analyzer, form, env, recursive):
         functions.append((variable, analyzer.lambda_(lambda_list, body, inner if recursive else env, symbol, symbol)))
     specifiers, _, forms = analyzer.declarations(forms, env)
     _free_specials(analyzer.specials(specifiers), inner, ())
-    body = analyzer.body(forms, inner)
+    body = analyzer.scope((), specifiers, forms, inner)
     return _bound(body, Functions(functions, body))
 
 
@@ -243,7 +244,7 @@ def _macrolet(analyzer, form, env):
     definitions, forms = _definitions(analyzer, form)
     inner = env.child()
     for _, symbol, lambda_list, body in definitions:
-        inner.functions[symbol] = LocalMacro(late.macro_expander(symbol, lambda_list, body, env))
+        inner.functions[symbol] = LocalMacro(late.macro_expander(symbol, lambda_list, body, env, analyzer))
     return _locally(analyzer, Cons(sym("LOCALLY"), list_from(forms)), inner)
 
 
@@ -355,7 +356,9 @@ def _progv(analyzer, form, env):
 
 @special("THE")
 def _the(analyzer, form, env):
-    return analyzer.form(_parts(analyzer, form, 2, 2)[1], env)
+    kind, value = _parts(analyzer, form, 2, 2)
+    analyzer.mention_type(kind, form)
+    return analyzer.form(value, env)
 
 
 @special("EVAL-WHEN")
@@ -400,7 +403,7 @@ def _multiple_value_bind(analyzer, form, env):
     symbols = _items(analyzer, form, symbols)
     variables = [analyzer.bind(symbol, inner, specials) for symbol in symbols]
     _free_specials(specials, inner, set(symbols))
-    body_node = analyzer.body(forms, inner)
+    body_node = analyzer.scope(variables, specifiers, forms, inner)
     return _bound(body_node, MultipleValueBind(variables, node, body_node))
 
 
@@ -416,6 +419,8 @@ def _funcall(analyzer, form, env):
     nodes = [analyzer.form(argument, env) for argument in arguments]
     node = analyzer.form(function, env)
     if isinstance(node, FunctionReference):
+        if not node.setf:
+            analyzer.mention(node.symbol, env, form, tuple(arguments))
         call = (CallSetf if node.setf else Call)(node.symbol, nodes)
         call.position = analyzer._at
         return call
@@ -430,6 +435,7 @@ def _call_setf(analyzer, form, env):
     nodes = [analyzer.form(argument, env) for argument in arguments]
     if isinstance(local, LocalFunction):
         return CallLocal(local.variable.used_from(env.scope), nodes)
+    analyzer.mention(("setf", name), env, form, tuple(arguments))
     node = CallSetf(name, nodes)
     node.position = analyzer._at
     return node

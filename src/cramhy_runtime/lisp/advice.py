@@ -1,4 +1,4 @@
-"""What to try: a hint for a condition, written for a student (law 7).
+"""What a condition is shown as, and what to try: a hint for a condition, written for a student (law 7).
 
 A condition may bring its own (``hint``). For names that mean nothing here the near ones are looked up: a variable whose stars
 were forgotten, a function of another package, a typing mistake.
@@ -6,12 +6,16 @@ were forgotten, a function of another package, a typing mistake.
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp import pprint_dispatch
-from cramhy_runtime.lisp.conditions import types
-from cramhy_runtime.lisp.data import Symbol, UNBOUND, UndefinedFunction
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluator import PACKAGE
-from cramhy_runtime.lisp.packages import all_packages, near_names, symbol_name
+from . import pprint_dispatch
+from .conditions import types
+from .data import Symbol, UNBOUND, UndefinedFunction
+from .dynamic import binding
+from .packages import all_packages, near_names, symbol_name
+from .places_in_source import describe, excerpt
+from .print_controls import PACKAGE
+
+SHOWN_PLACES = 3
+"""So many further places of the same thing are named."""
 
 
 def report_text(condition):
@@ -20,16 +24,37 @@ def report_text(condition):
         return str(condition)
 
 
+def explanation(condition):
+    """What, where, why and what to try: the lines that describe ``condition``."""
+    lines = [f"  {line}" for line in report_text(condition).splitlines() or [""]]
+    position = getattr(condition, "position", None)
+    if position:
+        lines.append(f"  at {describe(position)}")
+    shown = getattr(condition, "excerpt", None) or excerpt(position)
+    if shown.strip(" ^\n"):
+        lines += [f"  {line}" for line in shown.splitlines()]
+    also = getattr(condition, "also", None)
+    if also:
+        more = len(also) - SHOWN_PLACES
+        lines.append(f"  also at {', '.join(map(describe, also[:SHOWN_PLACES]))}{f' and {more} more' if more > 0 else ''}")
+    hint = hint_for(condition)
+    if hint:
+        lines.append(f"  {hint}")
+    return "\n".join(lines)
+
+
 def hint_for(condition):
     """One sentence of advice, or ``None``."""
     own = getattr(condition, "hint", None)
     if own:
         return own
     name = getattr(condition, "name", None)
-    if isinstance(condition, types.UnboundVariable) and isinstance(name, Symbol):
-        return _variable(name)
-    if isinstance(condition, types.UndefinedFunction) and isinstance(name, Symbol):
-        return _function(name)
+    undefined = getattr(condition, "undefined", None)
+    if isinstance(name, Symbol):
+        if undefined == "variable" or isinstance(condition, types.UnboundVariable):
+            return _variable(name)
+        if undefined == "function" or isinstance(condition, types.UndefinedFunction):
+            return _function(name)
     if isinstance(condition, types.PackageDoesNotExist):
         near = near_names(str(symbol_name(condition.package) if isinstance(condition.package, Symbol) else condition.package),
                           [name for package in all_packages() for name in package.names])
