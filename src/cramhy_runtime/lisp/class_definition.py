@@ -226,12 +226,16 @@ def _report_method(report):
     if isinstance(report, str) or report.__class__.__name__ == "LispString":
         return lambda self: str(report)
 
-    def text(self):
-        stream = StringOutputStream()
+    def write(self, stream):
         function = report.function if isinstance(report, Symbol) else report
         function(self, stream)
+
+    def text(self):
+        stream = StringOutputStream()
+        write(self, stream)
         return stream.text()
 
+    text.write = write
     return text
 
 

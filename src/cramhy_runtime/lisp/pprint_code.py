@@ -134,11 +134,10 @@ def _body_position(symbol):
     """How many arguments come before the &body of the macro ``symbol``; ``None`` when it is no such macro."""
     if symbol.package is COMMON_LISP:
         return _BODIES.get(symbol.name)
-    names = getattr(symbol.macro, "lambda_list", None)
-    if names is None:
-        return None
+    names = getattr(symbol.macro, "__lisp_lambda_list__", None)
     count = 0
-    for name in python_list(names):
+    while isinstance(names, Cons):
+        name, names = names.car, names.cdr
         spelled = symbol_name(name) if is_symbol(name) else ""
         if spelled == "&BODY":
             return count

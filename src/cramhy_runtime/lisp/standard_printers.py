@@ -118,8 +118,8 @@ def _write_type(expected, stream):
 
 
 def report_to(condition, stream):
-    """Print the report of ``condition``. Where the report is a format control, it is formatted on ``stream`` itself,
-    so that a pretty stream indents what it prints.
+    """Print the report of ``condition``. Where the report is a format control or a function of a stream, it writes on
+    ``stream`` itself, so that lines are broken where that stream's lines end.
     """
     report = type(condition).report
     control = getattr(condition, "format_control", None)
@@ -128,6 +128,8 @@ def report_to(condition, stream):
     elif report in _REPORTS:
         with bound(PRINT_ESCAPE, True):
             late.format_(stream, *_REPORTS[report](condition))
+    elif hasattr(report, "write"):
+        report.write(condition, stream)
     else:
         stream.write(condition.report())
 

@@ -18,12 +18,12 @@ from .class_objects import StandardObject, when_classes_change
 from .classes import class_name, class_of, symbol_class
 from .complex_numbers import parts
 from .conditions import SimpleError, error
-from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
+from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, python_list, truth
 from .element_types import upgraded_element_type
 from .equality import eql, equal
 from .generic import GenericFunction
 from .package_errors import check_symbol
-from .packages import Package, is_symbol, sym
+from .packages import Package, is_symbol, sym, symbol_name
 from .pathname_objects import Pathname
 from .structures import StructureObject
 from .vectors import LispArray, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
@@ -364,6 +364,24 @@ def expand_type(specifier):
             return specifier
         form = specifier if isinstance(specifier, Cons) else lisp_list(specifier)
         specifier = one(expander(form, None))
+
+
+def meaning_of_type(specifier):
+    """``specifier`` in the words of the standard, as errors show it: types of ``deftype`` expanded, also within ``and or not``, and
+    ranges of integers by their short names.
+    """
+    specifier = expand_type(specifier)
+    if not isinstance(specifier, Cons):
+        return specifier
+    head, arguments = symbol_name(specifier.car), python_list(specifier.cdr)
+    if head in ("AND", "OR", "NOT"):
+        return lisp_list(specifier.car, *map(meaning_of_type, arguments))
+    if head == "INTEGER" and len(arguments) == 2 and arguments[0] == 0 and type(arguments[1]) is int and arguments[1] > 0:
+        size = arguments[1] + 1
+        if size & (size - 1):
+            return lisp_list(sym("MOD"), size)
+        return sym("BIT") if size == 2 else lisp_list(sym("UNSIGNED-BYTE"), size.bit_length() - 1)
+    return specifier
 
 
 def is_known_type(specifier):

@@ -1,0 +1,36 @@
+"""A plan package of twenty-six files, written for any Common Lisp, prints the same in cramhy as in SBCL, byte for byte.
+
+``systems/kitchen-courier`` is a robot that tidies a kitchen: CLOS, conditions and restarts, macros that write macros, LOOP, FORMAT,
+hash tables, packages whose conflicts are resolved by shadowing, tests in lisp-unit. ``transcript.txt`` beside it is what SBCL printed.
+"""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cramhy_runtime.lisp import systems
+
+SYSTEMS = Path(__file__).parent / "systems"
+RECORDED = SYSTEMS / "kitchen-courier" / "transcript.txt"
+
+
+def test_the_transcript_is_that_of_sbcl(session, monkeypatch):
+    monkeypatch.setattr(systems, "extra_folders", [str(SYSTEMS / "kitchen-courier")])
+    session.package = "CL-USER"
+    session.evaluate_text('(asdf:load-system "kitchen-courier/tests")')
+    [text] = session.evaluate_text("""(with-output-to-string (*standard-output*)
+                                        (funcall (intern "MAIN" "COURIER-PLANS"))
+                                        (funcall (intern "RUN-ALL" "KITCHEN-COURIER-TESTS")))""")
+    assert str(text).splitlines() == RECORDED.read_text().splitlines()
+    assert str(text) == RECORDED.read_text()
+
+
+@pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL is not installed")
+def test_the_recorded_transcript_is_what_sbcl_prints(tmp_path):
+    translations = f'(:output-translations (t "{tmp_path}/") :ignore-inherited-configuration)'
+    run = subprocess.run(["sbcl", "--script", str(SYSTEMS / "transcript.lisp")], capture_output=True, text=True, timeout=120,
+                         env={**os.environ, "ASDF_OUTPUT_TRANSLATIONS": translations})
+    assert run.stdout == RECORDED.read_text()
