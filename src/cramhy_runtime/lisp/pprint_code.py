@@ -8,7 +8,7 @@ them as format controls; here they are functions, because they run often. Which 
 
 from __future__ import annotations
 
-from .data import Cons, Symbol, UndefinedFunction, python_list
+from .data import Cons, Symbol, UndefinedFunction
 from .late import late
 from .packages import COMMON_LISP, is_symbol, sym, symbol_name
 from .pretty import call_logical_block, pprint_fill, pprint_linear
