@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: tutorial test bench golden lint soak clean
+.PHONY: tutorial test docs bench golden lint soak clean
 
 tutorial: $(READY)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -13,6 +13,9 @@ test: $(READY)
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py
+
+docs: $(READY)
+	@$(BIN)/python tests/lisp/standard_page.py
 
 bench: $(READY)
 	@for file in benchmarks/*_bench.py; do echo "== $$file"; $(BIN)/python $$file; done

@@ -40,7 +40,7 @@ def _type_of_name(name):
 
 
 _CARRIERS = {"FUNCTION": _function_of_name, "TYPE": _type_of_name, "STRUCTURE": _type_of_name, "METHOD-COMBINATION": known_combination}
-_KINDS = {*_CARRIERS, "VARIABLE", "SETF", "COMPILER-MACRO"}
+KINDS = {*_CARRIERS, "VARIABLE", "SETF", "COMPILER-MACRO"}
 
 
 def _carrier(obj, kind):
@@ -61,7 +61,7 @@ def _unsupported(obj, kind):
 
 def _supported(obj, kind):
     if is_symbol(obj):
-        return symbol_name(kind) in _KINDS
+        return symbol_name(kind) in KINDS
     if isinstance(obj, Cons):
         return symbol_name(kind) in ("FUNCTION", "COMPILER-MACRO")
     return callable(obj) or isinstance(obj, (Package, Method, DirectSlot, Slot, Combination))

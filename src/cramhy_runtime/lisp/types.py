@@ -330,7 +330,8 @@ _MAKERS = {
     **{name: _sized(name) for name in """STRING SIMPLE-STRING BASE-STRING SIMPLE-BASE-STRING SIMPLE-VECTOR BIT-VECTOR
        SIMPLE-BIT-VECTOR""".split()},
 }
-
+COMPOUND_NAMES = frozenset(_MAKERS)
+"""Names that head a compound type specifier; some, such as SATISFIES, are no types alone."""
 
 # ------------------------------------------------------------------------------------------------------------------- deftype
 

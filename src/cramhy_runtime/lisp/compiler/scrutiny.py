@@ -9,13 +9,14 @@ Texts are SBCL's.
 from __future__ import annotations
 
 from .. import compilation_unit
-from ..conditions import SimpleStyleWarning, SimpleWarning
+from ..conditions import SimpleStyleWarning, SimpleWarning, error
 from ..condition_types import shown_with
 from ..compilation_unit import Mention
 from ..data import Cons, Keyword, Symbol
 from ..declaration_names import EXTENSIONS, is_declared, is_extension
 from ..function_shapes import wrong_call
 from ..packages import COMMON_LISP, sym
+from ..standard_names import missing
 from ..types import is_known_type
 from .environment import Variable
 
@@ -25,6 +26,7 @@ IGNORE, IGNORABLE, SPECIAL, TYPE, OPTIMIZE = map(sym, ("IGNORE", "IGNORABLE", "S
 QUOTE = sym("QUOTE")
 WITHOUT_MEANING = {sym(name) for name in "INLINE NOTINLINE DYNAMIC-EXTENT DECLARATION FTYPE VALUES".split()}
 """Declarations that are known and need nothing done here."""
+STANDARD_DECLARATIONS = {symbol.name for symbol in WITHOUT_MEANING} - {"VALUES"} | {"IGNORE", "IGNORABLE", "SPECIAL", "TYPE", "OPTIMIZE"}
 QUALITIES = {"SPEED", "SAFETY", "SPACE", "DEBUG", "COMPILATION-SPEED", "INHIBIT-WARNINGS"}
 
 
@@ -58,12 +60,20 @@ class Scrutiny:
 
     def free_variable(self, symbol, env, assigned=False):
         """Note the use of a variable that is bound nowhere around; one that is not special either is undefined."""
+        if symbol.package is COMMON_LISP:
+            self._refuse(symbol)
         if self.unit is None or symbol.special or symbol.constant:
             return
         if not assigned and self.at_once and env.scope.parent is None:
             return  # the form itself runs into it, and the error tells
         text = shown_with(symbol, "KEYWORD")
         self.warn(SimpleWarning, "undefined variable: ~A", text, position=self._at_symbol(symbol), name=symbol, undefined="variable")
+
+    def _refuse(self, symbol):
+        """Fail when ``symbol`` is one of Common Lisp that is not there."""
+        problem = missing(symbol, self._at_symbol(symbol))
+        if problem is not None:
+            error(problem)
 
     def read_variable(self, variable):
         if variable.ignored and self.unit is not None:
@@ -171,6 +181,8 @@ class Scrutiny:
     def mention(self, name, env, form=None, arguments=None):
         """Note a call of the global function ``name``, or with no ``arguments`` that it is named by ``#'``."""
         unit = self.unit
+        if isinstance(name, Symbol) and name.package is COMMON_LISP:
+            self._refuse(name)
         if unit is None:
             return
         if self.at_once and env.scope.parent is None:

@@ -1,0 +1,17 @@
+"""``make docs``: write ``docs/common-lisp.md``, the table of all symbols of Common Lisp, from the code."""
+
+from pathlib import Path
+
+from cramhy_runtime import image
+from cramhy_runtime.lisp import coverage
+
+PAGE = Path(__file__).parents[2] / "docs" / "common-lisp.md"
+
+
+def text():
+    image.boot()
+    return coverage.page()
+
+
+if __name__ == "__main__":
+    PAGE.write_text(text(), encoding="utf-8")
