@@ -446,6 +446,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator formatter [control]
   `(%formatter ~control))
 
+(defoperator pprint-pop []
+  (raise (ValueError "PPRINT-POP must be lexically inside PPRINT-LOGICAL-BLOCK.")))
+
+(defoperator pprint-exit-if-list-exhausted []
+  (raise (ValueError "PPRINT-EXIT-IF-LIST-EXHAUSTED must be lexically inside PPRINT-LOGICAL-BLOCK.")))
+
 (defoperator pprint-logical-block [spec #* body]
   (setv #(stream items #* options) spec)
   (setv variable (if (and (isinstance stream LispSymbol)) stream (gensym "STREAM")))

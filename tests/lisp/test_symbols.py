@@ -93,10 +93,11 @@ def recorded(line):
 
 def comparable(line):
     """``line`` without what differs by nature: addresses, SBCL's name for a section's package and for its own variable that had the
-    wrong value (told only where the call is not open-coded), and its reading list."""
+    wrong value (told only where the call is not open-coded), its reading list, and its streams."""
     line = SECTION_PACKAGE.sub("SECTION", ADDRESS.sub("{}", line))
     if line.startswith("!! "):
-        line = re.sub(r" when binding \S+$| See also: .*", "", line)
+        line = re.sub(r" when binding \S+$| See also: .*| Stream: #<.*| Original error: .*", "", line)
+        line = re.sub(r"READER-ERROR on #<.*?>: | on #<.*", "", line)
     return line
 
 

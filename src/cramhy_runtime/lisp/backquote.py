@@ -12,12 +12,15 @@ from __future__ import annotations
 from .data import Cons, Keyword, lisp_list, list_from
 from .packages import Package, find_package, intern, is_symbol, register, sym
 
-for _name in ("SB-INT", "CRAMHY"):
+for _name in ("SB-INT", "SB-IMPL", "CRAMHY"):
     if find_package(_name) is None:
         register(Package(_name))
 QUASIQUOTE = intern("QUASIQUOTE", "SB-INT")
 find_package("SB-INT").export(QUASIQUOTE)
 MAKE_COMMA, MAKE_COMMAS, LIST_VECTOR = [intern(name, "CRAMHY") for name in ("MAKE-COMMA", "MAKE-COMMAS", "LIST-VECTOR")]
+
+COMMA, COMMA_KINDS = intern("COMMA", "SB-IMPL"), (",", ",.", ",@")
+"""A comma outside of pretty printing is ``#S(SB-IMPL::COMMA :EXPR X :KIND 0)``; the kind is an index of these prefixes."""
 
 QUOTE, LIST, LIST_STAR, APPEND, NCONC = sym("QUOTE"), sym("LIST"), sym("LIST*"), sym("APPEND"), sym("NCONC")
 CONS = sym("CONS")

@@ -16,6 +16,7 @@ from .conditions import Condition, Restart
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
 from .packages import Package, sym
 from .random_state import RandomState
+from .readtables import Readtable
 from .vectors import LispArray, TypedVector, Vector
 
 
@@ -57,6 +58,7 @@ _MAP = {
     type(None): "NULL", Symbol: "SYMBOL", Keyword: "SYMBOL", Cons: "CONS", str: "SIMPLE-STRING", LispString: "STRING",
     Character: "CHARACTER", list: "SIMPLE-VECTOR", TypedVector: "VECTOR", Vector: "VECTOR", LispArray: "ARRAY",
     bytes: "VECTOR", bytearray: "VECTOR", Package: "PACKAGE", PurePath: "PATHNAME", RandomState: "RANDOM-STATE",
+    Readtable: "READTABLE",
     Restart: "RESTART", python_types.FunctionType: "COMPILED-FUNCTION", python_types.BuiltinFunctionType: "COMPILED-FUNCTION",
 }
 

@@ -11,12 +11,12 @@ import re
 
 from . import tokens
 from .arithmetic import is_real
-from .backquote import Comma
-from .conditions import Condition, style_warn
+from .backquote import COMMA, COMMA_KINDS, Comma
+from .conditions import Error, style_warn
 from .data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
 from .dynamic import special
 from .packages import KEYWORD, is_symbol, keyword, sym, symbol_name
-from .reader_errors import fail, place
+from .reader_errors import fail
 from .readtables import READTABLE, call
 from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
 
@@ -169,7 +169,7 @@ def sharp_star(stream, sub, argument):
         if len(digits) > argument:
             return fail(reader, start, "Too many bits in ~S: expected ~D or fewer", digits, argument)
         if argument and not digits:
-            return fail(reader, start, "Some bits must be given for a bit vector of length ~D", argument)
+            return fail(reader, start, "#~D* requires at least 1 bit of input.", argument)
         digits += digits[-1:] * (argument - len(digits))
     return bit_vector([int(digit) for digit in digits])
 
@@ -420,7 +420,8 @@ def sharp_a(stream, sub, argument):
     if _suppressed():
         return None
     if argument is None:
-        return fail(reader, start, "The rank is missing in #A.", hint="A matrix is written #2A((1 2) (3 4)).")
+        return fail(reader, start, "Array literal is neither of the standard form #<rank>A<contents> nor the "
+                    "SBCL-specific form #A(dimensions element-type . contents).", hint="A matrix is written #2A((1 2) (3 4)).")
     if argument > 100:
         return fail(reader, start, "The rank ~D is too large.", argument)
     dimensions, level = [], contents
@@ -455,14 +456,16 @@ def sharp_s(stream, sub, argument):
         return fail(reader, start, "Structure type is not a symbol: ~S", items[0] if items else None)
     if len(items) % 2 == 0:
         return fail(reader, start, "Odd number of arguments following #S: ~S", body, hint="Each slot name needs a value.")
-    from .structures import find_structure
+    if items[0] is COMMA and len(items) == 5 and items[4] in (0, 1, 2):
+        return Comma(COMMA_KINDS[items[4]], items[2])
+    from .structures import structure_named
 
-    def make():
-        return find_structure(items[0]).construct(*arguments)
-
+    structure = structure_named(items[0])
+    if structure is None:
+        return fail(reader, start, "~S is not a defined structure type.", items[0])
     arguments = [KEYWORD.intern(symbol_name(item)) if index % 2 == 0 and is_symbol(item) else item
                  for index, item in enumerate(items[1:])]
-    return _guarded(reader, start, make)
+    return _guarded(reader, start, structure.construct, *arguments)
 
 
 def sharp_p(stream, sub, argument):
@@ -481,13 +484,11 @@ def _call(reader, start, symbol, *arguments):
 
 
 def _guarded(reader, start, function, *arguments):
-    """Call a constructor; what it objects to is an error at this place of the text."""
+    """Call a constructor; what it objects to is a reader error at this place of the text."""
     try:
         return one(function(*arguments))
-    except Condition as problem:
-        if getattr(problem, "position", None) is None:
-            place(problem, reader, start)
-        raise
+    except Error as problem:
+        return fail(reader, start, "~A", problem.report())
 
 
 STANDARD_FUNCTIONS = {

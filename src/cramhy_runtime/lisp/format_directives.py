@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from . import format_numbers as numbers
 from . import print_controls as controls
-from .conditions import Error, handler_bind
+from .conditions import Error, handler_bind, type_error
 from .data import Character, Cons, list_from
 from .format import State, UpAndOut, format_on, list_arguments, run
 from .format_parser import ARGUMENT_MARK, REMAINING_MARK, FormatError
@@ -36,8 +36,21 @@ def parameters(directive, state, *defaults):
         elif value is REMAINING_MARK:
             value = state.remaining
         if value is not None:
-            values[index] = value
+            values[index] = value if directive.char in "[^" else _checked(value, defaults[index])
     return values
+
+
+NO_CHARACTER = ""
+"""The default of a parameter that is a character and may be missing."""
+
+
+def _checked(value, default):
+    """``value`` if it is of the kind of the parameter with this default: a character, or an integer."""
+    if default.__class__ is str:
+        return value if value.__class__ is str and len(value) == 1 else type_error(value, "CHARACTER")
+    if value.__class__ is int:
+        return value
+    return type_error(Character(value) if value.__class__ is str and len(value) == 1 else value, "INTEGER")
 
 
 # ---------------------------------------------------------------------------------------------------------- any objects
@@ -153,6 +166,8 @@ def _radix(directive, state):
     base, mincol, padchar, commachar, interval = parameters(directive, state, None, 0, " ", ",", 3)
     arg = state.next(directive)
     if base is not None:
+        if not 2 <= base <= 36:
+            type_error(base, "(INTEGER 2 36)")
         numbers.write_integer(
             state.stream, arg, base, directive.colon, directive.at, mincol, padchar, commachar, interval
         )
@@ -179,24 +194,25 @@ def _plural(directive, state):
 
 def _fixed(directive, state):
     directive.reject(colon=True)
-    width, digits, scale, overflow, padchar = parameters(directive, state, None, None, None, None, " ")
-    numbers.write_fixed(state.stream, state.next(directive), width, digits, scale, overflow, padchar, directive.at)
+    width, digits, scale, overflow, padchar = parameters(directive, state, None, None, None, NO_CHARACTER, " ")
+    numbers.write_fixed(state.stream, state.next(directive), width, digits, scale, overflow or None, padchar, directive.at)
 
 
 def _exponential(directive, state):
     directive.reject(colon=True)
     width, digits, exponent, scale, overflow, padchar, mark = parameters(
-        directive, state, None, None, None, 1, None, " ", None
+        directive, state, None, None, None, 1, NO_CHARACTER, " ", NO_CHARACTER
     )
     numbers.write_exponential(
-        state.stream, state.next(directive), width, digits, exponent, scale, overflow, padchar, mark, directive.at
+        state.stream, state.next(directive), width, digits, exponent, scale, overflow or None, padchar, mark or None,
+        directive.at
     )
 
 
 def _general(directive, state):
     directive.reject(colon=True)
-    values = parameters(directive, state, None, None, None, None, None, " ", None)
-    numbers.write_general(state.stream, state.next(directive), *values, directive.at)
+    *values, overflow, padchar, mark = parameters(directive, state, None, None, None, None, NO_CHARACTER, " ", NO_CHARACTER)
+    numbers.write_general(state.stream, state.next(directive), *values, overflow or None, padchar, mark or None, directive.at)
 
 
 def _dollars(directive, state):

@@ -8,7 +8,10 @@ priority first. Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from . import pprint_code as code
+from .conditions import type_error
 from .data import Cons, MultipleValues, Symbol, python_list
 from .dynamic import special
 from .equality import equal
@@ -62,7 +65,7 @@ class Entry:
 class DispatchTable:
     """A pprint dispatch table: ``operators`` by the head of a list, ``entries`` by type, the most important first."""
 
-    lisp_name = "SB-PRETTY::PPRINT-DISPATCH-TABLE"
+    lisp_name = "SB-PRETTY:PPRINT-DISPATCH-TABLE"
 
     def __init__(self, operators=None, entries=()):
         self.operators = dict(operators or {})
@@ -73,6 +76,11 @@ class DispatchTable:
 
     def find(self, obj):
         """The function ``(stream, object)`` that prints ``obj`` prettily; ``None`` when nothing is said about it."""
+        found = self.find_designator(obj)
+        return found.function if isinstance(found, Symbol) else found
+
+    def find_designator(self, obj):
+        """The same as it was given to ``set-pprint-dispatch``: a function or a symbol."""
         chosen = None
         if obj.__class__ is Cons:
             head = obj.car
@@ -109,7 +117,9 @@ PRINT_PPRINT_DISPATCH = special("*PRINT-PPRINT-DISPATCH*", INITIAL.copy())
 
 
 def _table(designator):
-    return INITIAL if designator is None else designator
+    if designator is None:
+        return INITIAL
+    return designator if isinstance(designator, DispatchTable) else type_error(designator, f"(OR {DispatchTable.lisp_name} NULL)")
 
 
 def copy_pprint_dispatch(table=PRINT_PPRINT_DISPATCH):
@@ -119,7 +129,7 @@ def copy_pprint_dispatch(table=PRINT_PPRINT_DISPATCH):
 
 def pprint_dispatch(obj, table=PRINT_PPRINT_DISPATCH):
     """``pprint-dispatch``: the function for ``obj``, and whether the table has one."""
-    found = _table(table.value if table is PRINT_PPRINT_DISPATCH else table).find(obj)
+    found = _table(table.value if table is PRINT_PPRINT_DISPATCH else table).find_designator(obj)
     if found is None:
         return MultipleValues((lambda stream, thing, *_: late.output_ugly(thing, stream), None))
     return MultipleValues((found, True))
@@ -129,13 +139,9 @@ def set_pprint_dispatch(type_, function, priority=0, table=None):
     """``set-pprint-dispatch``: print objects of ``type_`` with ``function`` (of stream and object); nil removes the
     entry.
     """
-    table = table or PRINT_PPRINT_DISPATCH.value
-    if isinstance(function, Symbol):
-        symbol = function
-
-        def function(stream, obj):  # looked up at each call, so a redefinition counts
-            return symbol.function(stream, obj)
-
+    table = _table(table or PRINT_PPRINT_DISPATCH.value)
+    if not isinstance(priority, (int, float, Fraction)):
+        type_error(priority, "REAL")
     heads = _heads(type_)
     if heads is not None:
         for head in heads:

@@ -235,7 +235,7 @@ def _checked(designator, *allowed):
 
 def pprint_newline(kind, stream=None):
     """``pprint-newline``: a conditional newline of ``kind`` linear, fill, miser or mandatory (keyword or string)."""
-    kind = _checked(kind, "linear", "fill", "miser", "mandatory")
+    kind = _checked(kind, "linear", "miser", "fill", "mandatory")
     stream = _pretty(stream)
     if stream is not None:
         stream.newline(kind)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import unicodedata
 
+from .conditions import type_error
 from .data import Symbol
 from .packages import COMMON_LISP, KEYWORD
 from .print_controls import (
@@ -23,6 +24,8 @@ from .print_controls import (
     PRINT_READABLY,
     UPCASE,
 )
+from .readtables import READTABLE
+from .tokens import downcase, invert, upcase
 
 # ------------------------------------------------------------------------------------------------------------- integers
 
@@ -45,6 +48,8 @@ def radix_prefix(base):
 def digits_in_base(number, base):
     if base == 10:
         return _decimal(number)
+    if base.__class__ is not int or not 2 <= base <= 36:
+        return type_error(base, "(INTEGER 2 36)")
     if base in (2, 8, 16):
         return format(number, {2: "b", 8: "o", 16: "X"}[base])
     sign, number, figures = "-" if number < 0 else "", abs(number), []
@@ -144,10 +149,23 @@ _STATES = {
 }
 
 
-def _attribute(character):
-    if character < "\xa0":
-        return _ATTRIBUTES.get(character, _FUNNY)
-    return _UPPER if character.isupper() else _LOWER if character.islower() else _OTHER
+_SWAPPED = {_UPPER: _LOWER, _LOWER: _UPPER}
+
+
+def _attributes_for(readtable_case):
+    """A function from characters to attributes, in which letters that the readtable would change to the other case are _LOWER."""
+
+    def attribute(character):
+        found = _ATTRIBUTES.get(character, _FUNNY) if character < "\xa0" else \
+            _UPPER if character.isupper() else _LOWER if character.islower() else _OTHER
+        if readtable_case == "UPCASE":
+            return found
+        return _SWAPPED.get(found, found) if readtable_case == "DOWNCASE" else _UPPER if found is _LOWER else found
+
+    return attribute
+
+
+_attribute_functions = {name: _attributes_for(name) for name in ("UPCASE", "DOWNCASE", "PRESERVE", "INVERT")}
 
 
 def _is_digit(character, base):
@@ -167,8 +185,9 @@ def _next_state(state, character, bits, base):
     return None, 0
 
 
-def needs_bars(name, base):
-    """Whether ``name`` must stand between bars: it has lower case or odd characters, or might be a number or a dot."""
+def needs_bars(name, base, readtable_case="UPCASE"):
+    """Whether ``name`` must stand between bars: it has letters of the wrong case or odd characters, or might be a number or a dot."""
+    _attribute = _attribute_functions[readtable_case]
     state, may_end = "start", 0
     bits = 0
     for index, character in enumerate(name):
@@ -186,25 +205,32 @@ _quoted: dict = {}
 
 def token(name):
     """``name`` as it stands in a symbol's printed form: between bars if need be, in the case of ``*print-case*``."""
-    base = PRINT_BASE.value
-    text = _quoted.get((name, base))
+    base, case = PRINT_BASE.value, READTABLE.value.case.name
+    text = _quoted.get((name, base, case))
     if text is None:
-        if needs_bars(name, base):
+        if needs_bars(name, base, case):
             text = "|" + name.replace("\\", "\\\\").replace("|", "\\|") + "|"
         else:
             text = ""
         if len(_quoted) < 100_000:
-            _quoted[name, base] = text
+            _quoted[name, base, case] = text
     return text or in_print_case(name)
 
 
 def in_print_case(name):
-    """``name`` in the case that ``*print-case*`` asks for."""
-    case = PRINT_CASE.value
+    """``name`` in the case that ``*print-case*`` asks for; the readtable decides where its case is not :upcase (ANSI 22.1.3.3.2)."""
+    case, readtable_case = PRINT_CASE.value, READTABLE.value.case
+    if readtable_case is not UPCASE:
+        if readtable_case.name == "INVERT":
+            return invert(name)
+        if readtable_case.name == "PRESERVE" or case is DOWNCASE:
+            return name
+        if case is UPCASE:
+            return upcase(name)
     if case is UPCASE:
         return name
     if case is DOWNCASE:
-        return name.lower()
+        return downcase(name)
     if case is CAPITALIZE:
         return "".join(
             character if not index or not name[index - 1].isalnum() or character.islower() else character.lower()

@@ -6,6 +6,7 @@ The macros (``hy_src/cramhy/cl.hy``) only put the forms of their bodies into fun
 from __future__ import annotations
 
 from . import print_controls, printer
+from .conditions import error, type_error
 from .data import LispString
 from .float_printing import READ_DEFAULT_FLOAT_FORMAT
 from .format import formatter
@@ -20,6 +21,11 @@ def pprint_logical_block(function, stream, items, *, prefix=None, per_line_prefi
 
     ``stream`` nil or t stands for ``*standard-output*`` or ``*terminal-io*``, which are bound to the block's stream.
     """
+    for text in (prefix, per_line_prefix, suffix):
+        if text is not None and not isinstance(text, (str, LispString)):
+            type_error(text, "(OR STRING NULL)")
+    if prefix is not None and per_line_prefix is not None:
+        error("cannot specify values for both PREFIX and PER-LINE-PREFIX.")
     variable = STANDARD_OUTPUT if stream is None else TERMINAL_IO if stream is True else None
 
     def body(out, block):

@@ -38,6 +38,8 @@ class DispatchTable:
 class Readtable:
     """Syntax types of characters. ``case`` is one of :upcase, :downcase, :preserve, :invert."""
 
+    lisp_name = "READTABLE"
+
     def __init__(self):
         self.whitespace = set(WHITESPACE)
         self.macros = {}
@@ -117,7 +119,7 @@ def call(function, *arguments):
 def _table(designator):
     if designator is None:
         return STANDARD
-    return designator if isinstance(designator, Readtable) else type_error(designator, "READTABLE")
+    return designator if isinstance(designator, Readtable) else type_error(designator, "(OR READTABLE NULL)")
 
 
 def _char(character):
@@ -142,7 +144,7 @@ def readtablep(obj):
 
 
 def readtable_case(readtable):
-    return _table(readtable).case
+    return readtable.case if isinstance(readtable, Readtable) else type_error(readtable, "READTABLE")
 
 
 def set_readtable_case(case, readtable):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import weakref
 
 from . import print_controls as controls
-from .backquote import Comma
+from .backquote import COMMA, COMMA_KINDS, Comma
 from .condition_types import shown_with
 from .complex_numbers import parts
 from .conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
@@ -260,6 +260,13 @@ def _print_synonym(stream_object, stream):
 
 
 def _print_comma(comma, stream):
+    if PRINT_PRETTY.value is None:
+        stream.write("#S(")
+        output_object(COMMA, stream)
+        stream.write(" :EXPR ")
+        output_object(comma.form, stream)
+        stream.write(f" :KIND {COMMA_KINDS.index(comma.kind)})")
+        return
     stream.write(comma.kind)
     if comma.kind == "," and is_symbol(comma.form) and symbol_text(comma.form, escaping())[:1] in "@.":
         stream.write(" ")  # else it would be read as ",@" or ",."

@@ -169,10 +169,14 @@ class Structure:
 _typed_structures: dict = {}
 
 
+def structure_named(name):
+    """The `Structure` that the symbol ``name`` names, or ``None``."""
+    return getattr(registered_class(name), "lisp_structure", None) or _typed_structures.get(name)
+
+
 def find_structure(name):
     """The `Structure` that the symbol ``name`` names; an error when there is none."""
-    cls = registered_class(name)
-    found = getattr(cls, "lisp_structure", None) or _typed_structures.get(name)
+    found = structure_named(name)
     return found if found is not None else error(SimpleError("~S is not the name of a structure type defined with DEFSTRUCT.", name))
 
 

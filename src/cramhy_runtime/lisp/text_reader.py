@@ -287,6 +287,9 @@ class Reader(InputStream):
 
     def misplaced_close(self, offset):
         opener = self._frames[-1][3] if self._frames else None
+        if opener in _COMMAS:
+            return fail(self, offset, f"Trailing {_COMMAS[opener]} in backquoted expression.",
+                        hint=f"Something must follow the {opener} before the ).")
         hint = f"Something must follow the {opener} before the )." if opener else "There is one ) too many, or a ( is missing before it."
         return fail(self, offset, "unmatched close parenthesis", hint=hint)
 
@@ -519,6 +522,7 @@ read_backquote = _prefix_reader("read_backquote", "A template: see ``backquote.p
 read_comma = _prefix_reader("read_comma", "``,x``, ``,@x``, ``,.x``: a place to be filled in a template.")
 
 
+_COMMAS = {",": "comma", ",@": "comma-at", ",.": "comma-dot"}
 _PREFIXES = {read_quote: (QUOTE, "'"), read_backquote: (QUASIQUOTE, "`"), read_comma: (Comma, ",")}
 
 

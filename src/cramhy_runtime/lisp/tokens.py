@@ -8,6 +8,7 @@ literal (see ``data.py``) but not a magnitude that a single-float cannot have.
 
 from __future__ import annotations
 
+import math
 import re
 import string
 import unicodedata
@@ -22,6 +23,8 @@ DIGITS = string.digits + string.ascii_lowercase
 _rationals: dict = {}
 SINGLE_LIMIT = 3.4028235677973366e38
 """The smallest magnitude that rounds to no single-float."""
+SINGLE_ZERO = 2.0 ** -150
+"""The largest magnitude that rounds to the single-float zero."""
 
 READ_BASE = sym("*READ-BASE*")
 READ_BASE.value, READ_BASE.special = 10, True
@@ -65,6 +68,10 @@ def number(token, base=None):
     """The number that ``token`` (without escapes) means, or ``None`` if it is none. Raises NumberError."""
     base = READ_BASE.value if base is None else base
     if base != 10:
+        if base.__class__ is not int or not 2 <= base <= 36:
+            from .conditions import type_error
+
+            type_error(base, "(INTEGER 2 36)")
         found = rational(token, base)
         if found is not None:
             return found
@@ -113,7 +120,7 @@ def _float(token, mantissa, marker, exponent):
     if not -SINGLE_LIMIT < value < SINGLE_LIMIT:
         raise NumberError(f"failed to build float from {token}",
                           "The largest single-float is about 3.4e38; write the exponent with d for a double-float: 1d39.")
-    return value
+    return value if abs(value) > SINGLE_ZERO else math.copysign(0.0, value)
 
 
 # -------------------------------------------------------------------------------------------------------------------- names
