@@ -148,7 +148,7 @@ def class_of(object_):
         if isinstance(candidate, BuiltInClass):
             return CLASSES["FUNCTION"] if candidate is CLASSES["COMPILED-FUNCTION"] else candidate  # the former is a mere type
         if candidate is not object and _own_name(candidate):
-            return candidate
+            return CLASSES.get(vars(candidate).get("lisp_name"), candidate)  # a class of the runtime may stand for one of the system's
     return object
 
 
