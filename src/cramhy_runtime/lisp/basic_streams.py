@@ -11,7 +11,8 @@ from __future__ import annotations
 from .late import late
 from .packages import Package, find_package, register, sym
 
-for _package, _external in (("SB-SYS", "FD-STREAM"), ("SB-IMPL", ""), ("SB-PRETTY", "PPRINT-DISPATCH-TABLE"), ("SB-FORMAT", "FORMAT-ERROR")):
+_EXTERNAL = {"SB-SYS": "FD-STREAM", "SB-IMPL": "", "SB-PRETTY": "PPRINT-DISPATCH-TABLE", "SB-FORMAT": "FORMAT-ERROR"}
+for _package, _external in _EXTERNAL.items():
     _home = find_package(_package) or register(
         Package(_package)
     )  # SBCL's names of classes, which users see in error messages
