@@ -13,7 +13,7 @@ from importlib import import_module
 
 WHERE = {
     "conditions": "error package_error package_does_not_exist program_error type_error undefined_function",
-    "condition_types": "ClosedStreamError SimpleTypeError StyleWarning UnboundVariable",
+    "condition_types": "ClosedStreamError SimpleParseError SimpleTypeError StyleWarning UnboundVariable",
     "packages": "intern",
     "data": "Character",
     "equality": "equal",
@@ -39,6 +39,7 @@ WHERE = {
     "systems": "load_system",
     "arrays": "aref",
     "sequences": "length",
+    "sequence_types": "BoundingIndicesBad",
 }
 """Module → the names that the ground takes from it."""
 

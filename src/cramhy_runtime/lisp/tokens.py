@@ -15,6 +15,7 @@ import unicodedata
 from fractions import Fraction
 
 from .data import DoubleFloat, LispString, MultipleValues
+from .late import late
 from .packages import sym
 
 _DECIMAL = re.compile(r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
@@ -69,9 +70,7 @@ def number(token, base=None):
     base = READ_BASE.value if base is None else base
     if base != 10:
         if base.__class__ is not int or not 2 <= base <= 36:
-            from .conditions import type_error
-
-            type_error(base, "(INTEGER 2 36)")
+            late.type_error(base, "(INTEGER 2 36)")
         found = rational(token, base)
         if found is not None:
             return found
@@ -170,9 +169,7 @@ def parse_integer(string_, *, start=0, end=None, radix=10, junk_allowed=None):
     first value is nil if there was no digit.
     """
     if not isinstance(string_, (str, LispString)):
-        from .conditions import type_error
-
-        return type_error(string_, "STRING")
+        return late.type_error(string_, "STRING")
     whole = str(string_)
     start, end = bounds(whole, start, end)
     index = start
@@ -210,18 +207,12 @@ def _ascii_digit(character):
 
 
 def _junk(text):
-    from .condition_types import SimpleParseError
-    from .conditions import error
-
-    return error(SimpleParseError("junk in string ~S", text))
+    return late.error(late.SimpleParseError("junk in string ~S", text))
 
 
 def _no_digits(text):
-    from .condition_types import SimpleParseError
-    from .conditions import error
-
-    return error(SimpleParseError("no digits in string ~S" if text.strip(WHITESPACE) else "no non-whitespace characters in string ~S.",
-                                  text))
+    what = "no digits in string ~S" if text.strip(WHITESPACE) else "no non-whitespace characters in string ~S."
+    return late.error(late.SimpleParseError(what, text))
 
 
 def bounds(text, start, end):
@@ -229,10 +220,7 @@ def bounds(text, start, end):
     stop = len(text) if end is None else end
     if isinstance(start, int) and isinstance(stop, int) and 0 <= start <= stop <= len(text):
         return start, stop
-    from .conditions import error
-    from .sequence_types import BoundingIndicesBad
-
-    return error(BoundingIndicesBad(start, end, len(text)))
+    return late.error(late.BoundingIndicesBad(start, end, len(text)))
 
 
 LISP_NAMES = "parse-integer"
