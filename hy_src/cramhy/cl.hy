@@ -422,11 +422,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv #(variable string #* options) spec)
   (setv options (dict (zip (lfor option (cut options 0 None 2) option.name) (cut options 1 None 2))))
   (setv index (.get options "INDEX"))
-  `(let [[~variable (make-string-input-stream ~string ~(.get options "START" 0) ~(.get options "END"))]]
-     (declare (ignorable ~variable))
-     ~(if (is index None)
-          `(progn ~@body)
-          `(multiple-value-prog1 (progn ~@body) (setf ~index (%stream-position ~variable))))))
+  (setv stream `(make-string-input-stream ~string ~(.get options "START" 0) ~(.get options "END")))
+  (if (is index None)
+      `(let [[~variable ~stream]] (declare (ignorable ~variable)) ~@body)
+      `(let [[~variable ~stream]]
+         (multiple-value-prog1 (let [[~variable ~variable]] (declare (ignorable ~variable)) ~@body)
+           (setf ~index (%stream-position ~variable))))))
 
 (defoperator with-open-file [spec #* body]
   (setv #(variable path #* options) spec)
@@ -434,7 +435,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-open-stream [spec #* body]
   (setv #(variable form) spec)
-  `(%with-open-stream (lambda [~variable] ~@body) ~form))
+  `(%with-open-stream (lambda [~variable] (declare (ignorable ~variable)) ~@body) ~form))
 
 (defoperator with-standard-io-syntax [#* body]
   `(%with-standard-io-syntax (lambda [] ~@body)))

@@ -14,7 +14,9 @@ from cramhy_runtime.lisp.classes import class_name
 from cramhy_runtime.lisp.condition_types import ProgramError
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import COMMON_LISP, Package, sym
+from cramhy_runtime.lisp.files import lisp_path
+from cramhy_runtime.lisp.packages import COMMON_LISP, Package, delete_package, register, sym
+from cramhy_runtime.lisp.pathnames import DEFAULTS
 from cramhy_runtime.lisp.printer import prin1_to_string
 from cramhy_runtime.lisp.streams import StringInputStream, StringOutputStream
 from cramhy_runtime.repl.session import Session, condition_of
@@ -68,8 +70,8 @@ def report(condition):
         return "(its report fails)"
 
 
-def answer(session, text):
-    """The lines that we would write into the file behind the form ``text``."""
+def answer(session, text, folder):
+    """The lines that we would write into the file behind the form ``text``, with ``folder`` called /here."""
     output = StringOutputStream()
     with binding(STANDARD_OUTPUT, output, TRACE_OUTPUT, output, STANDARD_INPUT, StringInputStream("")):
         try:
@@ -83,7 +85,8 @@ def answer(session, text):
         else:
             with binding(PRINT_PRETTY, None):
                 line = words("=> " + " ; ".join(prin1_to_string(value) for value in values))
-    return [*(f"| {shown}".rstrip() for shown in output.text().splitlines()), comparable(line)]
+    lines = [*(f"| {shown}".rstrip() for shown in output.text().splitlines()), comparable(line)]
+    return [line.replace(str(folder), "/here") for line in lines]
 
 
 def recorded(line):
@@ -103,8 +106,9 @@ def comparable(line):
 
 
 @pytest.mark.parametrize("questions", SECTIONS)
-def test_the_symbol_answers_as_in_sbcl(session, questions):
-    package = Package("SECTION", use=[COMMON_LISP])
-    with binding(PACKAGE, package):
+def test_the_symbol_answers_as_in_sbcl(session, questions, tmp_path, request):
+    package = register(Package("SECTION", use=[COMMON_LISP]))
+    request.addfinalizer(lambda: delete_package(package))
+    with binding(PACKAGE, package, DEFAULTS, lisp_path(tmp_path)):
         for form, wanted in questions:
-            assert answer(session, form) == [recorded(line) for line in wanted], form
+            assert answer(session, form, tmp_path) == [recorded(line) for line in wanted], form

@@ -11,9 +11,9 @@ import platform
 import resource
 import sys
 
-from .conditions import error
-from .data import NO_VALUES, list_from
-from .packages import string_designator, sym
+from .conditions import error, type_error
+from .data import NO_VALUES, Character, LispString, list_from
+from .packages import is_symbol, string_designator, sym
 from .streams import STANDARD_INPUT, STANDARD_OUTPUT, BroadcastStream, EchoStream, standard_output
 
 LISP_NAMES = """lisp-implementation-type lisp-implementation-version machine-type machine-instance machine-version software-type
@@ -91,6 +91,8 @@ def ed(target=None):
 
 def provide(module):
     """``provide``: note that the module of that name, a string designator, is here."""
+    if not (is_symbol(module) or isinstance(module, (str, LispString, Character))):
+        return type_error(module, "(OR STRING SYMBOL CHARACTER)")
     name = string_designator(module)
     if name not in (MODULES.value or ()):
         MODULES.value = list_from([name, *(MODULES.value or ())])

@@ -38,13 +38,8 @@ def _print_python_path(path, stream):
 
 
 def _print_pattern(pattern, stream):
-    def contents():
-        for index, piece in enumerate(pattern.pieces):
-            if index:
-                stream.write(" ")
-            output_object(Cons(piece[0], piece[1]) if isinstance(piece, tuple) else piece, stream)
-
-    print_unreadable(pattern, stream, type_=True, body=contents)
+    pieces = list_from([Cons(piece[0], piece[1]) if isinstance(piece, tuple) else piece for piece in pattern.pieces])
+    print_unreadable(pattern, stream, type_=True, body=lambda: output_object(pieces, stream))
 
 
 def _print_two_way(both, stream):

@@ -58,7 +58,6 @@ class FileStream(FileStreamClass):
         self.characters, self.bytes = kind is CHARACTER or kind is None, kind is not CHARACTER
         self.format = format_ or external_format(None)
         self.waits = False
-        self._start = 0  # where in the file the text that was fetched begins
         self.original = self.target = None
 
     # ------------------------------------------------------------------------------------------------------- characters
@@ -71,17 +70,6 @@ class FileStream(FileStreamClass):
                 return complain_closed(self)
             return error(SimpleStreamError(self, doing, problem))
 
-    def _available(self):
-        if self._position < len(self._text):
-            return True
-        piece = self.more()
-        if not piece:
-            return False
-        kept = self._text[-1:]  # for unread-char
-        self._start -= self.format.width(kept)
-        self._text, self._position = kept + piece, len(kept)
-        return True
-
     def more(self):
         if self.closed:
             return complain_closed(self)
@@ -91,7 +79,6 @@ class FileStream(FileStreamClass):
         octets = self._system(self.file.readline)
         if self.format.codec.startswith(("utf-16", "utf-32")):
             octets += self._system(self.file.read)  # the byte of a newline may be half of another character
-        self._start = start
         try:
             return octets.decode(self.format.codec)
         except UnicodeDecodeError as problem:
@@ -170,7 +157,7 @@ class FileStream(FileStreamClass):
         self._text, self._position = "", 0
 
     def _bytes_read(self):
-        return self._start + self.format.width(self._text[:self._position])
+        return self.file.tell() - self.format.width(self._text[self._position:])
 
     def position(self):
         if self.closed:

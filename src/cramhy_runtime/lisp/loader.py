@@ -21,12 +21,13 @@ from pathlib import Path
 
 from .compilation_unit import compilation_unit
 from .conditions import CompileError, Condition, FileError, error
-from .data import Cons
+from .data import Cons, all_values
 from .dynamic import binding
 from .evaluator import PACKAGE, Unit, new_namespace
 from .files import lisp_path
 from .packages import sym, symbol_name
 from .places_in_source import locate as locate_by_traceback
+from .readtables import READTABLE
 
 LOAD_PATHNAME, LOAD_TRUENAME = sym("*LOAD-PATHNAME*"), sym("*LOAD-TRUENAME*")
 for _variable in (LOAD_PATHNAME, LOAD_TRUENAME):
@@ -64,33 +65,39 @@ def kept_path(path):
     return cache / f"{hashlib.sha256(str(path).encode()).hexdigest()[:16]}-{name}"
 
 
-def load_file(path, chain="", finished=None):
-    """Load a ``.lisp`` or ``.hy`` file; ``*package*`` is the same afterwards as before.
+def decoded(path, encoding=None):
+    """The text of a source file, UTF-8 if nothing else is said. What cannot be read is a file-error."""
+    try:
+        data = path.read_bytes()
+        return data.decode(encoding or "utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except OSError as problem:
+        return error(FileError(lisp_path(path), "Cannot load ~A: ~A.", str(path), problem.strerror))
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        return error(FileError(lisp_path(path), "Cannot load ~A: it is no UTF-8 text (line ~D, byte ~D of the file). Save it as UTF-8.",
+                               str(path), line, problem.start))
+
+
+def load_file(path, chain="", finished=None, show=None, encoding=None):
+    """Load a ``.lisp`` or ``.hy`` file; ``*package*`` and ``*readtable*`` are the same afterwards as before.
 
     path: the file. chain: fingerprint of what was loaded before it and may define macros that it uses. finished: called with
-    the package that is current at the end of the file.
+    the package that is current at the end of the file. show: called with the values of each form. encoding: UTF-8 if not given.
     Returns the fingerprint of this file with its chain. A missing file is a file-error, a broken one an error with its place.
     """
     path = Path(path).absolute()
-    try:
-        data = path.read_bytes()
-        text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
-    except OSError as problem:
-        return error(FileError(str(path), "Cannot load ~A: ~A.", str(path), problem.strerror))
-    except UnicodeDecodeError as problem:
-        line = data.count(b"\n", 0, problem.start) + 1
-        return error(FileError(str(path), "Cannot load ~A: it is no UTF-8 text (line ~D, byte ~D of the file). Save it as UTF-8.",
-                               str(path), line, problem.start))
+    text = decoded(path, encoding)
     fingerprint = hashlib.sha256(f"{stamp()}{chain}{path}".encode() + text.encode()).hexdigest()
-    with binding(PACKAGE, PACKAGE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
-        codes = _kept(path, fingerprint)
+    with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path),
+                  LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
+        codes = _kept(path, fingerprint) if show is None else None
         if codes is not None:
             namespace = new_namespace(str(path))
             for code in codes:
                 exec(code, namespace)
         else:
             with compilation_unit("file"):
-                codes = load_text(text, str(path), stored=True)
+                codes = load_text(text, str(path), stored=True, show=show)
             if codes is not None:
                 _keep(path, fingerprint, codes)
         if finished is not None:
@@ -98,8 +105,11 @@ def load_file(path, chain="", finished=None):
     return fingerprint
 
 
-def load_text(text, filename, stored=False):
-    """Load the forms of ``text``; with ``stored`` return their code objects, or ``None`` if they cannot be kept."""
+def load_text(text, filename, stored=False, show=None):
+    """Load the forms of ``text``; with ``stored`` return their code objects, or ``None`` if they cannot be kept.
+
+    show: called with the values of each form.
+    """
     from .reader import Reader
 
     reader = Reader(text, filename=filename)
@@ -113,13 +123,16 @@ def load_text(text, filename, stored=False):
         if _is_hy_requirement(form):
             continue
         try:
+            values = ()
             for part in unit.toplevel_parts(form):
                 code = _compile(unit, part)
                 if not unit.stored:
                     codes = None
                 if codes is not None:
                     codes.append(code)
-                unit.run(code)
+                values = all_values(unit.run(code))
+            if show is not None:
+                show(values)
         except Condition as problem:
             locate(problem, filename, reader.positions.get(id(form)))
             raise
@@ -180,16 +193,4 @@ def folder_of_load():
     return Path(LOAD_TRUENAME.value).parent if LOAD_TRUENAME.value is not None else Path.cwd()
 
 
-def load(designator, *, verbose=None, print=None, if_does_not_exist=True, external_format=None):
-    """``cl:load``: load a file by its name, looked for beside the file being loaded; ``.lisp`` may be left out."""
-    path = folder_of_load() / str(designator)
-    for candidate in (path, path.with_name(path.name + ".lisp"), path.with_name(path.name + ".hy")):
-        if candidate.is_file():
-            load_file(candidate)
-            return True
-    if if_does_not_exist is None:
-        return None
-    return error(FileError(str(path), "Couldn't load ~S: file does not exist.", str(path)))
-
-
-__all__ = ["CompileError", "load", "load_file", "load_text", "locate"]
+__all__ = ["CompileError", "load_file", "load_text", "locate"]

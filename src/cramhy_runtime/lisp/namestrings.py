@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 
-from .conditions import Error, FileError, error
+from .conditions import FileError, ParseError, error
 from .data import Cons, list_from
 from .late import late
 from .pathname_objects import (
@@ -31,7 +31,7 @@ from .pathname_objects import (
 )
 
 
-class NamestringParseError(Error):
+class NamestringParseError(ParseError):
     """Text that is no namestring: ``complaint`` about the character at ``offset``."""
 
     lisp_name = "SB-KERNEL::NAMESTRING-PARSE-ERROR"
@@ -177,9 +177,7 @@ def parse_logical(host, text, start=0):
     version = _logical_version(more[1], text, len(text) - len(more[1])) if len(more) > 1 else None
     if len(more) > 2:
         return error(NamestringParseError("extra stuff after end of file name", text, len(text) - len(more[-1]) - 1))
-    if not folders and not file:
-        directory = None
-    elif not folders:
+    if not folders:
         directory = (ABSOLUTE,)
     return LogicalPathname(host, UNSPECIFIC, directory, word(name, offset) if name else None, kind, version)
 
@@ -236,7 +234,7 @@ def directory_text(pathname, native=False):
         elif part is UP:
             pieces.append("..")
         elif part is BACK:
-            return _lose(pathname, ":BACK cannot be represented in namestrings", native)
+            return error("~S cannot be represented in namestrings.", BACK)
         elif native and not isinstance(part, str):
             return _lose(pathname, f"of the :DIRECTORY component {late.prin1_to_string(part)}", native)
         else:

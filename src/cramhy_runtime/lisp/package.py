@@ -14,7 +14,7 @@ from .packages import COMMON_LISP, sym
 MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
     strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
     class_definition slots protocol generic structures streams stream_functions file_streams pathnames wild_pathnames
-    logical_pathnames files file_stream_functions universal_time environment printer pretty pprint_dispatch
+    logical_pathnames files file_stream_functions universal_time environment program_files printer pretty pprint_dispatch
     format reader tokens readtables reader_functions symbols package_functions declarations control forms documentation describing
     inspecting apropos disassembling tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""

@@ -317,9 +317,12 @@ def merged_directories(given, base):
 
 def merge_pathnames(designator, defaults=UNSUPPLIED, default_version=NEWEST):
     """``merge-pathnames``: the pathname, with what it lacks taken from ``defaults`` (``*default-pathname-defaults*``)."""
-    path = pathname(designator)
     base = _defaults() if defaults is UNSUPPLIED or defaults is None else pathname(defaults)
-    owner = path.host if path.host is not UNIX else base.host if isinstance(designator, (str, LispString)) else path.host
+    if isinstance(base.host, LogicalHost) and isinstance(designator, (str, LispString)) and ":" not in str(designator):
+        path = parse_logical(base.host, str(designator))
+    else:
+        path = pathname(designator)
+    owner = path.host
     version = path.version or (base.version if path.name is None else None) or default_version
     merged = Pathname(owner, path.device or base.device, merged_directories(path.directory, base.directory), path.name or base.name,
                       base.type if path.type is None else path.type, version)

@@ -6,11 +6,13 @@ import os
 
 from . import systems
 from .conditions import error
-from .data import Cons, lisp_list, truth
+from .data import Cons, list_from, truth
 from .dynamic import binding
 from .faces import define_face
-from .loader import folder_of_load, load
+from .environment import MODULES, provide
+from .loader import folder_of_load
 from .packages import string_designator, sym
+from .program_files import load
 
 
 def load_system(package, system=None, force=None):
@@ -53,12 +55,20 @@ def find_system(name, error_p=True):
 
 
 def require(module, pathnames=None):
-    """``require``: load the system of that name unless it is there; ASDF itself always is."""
-    name = string_designator(module).lower()
-    if name in ("asdf", "uiop") or name.startswith("sb-"):
+    """``require``: load the module of that name unless ``*modules*`` says that it is there; the names of what was loaded.
+
+    pathnames: the file or files of it; without, it is the system of that name. ASDF itself and SBCL's own modules always are there.
+    """
+    name = string_designator(module)
+    before = list(MODULES.value or ())
+    if name in before or name.lower() in ("asdf", "uiop") or name.lower().startswith("sb-"):
         return None
-    systems.load_system(name)
-    return lisp_list(string_designator(module))
+    if pathnames is None:
+        systems.load_system(name.lower())
+        provide(name)
+    for path in pathnames if isinstance(pathnames, Cons) else [pathnames] if pathnames is not None else ():
+        load(path)
+    return list_from([each for each in MODULES.value or () if each not in before])
 
 
 def _defsystem(form, environment):
@@ -78,6 +88,6 @@ def define_faces():
                 variables={"*CURRENT-ROS-PACKAGE*": None})
     define_face("ASDF", functions={"load-system": asdf_load_system, "find-system": find_system, "defsystem": define_system_here})
     define_face("CRAMHY", functions={"define-system-here": define_system_here})
-    define_face("COMMON-LISP", functions={"load": load, "require": require})
+    define_face("COMMON-LISP", functions={"require": require})
     sym("ASDF::DEFSYSTEM").macro = _defsystem
 

@@ -50,13 +50,18 @@ def _characters(vector):
 def write_string(string, stream=None, *, start=0, end=None):
     """``write-string``: the characters ``start`` to ``end`` of ``string``. Returns ``string``."""
     text = _text(string)
-    output_stream(stream).write(text if not start and end is None else text[start:end])
+    if start or end is not None:
+        start, end = bounds(start, end, len(text))
+        text = text[start:end]
+    output_stream(stream).write(text)
     return string
 
 
 def write_line(string, stream=None, *, start=0, end=None):
     """``write-line``: as ``write-string``, and a newline."""
-    output_stream(stream).write(_text(string)[start:end] + "\n")
+    text = _text(string)
+    start, end = bounds(start, end, len(text))
+    output_stream(stream).write(text[start:end] + "\n")
     return string
 
 
@@ -132,6 +137,8 @@ def read_char_no_hang(stream=None, eof_error_p=True, eof_value=None, recursive_p
 def peek_char(peek_type=None, stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
     """``peek-char``: the next character, which stays; with T the next that is no white space, else the next like it."""
     stream = input_stream(stream)
+    if peek_type is not None and peek_type is not True and not isinstance(peek_type, Character):
+        return type_error(peek_type, "(OR CHARACTER BOOLEAN)")
     while True:
         character = stream.peek_char()
         if not character:
@@ -162,7 +169,8 @@ def read_line(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
 def read_sequence(sequence, stream, *, start=0, end=None):
     """``read-sequence``: fill ``sequence`` with characters or bytes; the index of the first element that was not filled."""
     stream = input_stream(stream)
-    start, end = bounds(start, end, len(elements(sequence)))
+    length = len(elements(sequence))
+    start, end = bounds(start, length if end is None else end, length)
     is_string, cell = isinstance(sequence, LispString), sequence
     for _ in range(start if isinstance(sequence, Cons) else 0):
         cell = cell.cdr
@@ -223,8 +231,17 @@ def make_broadcast_stream(*targets):
     return BroadcastStream(*_all(targets, "is_output", "OUTPUT-STREAM-P"))
 
 
+def _part(cls, attribute, name):
+    """The accessor of a part of streams of a class."""
+
+    def read(stream):
+        return getattr(stream, attribute) if isinstance(stream, cls) else type_error(stream, name)
+
+    return read
+
+
 def broadcast_stream_streams(stream):
-    return list_from(stream.streams)
+    return list_from(_part(BroadcastStream, "streams", "BROADCAST-STREAM")(stream))
 
 
 def make_concatenated_stream(*sources):
@@ -232,7 +249,7 @@ def make_concatenated_stream(*sources):
 
 
 def concatenated_stream_streams(stream):
-    return list_from(stream.streams)
+    return list_from(_part(ConcatenatedStream, "streams", "CONCATENATED-STREAM")(stream))
 
 
 def make_two_way_stream(source, sink):
@@ -241,12 +258,8 @@ def make_two_way_stream(source, sink):
     return TwoWayStream(source, sink)
 
 
-def two_way_stream_input_stream(stream):
-    return stream.source
-
-
-def two_way_stream_output_stream(stream):
-    return stream.sink
+two_way_stream_input_stream = _part(TwoWayStream, "source", "TWO-WAY-STREAM")
+two_way_stream_output_stream = _part(TwoWayStream, "sink", "TWO-WAY-STREAM")
 
 
 def make_echo_stream(source, sink):
@@ -255,16 +268,15 @@ def make_echo_stream(source, sink):
     return EchoStream(source, sink)
 
 
-echo_stream_input_stream = two_way_stream_input_stream
-echo_stream_output_stream = two_way_stream_output_stream
+echo_stream_input_stream = _part(EchoStream, "source", "ECHO-STREAM")
+echo_stream_output_stream = _part(EchoStream, "sink", "ECHO-STREAM")
 
 
 def make_synonym_stream(symbol):
     return SynonymStream(symbol) if isinstance(symbol, Symbol) else type_error(symbol, "SYMBOL")
 
 
-def synonym_stream_symbol(stream):
-    return stream.symbol
+synonym_stream_symbol = _part(SynonymStream, "symbol", "SYNONYM-STREAM")
 
 
 def call_with_output_to_string(function, target=None):
@@ -343,7 +355,8 @@ def y_or_n_p(control=None, *args):
 
 
 def yes_or_no_p(control=None, *args):
-    """``yes-or-no-p``: ask on ``*query-io*``; the end of the input counts as no."""
+    """``yes-or-no-p``: ring the bell and ask on ``*query-io*``; the end of the input counts as no."""
+    streams.QUERY_IO.value.write("\a")
     return _ask_until(control, args, "(yes or no) ", ("yes",), ("no",), 'Please type "yes" for yes or "no" for no.\n')
 
 

@@ -18,7 +18,7 @@ from .form_places import FormPlaces
 from .packages import COMMON_LISP_USER, KEYWORD, find_package, sym
 from .reader_errors import LineIndex, fail
 from .readtables import READTABLE, UPCASE, DispatchTable, call
-from .streams import InputStream, input_stream
+from .streams import EchoStream, InputStream, input_stream
 
 PACKAGE = sym("*PACKAGE*")
 if PACKAGE.value is UNBOUND:
@@ -541,8 +541,9 @@ class StreamReader(Reader):
 
     def __init__(self, source, strict=True):
         super().__init__(source._text, getattr(source, "label", "a stream"), strict=strict)
-        self.offset = source._position
+        self.offset = self.begun = source._position
         self.source = source
+        self.echoes = ()  # where what is read is shown
 
     @property
     def stream(self):
@@ -553,13 +554,21 @@ class StreamReader(Reader):
 
     def release(self):
         self.source._text, self.source._position = self.text, self.offset
+        for echo in self.echoes:
+            echo.write(self.text[self.begun:self.offset])
 
 
 def as_reader(stream):
     """The `Reader` for a stream argument; of a stream that is none, a `StreamReader`."""
     if isinstance(stream, Reader):
         return stream
-    stream = input_stream(stream)
+    stream, echoes = input_stream(stream), []
     while hasattr(stream, "source") and not isinstance(stream, Reader):  # two-way, echo and synonym streams
+        if isinstance(stream, EchoStream):
+            echoes.append(stream.sink)
         stream = stream.source
-    return stream if isinstance(stream, Reader) else StreamReader(stream)
+    if isinstance(stream, Reader):
+        return stream
+    reader = StreamReader(stream)
+    reader.echoes = echoes
+    return reader

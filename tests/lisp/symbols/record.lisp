@@ -5,6 +5,7 @@
 ;;;; ";; name" begins the section of a symbol; it is evaluated in a package of its own, in order. A form begins in the first column,
 ;;;; and its further lines do not. Behind it stand what it printed ("| line"), and its values ("=> 1 ; 2") or the class and
 ;;;; the text of the error ("!! TYPE-ERROR ..."). Recording again replaces the answers; ";;;" comments stay.
+;;;; Each section begins in an empty folder of its own, which is *default-pathname-defaults*; answers call it /here/.
 
 (defvar *forms* *standard-input*)
 (defvar *answers* *standard-output*)
@@ -20,10 +21,25 @@
                 unless (string= word "") collect word
                 while end do (setf start (1+ end)))))
 
+(defvar *folder* nil)
+
+(defun leave-folder ()
+  (when *folder* (sb-ext:delete-directory *folder* :recursive t)))
+
+(defun begin-folder ()
+  (leave-folder)
+  (setf *folder* (ensure-directories-exist (format nil "/tmp/~a-~d/" (gensym "SECTION") (sb-unix:unix-getpid)))
+        *default-pathname-defaults* (pathname *folder*)))
+
+(defun here (line)
+  (loop for start = (and *folder* (search *folder* line))
+        while start do (setf line (concatenate 'string (subseq line 0 start) "/here/" (subseq line (+ start (length *folder*)))))
+        finally (return line)))
+
 (defun write-output (text)
   (with-input-from-string (lines text)
     (loop for line = (read-line lines nil)
-          while line do (write-line (string-right-trim " " (format nil "| ~a" line)) *answers*))))
+          while line do (write-line (string-right-trim " " (format nil "| ~a" (here line))) *answers*))))
 
 (defun error-line (condition)
   (let ((*print-pretty* nil))
@@ -46,7 +62,7 @@
     (let ((*standard-output* output) (*trace-output* output) (*standard-input* (make-string-input-stream "")))
       (setf answer (answer-line text)))
     (write-output (get-output-stream-string output))
-    (write-line answer *answers*)))
+    (write-line (here answer) *answers*)))
 
 (defun starts-with (prefix line)
   (and (>= (length line) (length prefix)) (string= prefix line :end2 (length prefix))))
@@ -61,6 +77,7 @@
           unless (or (starts-with "=>" line) (starts-with "!!" line) (starts-with "|" line))
             do (cond ((starts-with ";; " line)
                       (finish)
+                      (begin-folder)
                       (setf *package* (make-package (gensym "SECTION-") :use '(:cl)))
                       (write-line line *answers*))
                      ((or (string= line "") (starts-with ";" line))
@@ -72,4 +89,5 @@
                      (t (finish)
                         (setf form line)
                         (write-line line *answers*))))
-    (finish)))
+    (finish)
+    (leave-folder)))
