@@ -128,7 +128,8 @@ def test_a_file_is_warned_of_at_its_end_in_the_order_of_its_text(lisp, tmp_path)
 """
 
 
-def test_a_file_that_is_loaded_without_being_compiled_is_silent(lisp, tmp_path):
+def test_a_file_that_is_loaded_without_being_compiled_is_silent(lisp, tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.dont_write_bytecode", False)  # else nothing is kept, and each load compiles
     (tmp_path / "plan.lisp").write_text("(defun stop () (let ((unused 1)) 2))")
     assert lisp.said('(load "plan.lisp")').count("caught") == 1
     assert lisp.said('(load "plan.lisp")') == ""

@@ -48,7 +48,7 @@ END-OF-FILE:
 """),
     ("(in-package :no-such-package)", """\
 SB-EXT:PACKAGE-DOES-NOT-EXIST:
-  The name :NO-SUCH-PACKAGE does not designate any package.
+  The name "NO-SUCH-PACKAGE" does not designate any package.
   at {file}:1:1
     (in-package :no-such-package)
     ^
