@@ -256,11 +256,15 @@
       `(quote ~name)
       (do
         (import cramhy_runtime.lisp.structures [boa-lambda-list])
-        (setv #(lambda-list variables) (boa-lambda-list (get rest 0)))
+        (setv initforms (dfor slot slots :if (or (not (listp slot)) (listp slot.cdr))
+                          (if (listp slot) slot.car slot) (if (listp slot) slot.cdr.car None)))
+        (setv #(lambda-list variables) (boa-lambda-list (get rest 0) initforms))
         `(list (quote ~name) (quote ~variables) (lambda ~lambda-list (list ~@(elements variables)))))))
 
 (defoperator defstruct [head #* slots]
   (setv #(name #* options) (if (listp head) head [head]) slots (list slots))
+  (when (not (is-symbol name))
+    (error "~S: ~S is not a symbol." (sym "DEFSTRUCT") name))
   (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
   (setv arguments [] constructors [])
   (for [option options]
@@ -280,7 +284,7 @@
       "INITIAL-OFFSET" (.extend arguments [(sym ":INITIAL-OFFSET") (get values 0)])
       "PRINT-FUNCTION" (when values (.extend arguments [(sym ":PRINT-FUNCTION") (function-form (get values 0))]))
       "PRINT-OBJECT" (when values (.extend arguments [(sym ":PRINT-OBJECT") (function-form (get values 0))]))
-      _ (raise (ValueError (+ "there is no option :" (symbol-name key) ".")))))
+      _ (error "unknown DEFSTRUCT option:~%  ~S" option)))
   (when constructors
     (.extend arguments [(sym ":CONSTRUCTORS") `(list ~@(lfor each constructors :if (is-not each None) each))]))
   `(%define-structure (quote ~name) (list ~@(map structure-slot slots)) ~@arguments :documentation ~documentation))

@@ -118,7 +118,7 @@ def test_names_of_functions_can_be_chosen_or_left_out():
 
 def test_a_constructor_by_position_falls_back_to_the_initforms_of_the_slots():
     a, b = Symbol("A"), Symbol("B")
-    lambda_list, variables = structures.boa_lambda_list(lisp_list(a, sym("&OPTIONAL"), b))
+    lambda_list, variables = structures.boa_lambda_list(lisp_list(a, sym("&OPTIONAL"), b), {})
     assert list(variables) == [a, b]
     assert list(list(lambda_list)[2]) == [b, list(lambda_list)[2].cdr.car]
     construct = lambda first, second=structures.unsupplied(): lisp_list(first, second)  # what the macro compiles

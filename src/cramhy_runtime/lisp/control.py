@@ -7,6 +7,8 @@ from .conditions import type_error
 from .data import UNBOUND, Cons, list_from, one
 from .evaluator import evaluate
 from .functions import functionp
+from .packages import is_symbol
+from .symbols import invalid_name
 
 LISP_NAMES = """eval compiled-function-p fdefinition get-setf-expansion
 error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
@@ -23,6 +25,8 @@ def fdefinition(name):
     from .compiler.support import fdefinition as definition
     from .compiler.support import setf_function
 
+    if not isinstance(name, Cons) and not is_symbol(name):
+        return error(invalid_name(name))
     return setf_function(name.cdr.car) if isinstance(name, Cons) else definition(name)
 
 

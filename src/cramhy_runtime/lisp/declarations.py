@@ -7,6 +7,7 @@ checked for its shape all the same, so that a slip of the pen is found.
 from __future__ import annotations
 
 from .compilation_unit import muffle
+from .compiler.declared_types import checkable
 from .conditions import program_error, type_error, warn
 from .data import Cons, MultipleValues, Symbol, list_from
 from .declaration_names import EXTENSIONS, is_declared, is_extension
@@ -45,7 +46,9 @@ def _proclaim(specifier):
         for symbol in names:
             proclaim_special(symbol)
     elif kind in (sym("TYPE"), sym("FTYPE")):
-        names = names[1:]
+        kind_of_value, *names = names
+        for symbol in names if kind is sym("TYPE") and checkable(kind_of_value) else ():
+            data(symbol)["type"] = kind_of_value
     elif kind is sym("DECLARATION"):
         for symbol in names:
             data(symbol)["declaration"] = True

@@ -10,7 +10,7 @@ from .conditions import CaseFailure, SimpleTypeError, error, program_error
 from .data import Cons, MultipleValues, list_from, truth
 from .hash_tables import need_table
 from .packages import is_symbol, keyword, sym, symbol_name
-from .types import meaning_of_type
+from .type_names import simplified_type
 
 # ------------------------------------------------------------------------------------------------------------ destructuring
 
@@ -70,7 +70,7 @@ def ask_for_value(value, operator, possibilities):
 
 
 def check_type_failed(value, place, kind, name):
-    text, kind = name, meaning_of_type(kind)
+    text, kind = name, simplified_type(kind)
     condition = SimpleTypeError("The value of ~S is ~S, which is not ~:[of type ~S~;~:*~A~].", place, value, text, kind,
                                 datum=value, expected_type=kind)
     where = symbol_name(place) if is_symbol(place) else "the place"

@@ -22,6 +22,7 @@ WHERE = {
     "slots": "missing_value",
     "structures": "slots_of",
     "types": "expand_type is_known_type type_of type_predicate typep",
+    "type_names": "simplified_type",
     "rounding": "floor truncate",
     "effective_forms": "function_of_form",
     "protocol": """initialize_instance no_applicable_method no_next_method print_object reinitialize_instance shared_initialize

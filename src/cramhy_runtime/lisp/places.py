@@ -123,12 +123,22 @@ def _setf(form, environment):
 
 @macro("PSETF")
 def _psetf(form, environment):
-    bindings, storing = [], []
-    for place, value in _pairs(form):
-        temporaries, forms, stores, setter, _ = setf_expansion(place, environment)
-        bindings += [*zip(temporaries, forms), (stores[0], value)]
-        storing.append(setter)
-    return _let(bindings, *storing, None)
+    pairs = [(setf_expansion(place, environment), value) for place, value in _pairs(form)]
+
+    def nested(rest, setters):
+        if not rest:
+            return lisp_list(PROGN, *setters, None)
+        (temporaries, forms, stores, setter, _), value = rest[0]
+        return _let(zip(temporaries, forms), _bind_stores(stores, value, nested(rest[1:], [*setters, setter])))
+
+    return nested(pairs, [])
+
+
+def _bind_stores(stores, value, body):
+    """A form that binds the store variables of a place to the value, or several to the values, of the form ``value``."""
+    if len(stores) == 1:
+        return _let([(stores[0], value)], body)
+    return lisp_list(sym("MULTIPLE-VALUE-BIND"), list_from(stores), value, body)
 
 
 @macro("PSETQ")
@@ -139,20 +149,15 @@ def _psetq(form, environment):
 @macro("SHIFTF")
 def _shiftf(form, environment):
     *places, value = list(form.cdr)
-    bindings, setters, previous = [], [], None
-    result = gensym("RESULT")
-    for place in places:
-        temporaries, forms, stores, setter, getter = setf_expansion(place, environment)
-        bindings += zip(temporaries, forms)
-        if previous is None:
-            bindings.append((result, getter))
-        else:
-            bindings.append((previous[0], getter))
-            setters.append(previous[1])
-        previous = (stores[0], setter)
-    bindings.append((previous[0], value))
-    setters.append(previous[1])
-    return _let(bindings, *setters, result)
+    expansions = [setf_expansion(place, environment) for place in places]
+    values = [getter for *_, getter in expansions[1:]] + [value]
+    setters = [setter for _, _, _, setter, _ in expansions]
+    results = [gensym("RESULT") for _ in expansions[0][2]]
+    body = lisp_list(PROGN, *setters, results[0] if len(results) == 1 else Cons(sym("VALUES"), list_from(results)))
+    for (_, _, stores, _, _), new in reversed(list(zip(expansions, values))):
+        body = _bind_stores(stores, new, body)
+    body = _bind_stores(results, expansions[0][4], body)
+    return _let([pair for place in expansions for pair in zip(place[0], place[1])], body)
 
 
 @macro("ROTATEF")
@@ -160,10 +165,10 @@ def _rotatef(form, environment):
     places = [setf_expansion(place, environment) for place in form.cdr or ()]
     if not places:
         return None
-    bindings = [pair for place in places for pair in zip(place[0], place[1])]
-    for index, (_, _, stores, _, _) in enumerate(places):
-        bindings.append((stores[0], places[(index + 1) % len(places)][4]))
-    return _let(bindings, *[place[3] for place in places], None)
+    body = lisp_list(PROGN, *[place[3] for place in places], None)
+    for index in reversed(range(len(places))):
+        body = _bind_stores(places[index][2], places[(index + 1) % len(places)][4], body)
+    return _let([pair for place in places for pair in zip(place[0], place[1])], body)
 
 
 def modify(place, environment, compute):
@@ -230,17 +235,17 @@ def _define_modify_macro(form, environment):
 
     The lambda list takes the forms after the place apart; only &optional and &rest are allowed in it.
     """
-    name, lambda_list, function, *_ = list(form.cdr)
+    name, lambda_list, function, *text = list(form.cdr)
     quote = sym("QUOTE")
     parsed = parse(lambda_list)
     if parsed.has_keys or parsed.aux:
         return error(CompileError("&KEY is not allowed in a DEFINE-MODIFY-MACRO lambda list: ~S", lambda_list))
     variables = [*parsed.required, *(variable for variable, _, _ in parsed.optional)]
     arguments = lisp_list(sym("LAMBDA"), lambda_list, Cons(sym("LIST*"), list_from([*variables, parsed.rest])))
-    return lisp_list(support("DEFINE-MODIFIER"), lisp_list(quote, name), arguments, lisp_list(quote, function))
+    return lisp_list(support("DEFINE-MODIFIER"), lisp_list(quote, name), arguments, lisp_list(quote, function), *text[:1])
 
 
-def define_modifier(name, arguments, function):
+def define_modifier(name, arguments, function, documentation=None):
     """What ``define-modify-macro`` does when it is run: ``arguments`` gives the list of the forms after the place."""
 
     def expand(form, environment):
@@ -249,6 +254,7 @@ def define_modifier(name, arguments, function):
         return modify(place, environment, lambda old: lisp_list(function, old, *forms))
 
     name.macro = expand
+    expand.documentation = documentation
     return name
 
 

@@ -369,8 +369,10 @@ def _define_constructor(structure, constructor):
     _function(symbol, construct)
 
 
-def boa_lambda_list(lambda_list):
-    """(lambda list, variables) for a BOA constructor: optional and keyword parameters without default get ``(unsupplied)``.
+def boa_lambda_list(lambda_list, initforms):
+    """(lambda list, variables) for a BOA constructor: optional and keyword parameters without default get that of their slot.
+
+    initforms: those of the slots by name, as far as the form itself gives them; others, of included slots, are ``(unsupplied)``.
 
     The macro then passes ``(list name (quote variables) (lambda lambda-list (list . variables)))`` to `define_structure`, where
     a value that is `UNSUPPLIED` means that the slot's initform is used (ANSI 3.4.6).
@@ -386,7 +388,7 @@ def boa_lambda_list(lambda_list):
         parts = python_list(item) if isinstance(item, Cons) else [item]
         variable = parts[0].cdr.car if isinstance(parts[0], Cons) else parts[0]
         if state in ("&OPTIONAL", "&KEY") and len(parts) == 1:
-            parts.append(missing)
+            parts.append(initforms.get(variable, missing))
         variables.append(variable)
         if len(parts) == 3:
             variables.append(parts[2])

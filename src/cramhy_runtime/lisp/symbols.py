@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from . import packages
-from .conditions import error, type_error
+from .conditions import SimpleTypeError, error, type_error
 from .data import Cons, Keyword, Symbol, UNBOUND, UndefinedFunction, truth
 from .definitions import traced_like
 from .evaluator import PACKAGE
 from .package_errors import check_symbol
 from .packages import find_package_or_error, is_symbol, sym
+from .sequence_types import is_string
 
 LISP_NAMES = """symbolp keywordp symbol-name symbol-package symbol-value set symbol-function boundp fboundp makunbound fmakunbound
 make-symbol gensym gentemp copy-symbol"""
@@ -41,8 +42,11 @@ def symbol_value(symbol):
 
 
 def set_symbol_value(value, symbol):
+    if not is_symbol(symbol):
+        return type_error(symbol, "SYMBOL", "\nwhen binding SYMBOL")
     if not isinstance(symbol, Symbol) or symbol.constant:
-        return error("~S is a constant and cannot be set.", symbol)
+        maxim = {None: "Nihil ex nihil. (can't set ~S of NIL)", True: "Veritas aeterna. (can't set ~S of T)"}.get(symbol)
+        return error(maxim, sym("SYMBOL-VALUE")) if maxim else error("Can't set ~S of ~S.", sym("SYMBOL-VALUE"), symbol)
     symbol.value = value
     return value
 
@@ -67,12 +71,19 @@ def boundp(symbol):
     return True if not isinstance(_symbol(symbol), Symbol) or symbol.value is not UNBOUND else None
 
 
+def invalid_name(name):
+    """The error that ``name`` names no function."""
+    return SimpleTypeError("Invalid function name: ~S", name, datum=name, expected_type="(SATISFIES SB-INT:LEGAL-FUNCTION-NAME-P)")
+
+
 def fboundp(name):
     from .compiler.analyze import SPECIAL_FORMS
 
     if isinstance(name, Cons):
         return name.cdr.car.setf_function if isinstance(name.cdr.car, Symbol) else None
-    if not isinstance(_symbol(name), Symbol):
+    if not is_symbol(name):
+        return error(invalid_name(name))
+    if not isinstance(name, Symbol):
         return None
     if not isinstance(name.function, UndefinedFunction):
         return name.function
@@ -96,7 +107,7 @@ def fmakunbound(name):
 
 
 def make_symbol(name):
-    return Symbol(str(name))
+    return Symbol(str(name)) if is_string(name) else type_error(name, "STRING", "\nwhen binding SB-IMPL::STRING")
 
 
 GENSYM_COUNTER = sym("*GENSYM-COUNTER*")
@@ -104,10 +115,16 @@ GENSYM_COUNTER.value, GENSYM_COUNTER.special = 0, True
 
 
 def gensym(prefix="G"):
-    if isinstance(prefix, int):
+    """A new symbol without a package; its name ends in ``*gensym-counter*``, which goes up, or in the number ``prefix``."""
+    if isinstance(prefix, int) and not isinstance(prefix, bool) and prefix >= 0:
         return Symbol(f"G{prefix}")
-    GENSYM_COUNTER.value += 1
-    return Symbol(f"{prefix}{GENSYM_COUNTER.value}")
+    if not is_string(prefix):
+        return type_error(prefix, "(OR STRING UNSIGNED-BYTE)", "\nwhen binding SB-IMPL::THING")
+    number = GENSYM_COUNTER.value
+    if not isinstance(number, int) or number < 0:
+        return type_error(number, "UNSIGNED-BYTE")
+    GENSYM_COUNTER.value = number + 1
+    return Symbol(f"{prefix}{number}")
 
 
 def gentemp(prefix="T", package=None):
@@ -120,7 +137,7 @@ def gentemp(prefix="T", package=None):
 
 
 def copy_symbol(symbol, properties=None):
-    copy = Symbol(packages.symbol_name(symbol))
+    copy = Symbol(packages.symbol_name(_symbol(symbol)))
     if truth(properties):
         copy.value, copy.function, copy.plist = symbol.value, symbol.function, symbol.plist
     return copy

@@ -8,6 +8,8 @@ defined later is found then, because unknown names are not remembered. ``subtype
 
 from __future__ import annotations
 
+from types import BuiltinFunctionType, FunctionType
+
 import importlib
 from fractions import Fraction
 from pathlib import PurePath
@@ -367,24 +369,6 @@ def expand_type(specifier):
         specifier = one(expander(form, None))
 
 
-def meaning_of_type(specifier):
-    """``specifier`` in the words of the standard, as errors show it: types of ``deftype`` expanded, also within ``and or not``, and
-    ranges of integers by their short names.
-    """
-    specifier = expand_type(specifier)
-    if not isinstance(specifier, Cons):
-        return specifier
-    head, arguments = symbol_name(specifier.car), python_list(specifier.cdr)
-    if head in ("AND", "OR", "NOT"):
-        return lisp_list(specifier.car, *map(meaning_of_type, arguments))
-    if head == "INTEGER" and len(arguments) == 2 and arguments[0] == 0 and type(arguments[1]) is int and arguments[1] > 0:
-        size = arguments[1] + 1
-        if size & (size - 1):
-            return lisp_list(sym("MOD"), size)
-        return sym("BIT") if size == 2 else lisp_list(sym("UNSIGNED-BYTE"), size.bit_length() - 1)
-    return specifier
-
-
 def is_known_type(specifier):
     """Whether ``specifier`` names a type; used by checks that must not fail."""
     if isinstance(specifier, Symbol):
@@ -419,6 +403,8 @@ def type_of(object):
         return lisp_list(sym("COMPLEX"), _part_type(object))
     if _is_array(object):
         return array_type(object)
+    if isinstance(object, FunctionType | BuiltinFunctionType):
+        return sym("COMPILED-FUNCTION")
     return class_name(class_of(object))
 
 

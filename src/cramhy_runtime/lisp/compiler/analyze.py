@@ -16,8 +16,9 @@ from ..macros import ensure_loaded, macroexpand_1
 from ..methods import Shape
 from ..packages import is_symbol, sym
 from . import nodes
+from .declared_types import declared_types, kind_of_type
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable
-from .nodes import (Call, CallLocal, CallSetf, CallValue, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,
+from .nodes import (Call, CallLocal, CallSetf, CallValue, Checked, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,
                     Parameters, Progn, SetGlobal, SetLocal)
 from .scrutiny import CRAMHY, Scrutiny, tuple_of
 
@@ -188,13 +189,21 @@ class Analyzer(Scrutiny):
             return self.fail("The constant ~S cannot be bound.", symbol)
         return symbol.special or symbol in specials
 
-    def bind(self, symbol, env, specials):
+    def bind(self, symbol, env, specials, types=None):
         """Bind ``symbol`` in ``env``: the new `Variable`, or the symbol itself when it is special."""
         if self.binds_special(symbol, specials):
             env.variables[symbol] = SpecialVariable(symbol)
             return symbol
         variable = env.variables[symbol] = Variable(symbol, env.scope)
+        if types:
+            variable.type = types.get(symbol)
         return variable
+
+    @staticmethod
+    def checked(symbol, node, types, given=True):
+        """The value ``node`` for ``symbol``, with the check of the type that is declared for it."""
+        kind = types.get(symbol) if types else None
+        return node if kind is None or not given else Checked(node, kind, symbol)
 
     # --------------------------------------------------------------------------------------------------------- functions
 
@@ -214,6 +223,8 @@ class Analyzer(Scrutiny):
         specifiers, documentation, forms = self.declarations(body, env, documentation=True)
         specials = self.specials(specifiers)
         own = []
+        types = declared_types(specifiers)
+        checks = []
         parameters = Parameters(has_keys=parsed.has_keys, allow_other_keys=parsed.allow_other_keys)
         dynamic = []
 
@@ -225,6 +236,9 @@ class Analyzer(Scrutiny):
             special = self.binds_special(symbol, specials)
             # a special parameter is bound when all parameters have their values; the defaults of later ones see the argument
             variable = inner.variables[symbol] = Variable(symbol, scope)
+            if symbol in types:
+                variable.type = types[symbol]
+                checks.append(Checked(LocalVariable(variable), types[symbol], symbol, entry=True))
             if special:
                 dynamic.append((symbol, variable))
             else:
@@ -259,6 +273,11 @@ class Analyzer(Scrutiny):
         self.muffled = muffled
         if bindings:
             body_node = Let(bindings, body_node)
+        if checks:
+            body_node = progn([*checks, body_node])
+            if not (parsed.optional or parsed.has_keys):  # else a default may use them before they are checked
+                for check in checks:
+                    check.value.variable.proven = kind_of_type(check.type)
         node = Lambda(name, parameters, body_node, scope, documentation)
         return node
 
@@ -296,10 +315,13 @@ class Analyzer(Scrutiny):
         found = env.variable(symbol)
         if isinstance(found, Variable):
             self.set_ignored(found)
+            if found.type is not None:
+                node = Checked(node, found.type)
             return SetLocal(found.used_from(env.scope, assign=True), node)
         if found is None:
             self.free_variable(symbol, env, assigned=True)
-        return SetGlobal(symbol, node)
+        kind = (symbol.compiler_data or {}).get("type")
+        return SetGlobal(symbol, node if kind is None else Checked(node, kind))
 
     def toplevel(self, form, names=None):
         """The node of a top-level form as the body of a function without parameters."""

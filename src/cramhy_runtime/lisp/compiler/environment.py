@@ -66,6 +66,8 @@ class Variable:
         self.reads = self.writes = 0  # these and the next are found by ``facts.py``
         self.values = []
         self.kind = None
+        self.type = None  # the declared type, which assigned values are checked for
+        self.proven = None  # the kind of a parameter whose type is checked on entry
 
     @property
     def fresh(self):

@@ -13,6 +13,7 @@ from dataclasses import fields
 from ..data import Symbol
 from ..packages import sym
 from . import nodes
+from .declared_types import kind_of_type
 
 NONE_YET, ANY = "none yet", None
 
@@ -105,9 +106,11 @@ def kind_of(node):
         kind = value.__class__
         return "int" if kind is int else "float" if kind is float else ANY
     if kind is nodes.LocalVariable:
-        return node.variable.kind
+        return node.variable.proven or node.variable.kind
     if kind is nodes.SetLocal:
         return kind_of(node.value)
+    if kind is nodes.Checked:
+        return kind_of_type(node.type) or kind_of(node.value)
     if kind is nodes.Call:
         return _call_kind(node)
     if kind is nodes.If:

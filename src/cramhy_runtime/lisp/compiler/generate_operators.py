@@ -13,6 +13,7 @@ import sys
 from ..packages import sym
 from . import nodes
 from .core import NONE, TRUE, Expression, Symbol, expression, word
+from .declared_types import kind_of_type
 from .destinations import VALUES
 from .facts import DIVIDE, MINUS, PLUS, TIMES, kind_of
 
@@ -68,6 +69,23 @@ class OperatorGenerator:
                 first.append(expression(SETX, name, model))
                 later.append(name)
         return first, later
+
+    def Checked(self, node, destination):
+        """A value of a declared type: one comparison of classes where that proves it."""
+        kind = kind_of_type(node.type)
+        if kind is not None and not node.entry and kind_of(node.value) == kind:
+            return self.gen(node.value, destination)
+        (first,), (later,) = self.operands([node.value])
+        place = [self.constant(node.place)] if node.place is not None else []
+        if kind is None:
+            return self.finish(self.positioned(self.call("checked", first, self.literal(node.type), *place), node), node, destination)
+        slow = self.positioned(self.call("checked", later, self.literal(node.type), *place), node)
+        wanted = INT if kind == "int" else FLOAT
+        if destination.kind == "effect":
+            self.emit(word("when"), expression(IS_NOT, class_of(first), wanted), slow)
+            self.effects += 1
+            return None
+        return self.finish(expression(IF, expression(IS, class_of(first), wanted), later, slow), node, destination)
 
     def arithmetic(self, node, symbol, arguments):
         """The expression of a sum, difference, product or quotient of two operands."""

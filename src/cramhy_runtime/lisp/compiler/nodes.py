@@ -53,6 +53,23 @@ class SetGlobal(Node):
 
 
 @dataclass
+class Checked(Node):
+    """``value``, the first of whose values must be of the declared ``type``. ``place``: the variable that is bound to it.
+
+    entry: whether it is the check of a parameter, on which rests what the rest of the function takes for proven.
+    """
+
+    value: Node
+    type: object
+    place: object = None
+    entry: bool = False
+
+    @property
+    def single(self):
+        return self.value.single
+
+
+@dataclass
 class Call(Node):
     """A call of the global function of ``symbol``."""
 

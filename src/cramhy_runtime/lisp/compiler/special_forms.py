@@ -13,8 +13,9 @@ from ..methods import Shape
 from ..late import late
 from ..packages import is_symbol, sym
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
+from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
-from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue, Constant, FunctionReference, Functions, Go, If,
+from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue, Checked, Constant, FunctionReference, Functions, Go, If,
                     Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom, Support,
                     TagbodyNode, UnwindProtect)
 
@@ -159,12 +160,12 @@ def _free_specials(specials, env, bound):
 def _let(analyzer, form, env):
     parts = _parts(analyzer, form, 1)
     specifiers, _, forms = analyzer.declarations(parts[1:], env)
-    specials = analyzer.specials(specifiers)
+    specials, types = analyzer.specials(specifiers), declared_types(specifiers)
     pairs = [_binding(analyzer, item) for item in _items(analyzer, form, parts[0])]
     _distinct(analyzer, [symbol for symbol, _ in pairs], "LET")
-    values = [analyzer.form(value, env) for _, value in pairs]
+    values = [analyzer.checked(symbol, analyzer.form(value, env), types, value is not None) for symbol, value in pairs]
     inner = env.child()
-    bindings = [(analyzer.bind(symbol, inner, specials), value) for (symbol, _), value in zip(pairs, values)]
+    bindings = [(analyzer.bind(symbol, inner, specials, types), value) for (symbol, _), value in zip(pairs, values)]
     _free_specials(specials, inner, {symbol for symbol, _ in pairs})
     body = analyzer.scope([variable for variable, _ in bindings], specifiers, forms, inner)
     return _bound(body, Let(bindings, body)) if bindings else body
@@ -174,13 +175,13 @@ def _let(analyzer, form, env):
 def _let_star(analyzer, form, env):
     parts = _parts(analyzer, form, 1)
     specifiers, _, forms = analyzer.declarations(parts[1:], env)
-    specials = analyzer.specials(specifiers)
+    specials, types = analyzer.specials(specifiers), declared_types(specifiers)
     bindings, inner = [], env
     for item in _items(analyzer, form, parts[0]):
         symbol, value = _binding(analyzer, item)
-        node = analyzer.form(value, inner)
+        node = analyzer.checked(symbol, analyzer.form(value, inner), types, value is not None)
         inner = inner.child()
-        bindings.append((analyzer.bind(symbol, inner, specials), node))
+        bindings.append((analyzer.bind(symbol, inner, specials, types), node))
     inner = inner.child()
     _free_specials(specials, inner, {binding[0] if isinstance(binding[0], Symbol) else binding[0].symbol for binding in bindings})
     node = analyzer.scope([variable for variable, _ in bindings], specifiers, forms, inner)
@@ -358,7 +359,8 @@ def _progv(analyzer, form, env):
 def _the(analyzer, form, env):
     kind, value = _parts(analyzer, form, 2, 2)
     analyzer.mention_type(kind, form)
-    return analyzer.form(value, env)
+    node = analyzer.form(value, env)
+    return Checked(node, kind) if checkable(kind) else node
 
 
 @special("EVAL-WHEN")
@@ -398,12 +400,16 @@ def _multiple_value_bind(analyzer, form, env):
     symbols, values, *body = _parts(analyzer, form, 2)
     node = analyzer.form(values, env)
     specifiers, _, forms = analyzer.declarations(body, env)
-    specials = analyzer.specials(specifiers)
+    specials, types = analyzer.specials(specifiers), declared_types(specifiers)
     inner = env.child()
     symbols = _items(analyzer, form, symbols)
-    variables = [analyzer.bind(symbol, inner, specials) for symbol in symbols]
+    variables = [analyzer.bind(symbol, inner, specials, types) for symbol in symbols]
     _free_specials(specials, inner, set(symbols))
     body_node = analyzer.scope(variables, specifiers, forms, inner)
+    checks = [Checked(LocalVariable(variable), variable.type) for variable in variables
+              if isinstance(variable, Variable) and variable.type is not None]
+    if checks:
+        body_node = progn([*checks, body_node])
     return _bound(body_node, MultipleValueBind(variables, node, body_node))
 
 

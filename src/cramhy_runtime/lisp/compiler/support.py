@@ -24,6 +24,7 @@ from ..functions import function_of
 from ..irrational import complex_
 from ..late import late
 from ..packages import intern, keyword, printed, sym
+from .declared_types import checked
 
 
 class Cell:
@@ -270,7 +271,7 @@ NAMESPACE = {
     "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
     "LCons": Cons, "LFunction": FunctionType, "Lshield": kernel.shield,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
-    "Lunbound": UNBOUND, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
+    "Lunbound": UNBOUND, "Lchecked": checked, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lcharacter": Character, "Lfloat": float, "Lcomma": Comma,
