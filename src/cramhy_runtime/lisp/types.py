@@ -20,12 +20,12 @@ from .class_objects import StandardObject, when_classes_change
 from .classes import class_name, class_of, symbol_class
 from .complex_numbers import parts
 from .conditions import SimpleError, error
-from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, python_list, truth
+from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
 from .element_types import upgraded_element_type
 from .equality import eql, equal
 from .generic import GenericFunction
 from .package_errors import check_symbol
-from .packages import Package, is_symbol, sym, symbol_name
+from .packages import Package, is_symbol, sym
 from .pathname_objects import Pathname
 from .structures import StructureObject
 from .vectors import LispArray, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
