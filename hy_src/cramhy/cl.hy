@@ -47,6 +47,12 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defn otherwise? [key]
   (or (is key True) (is key (sym "OTHERWISE"))))
 
+(defn check-clauses [operator clauses]
+  "T and OTHERWISE stand for any key only in the last clause of `case` and `typecase`."
+  (for [clause (cut clauses 0 -1)]
+    (when (and (listp clause) (is clause.car (sym "OTHERWISE")))
+      (error "Bad ~A clause:~%  ~S~%~S is allowed as the key designator only in the last clause. Use (~S) instead, or move the clause to the end." operator clause clause.car clause.car))))
+
 (defn choose [variable clauses test default]
   "Nested conditionals for the clauses of `case` and its relatives."
   (setv form default)
@@ -61,6 +67,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (list-from (sum (lfor clause clauses (if (listp clause.car) (elements clause.car) [clause.car])) [])))
 
 (defoperator case [key #* clauses]
+  (check-clauses "CASE" clauses)
   (duplicate-keys "CASE" clauses)
   (setv variable (gensym "KEY"))
   `(let [[~variable ~key]] ~(choose variable clauses key-test None)))
@@ -82,6 +89,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
               `(progn (setf ~place (%ask-for-value ~variable "CCASE" (quote ~(all-keys clauses)))) (go ~again))))))))
 
 (defoperator typecase [key #* clauses]
+  (check-clauses "TYPECASE" clauses)
   (setv variable (gensym "KEY"))
   `(let [[~variable ~key]] ~(choose variable clauses type-test None)))
 

@@ -297,6 +297,8 @@ def _tagbody(analyzer, form, env):
     for item in parts:
         if not isinstance(item, Cons):
             index += 1
+            if item in inner.tags:
+                analyzer.fail("The tag ~S appears more than once in a tagbody.", item)
             inner.tags[item] = (tagbody, index)
             segments.append([])
         else:
@@ -403,6 +405,7 @@ def _multiple_value_bind(analyzer, form, env):
     specials, types = analyzer.specials(specifiers), declared_types(specifiers)
     inner = env.child()
     symbols = _items(analyzer, form, symbols)
+    _distinct(analyzer, symbols, "MULTIPLE-VALUE-BIND")
     variables = [analyzer.bind(symbol, inner, specials, types) for symbol in symbols]
     _free_specials(specials, inner, set(symbols))
     body_node = analyzer.scope(variables, specifiers, forms, inner)

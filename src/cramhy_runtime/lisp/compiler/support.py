@@ -107,7 +107,7 @@ def block_value(exit_, token):
 def return_from(token, value):
     """Leave the block of ``token`` with ``value``."""
     if not token.active:
-        error(SimpleControlError("attempt to leave a block or tagbody whose form has already returned"))
+        error(SimpleControlError("attempt to RETURN-FROM a block or GO to a tag that no longer exists"))
     token.value = value
     raise token
 
