@@ -26,7 +26,7 @@ def boot():
         return
     _booted = True
     from cramhy_runtime import kernel
-    from cramhy_runtime.lisp import evaluator, importer, package, packages, places_in_source, ros_load, systems
+    from cramhy_runtime.lisp import asdf, evaluator, importer, package, packages, places_in_source, ros_load, systems, uiop
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 
     kernel.allow_deep_recursion()
@@ -40,6 +40,8 @@ def boot():
     systems.provide_system(SYSTEMS)
     packages.on_demand.update(systems.LIBRARY_PACKAGES)
     ros_load.define_faces()
+    asdf.define_faces()
+    uiop.define_faces()
     importer.install()
     kernel.describe_frame = places_in_source.describe_frame
     evaluator.PACKAGE.value = COMMON_LISP_USER

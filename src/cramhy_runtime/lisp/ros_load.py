@@ -1,4 +1,4 @@
-"""``ros-load`` and ``asdf``: how a user loads a system (roslisp.md section 12)."""
+"""``ros-load``: how a user of ROS loads a system (roslisp.md section 12); and ``load`` and ``require``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from .data import Cons, list_from, truth
 from .dynamic import binding
 from .faces import define_face
 from .environment import MODULES, provide
-from .loader import folder_of_load
 from .packages import string_designator, sym
 from .program_files import load
 
@@ -39,21 +38,6 @@ def ros_home():
     return os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
 
 
-def asdf_load_system(system, *, force=None, verbose=None):
-    """``asdf:load-system``"""
-    systems.load_system(string_designator(system), truth(force))
-    return True
-
-
-def find_system(name, error_p=True):
-    known = string_designator(name).lower()
-    if known in systems.built_in:
-        return True
-    if not truth(error_p) and systems.find_asd(known) is None:
-        return None
-    return systems.find_system(known)
-
-
 def require(module, pathnames=None):
     """``require``: load the module of that name unless ``*modules*`` says that it is there; the names of what was loaded.
 
@@ -71,23 +55,10 @@ def require(module, pathnames=None):
     return list_from([each for each in MODULES.value or () if each not in before])
 
 
-def _defsystem(form, environment):
-    quote = sym("QUOTE")
-    return Cons(sym("CRAMHY::DEFINE-SYSTEM-HERE"), Cons(Cons(quote, Cons(form, None)), None))
-
-
-def define_system_here(form):
-    """A ``defsystem`` evaluated outside an ``.asd`` file: its folder is that of the file being loaded."""
-    return systems.define_system(form, folder_of_load()).name
-
-
 def define_faces():
-    """Make the packages ROS-LOAD-MANIFEST (ROS-LOAD) and ASDF."""
+    """Make the package ROS-LOAD-MANIFEST (ROS-LOAD)."""
     define_face("ROS-LOAD-MANIFEST", nicknames=["ROS-LOAD"], functions={"load-system": load_system, "ros-package-path": ros_package_path,
                                                                         "ros-home": ros_home},
                 variables={"*CURRENT-ROS-PACKAGE*": None})
-    define_face("ASDF", functions={"load-system": asdf_load_system, "find-system": find_system, "defsystem": define_system_here})
-    define_face("CRAMHY", functions={"define-system-here": define_system_here})
     define_face("COMMON-LISP", functions={"require": require})
-    sym("ASDF::DEFSYSTEM").macro = _defsystem
 

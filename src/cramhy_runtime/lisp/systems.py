@@ -10,36 +10,17 @@ from __future__ import annotations
 
 import functools
 import os
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from . import loader
 from .compilation_unit import compilation_unit
-from .conditions import CompileError, SimpleError, error, style_warn
+from .conditions import CompileError, SimpleError, error
 from .data import Cons, Symbol, list_from
 from .dynamic import binding
 from .evaluator import PACKAGE, evaluate
-from .packages import Package, find_package, near_names, register, string_designator, symbol_name
-
-
-@dataclass
-class Component:
-    """A file or module of a system; ``depends_on`` names siblings."""
-
-    kind: str
-    name: str
-    depends_on: list = field(default_factory=list)
-    components: list = field(default_factory=list)
-    path: str = None
-
-
-@dataclass
-class System:
-    name: str
-    folder: Path
-    depends_on: list
-    components: list
-    description: str = None
+from .files import lisp_path
+from .packages import Package, find_package, near_names, register, string_designator, sym
+from .system_definitions import Module, SourceFile, System, define_system, systems
 
 
 class MissingComponent(SimpleError):
@@ -48,15 +29,32 @@ class MissingComponent(SimpleError):
 
 built_in: set = set()
 """Names of systems that are part of cramhy; rooms add theirs with `provide_system`."""
-_systems: dict = {}
+_read: dict = {}
+"""``.asd`` file → its time and size when it was read."""
+_reading: list = []
 _loaded: dict = {}
 _loading: list = []
 extra_folders: list = []
 """Folders to look in besides the standard ones."""
+CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
+NOT_TO_BE_HAD = {
+    "cffi": "it calls functions of C, which cramhy cannot; import the Python module for that library instead",
+    "trivial-garbage": "it needs SBCL's garbage collector; Python's weakref and gc modules do its work",
+    "bordeaux-threads": "the tasks of CRAM run on cramhy's kernel; use par, pursue and fluents instead of threads",
+    "sb-posix": "it is part of SBCL; Python's os module does its work",
+}
+"""Systems that cannot be had here, and why."""
 
 
 def provide_system(names):
     built_in.update(names.split())
+
+
+def central_registry():
+    """The folders that ``asdf:*central-registry*`` lists: strings, pathnames, or forms that give one."""
+    entries = CENTRAL_REGISTRY.value
+    values = [evaluate(entry) if isinstance(entry, (Cons, Symbol)) else entry for entry in (entries if isinstance(entries, Cons) else ())]
+    return [Path(value) for value in values if value is not None]
 
 
 def search_folders():
@@ -106,6 +104,9 @@ def find_asd(name):
     wanted = name.partition("/")[0] + ".asd"
     if wanted in libraries():
         return LIBRARIES / libraries()[wanted]
+    for folder in central_registry():
+        if (folder / wanted).is_file():
+            return folder / wanted
     for folder in search_folders():
         for path in _asd_files(folder):
             if path.name == wanted:
@@ -128,210 +129,174 @@ def known_systems():
             *(path.stem for folder in search_folders() for path in _asd_files(folder))}
 
 
-# --------------------------------------------------------------------------------------------------------------- defsystem
+# --------------------------------------------------------------------------------------------------------------- reading
 
 
-def define_system(form, folder):
-    """Enter the system of a ``(defsystem name . options)`` form; bad shapes are errors that say what was expected."""
-    name = string_designator(form.cdr.car).lower()
-    options = list(form.cdr.cdr or ())
-    if len(options) % 2:
-        return error(CompileError("DEFSYSTEM ~A: the options must be pairs of a keyword and a value.", name))
-    table = _options(name, options)
-    depends = [_dependency(item) for item in _listed(name, "DEPENDS-ON", table.get("DEPENDS-ON"))]
-    folder = folder / table["PATHNAME"] if isinstance(table.get("PATHNAME"), str) else folder
-    system = System(name, folder, [item for item in depends if item], _components(name, table.get("COMPONENTS")),
-                    table.get("DESCRIPTION"))
-    if table.get("SERIAL") is not None:
-        _make_serial(system.components)
-    _systems[name] = system
-    return system
+def load_asd(path, force=False):
+    """Read a ``.asd`` file unless that was done and it has not changed: define its systems, evaluate its other forms."""
+    path = Path(path).absolute()
+    status = path.stat()
+    if path in _reading or not force and _read.get(path) == (status.st_mtime_ns, status.st_size):
+        return
+    _reading.append(path)
+    try:
+        _read_definitions(path)
+    finally:
+        _reading.remove(path)
+    _read[path] = (status.st_mtime_ns, status.st_size)
 
 
-def _options(system, items):
-    """The options in the list ``items`` of keywords and values, by name."""
-    table = {}
-    for key, value in zip(items[::2], items[1::2]):
-        if not isinstance(key, Symbol):
-            error(CompileError("DEFSYSTEM ~A: the name of an option is a keyword such as :COMPONENTS, not ~S.", system, key))
-        table[symbol_name(key)] = value
-    return table
-
-
-def _listed(system, option, value):
-    """The elements of the ``value`` of an option that must be a list."""
-    if value is not None and not isinstance(value, Cons):
-        error(CompileError("DEFSYSTEM ~A: :~A must be a list, but it is ~S.", system, option, value))
-    return list(value or ())
-
-
-def _component_name(designator):
-    """As a string; a symbol stands for its name in lower case, as for ASDF."""
-    name = string_designator(designator)
-    return name if isinstance(designator, str) else name.lower()
-
-
-def _dependency(item):
-    if isinstance(item, Cons):  # (:version "x" "1.0"), (:feature :sbcl "x")
-        parts = list(item)
-        return None if symbol_name(parts[0]) == "FEATURE" else string_designator(parts[1]).lower()
-    return string_designator(item).lower()
-
-
-def _components(system, form):
-    if isinstance(form, Cons) and isinstance(form.car, Symbol):
-        style_warn("DEFSYSTEM ~A: :COMPONENTS should be a list of components, but it is the single component (~S ...); taken as "
-                   "a list of one.", system, form.car)
-        form = Cons(form, None)
-    return [_component(system, item) for item in _listed(system, "COMPONENTS", form)]
-
-
-def _component(system, form):
-    if not isinstance(form, Cons) or not isinstance(form.cdr, Cons) or not isinstance(form.car, Symbol) \
-            or not isinstance(form.cdr.car, (str, Symbol)):
-        return error(CompileError("DEFSYSTEM ~A: a component is (:file \"name\" ...) or (:module \"name\" ...), not ~S.", system, form))
-    kind, name = symbol_name(form.car), form.cdr.car
-    options, rest = {}, form.cdr.cdr
-    while isinstance(rest, Cons) and isinstance(rest.cdr, Cons) and isinstance(rest.car, Symbol):
-        options[symbol_name(rest.car)] = rest.cdr.car
-        if symbol_name(rest.car) == "COMPONENTS" and isinstance(rest.cdr.car, Cons) and isinstance(rest.cdr.car.car, Symbol):
-            # (:module "src" :components (:file ...) (:file ...)): the list was forgotten, as on a slide of lecture 38
-            style_warn("DEFSYSTEM ~A: :COMPONENTS of ~S should be a list of components; the components that follow are taken "
-                       "as that list.", system, name)
-            options["COMPONENTS"] = rest.cdr
-            break
-        rest = rest.cdr.cdr
-    if rest is not None and not isinstance(options.get("COMPONENTS"), Cons):
-        return error(CompileError("DEFSYSTEM ~A: after its name, the component ~S has pairs of a keyword and a value.", system, form))
-    depends = [_component_name(item) for item in _listed(system, "DEPENDS-ON", options.get("DEPENDS-ON"))]
-    path = options.get("PATHNAME")
-    component = Component(kind, _component_name(name), depends, path=path if isinstance(path, str) else None)
-    if kind == "MODULE":
-        component.components = [_component(system, item) for item in _listed(system, "COMPONENTS", options.get("COMPONENTS"))]
-        if options.get("SERIAL") is not None:
-            _make_serial(component.components)
-    return component
-
-
-def _make_serial(components):
-    for earlier, later in zip(components, components[1:]):
-        later.depends_on.append(earlier.name)
-
-
-def load_asd(path):
-    """Read a ``.asd`` file: define its systems, evaluate its other forms."""
+def _read_definitions(path):
     from .reader import Reader
 
-    path = Path(path)
-    package = find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package("COMMON-LISP")]))
     reader = Reader(path.read_text(encoding="utf-8"), filename=str(path))
     end = object()
-    with binding(PACKAGE, package):
+    with binding(PACKAGE, asdf_user(), loader.LOAD_PATHNAME, lisp_path(path), loader.LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
         while (form := reader.read(eof_error=False, eof_value=end)) is not end:
             if isinstance(form, Cons) and isinstance(form.car, Symbol) and form.car.name == "DEFSYSTEM":
-                define_system(form, path.parent)
+                define_system(form, path.parent, path, reader.positions, load_system)
             else:
                 evaluate(form, str(path), reader.positions)
+
+
+def asdf_user():
+    """The package ASDF-USER, in which ``.asd`` files are read."""
+    used = ["COMMON-LISP", *(name for name in ("ASDF", "UIOP") if find_package(name))]
+    return find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package(name) for name in used]))
 
 
 # ----------------------------------------------------------------------------------------------------------------- loading
 
 
 def find_system(name, required_by=None):
-    """The `System` called ``name``; an unknown one is an error that names its neighbours."""
+    """The `System` called ``name``; an unknown one is an error that names who asked for it, where it was searched, and its neighbours."""
+    if name in built_in:
+        return systems.setdefault(name, System(name, Path(__file__).parents[1]))
     path = find_asd(name)
     if path is not None:
         load_asd(path)
-    system = _systems.get(name)
+    system = systems.get(name)
     if system is None:
-        near = near_names(name, known_systems())
-        hint = f" Did you mean {' or '.join(near)}?" if near else ""
         by = f", required by #<SYSTEM {required_by!r}>".replace("'", '"') if required_by else ""
-        where = ", ".join(str(folder) for folder in search_folders())
         condition = MissingComponent(f"Component ~S not found{by}", name)
-        condition.hint = f"There is no file {name}.asd below {where}.{hint}"
+        condition.hint = _why_missing(name, path)
         return error(condition)
     return system
 
 
-def load_system(name, force=False):
+def _why_missing(name, path):
+    near = near_names(name, known_systems())
+    hint = f" Did you mean {' or '.join(near)}?" if near else ""
+    if path is not None:
+        there = ", ".join(sorted(system.name for system in systems.values() if system.file == path)) or "no system"
+        return f"{path} defines {there}.{hint}"
+    if name in NOT_TO_BE_HAD:
+        return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
+    where = ", ".join(str(folder) for folder in [*central_registry(), *search_folders()])
+    return f"There is no file {name.partition('/')[0]}.asd below {where}.{hint}"
+
+
+def check_version(system, least, required_by):
+    """Check that ``system`` is of version ``least`` or later; those that are part of cramhy are of any version."""
+    if least is None or system.name in built_in or "/libraries/" in str(system.file).replace(os.sep, "/"):
+        return
+    if system.version is None or _numbers(system.version) < _numbers(least):
+        has = f"it is version {system.version}" if system.version else "it has no version"
+        condition = MissingComponent(f'Component ~S does not match version ~A, required by #<SYSTEM "{required_by}">', system.name, least)
+        condition.hint = f"In {system.file} {has}."
+        error(condition)
+
+
+def _numbers(version):
+    return [int(part) if part.isdigit() else 0 for part in version.split(".")]
+
+
+def load_system(name, force=False, version=None):
     """Load the system ``name`` and what it depends on, each file that has changed or was not loaded yet.
 
     Returns the fingerprint of all that was loaded. A circle of dependencies is an error.
     """
     with compilation_unit("file"):
-        return _load_system(name, force)
+        return _load_system(name, force, version=version)
 
 
-def _load_system(name, force=False, required_by=None):
+def _load_system(name, force=False, required_by=None, version=None):
     name = string_designator(name).lower()
     if name in built_in:
         return name
     if name in _loading:
-        return error("Circular dependency: ~{~A~^ -> ~} -> ~A", list_from(_loading), name)
+        return error("Circular dependency: ~{~A~^ -> ~} -> ~A", list_from(_loading[_loading.index(name):]), name)
     _loading.append(name)
     try:
         system = find_system(name, required_by)
-        chain = "".join(_load_system(other, required_by=name) for other in system.depends_on)
-        for component, path in files_of(system):
-            chain = _load_component(system, component, path, chain, force)
+        check_version(system, version, required_by)
+        chain = "".join(_load_system(other, required_by=name, version=least) for other, least in system.depends_on)
+        for component in files_of(system):
+            chain = _load_component(component.pathname, chain, force)
+        loaded[name] = chain
         return chain
     finally:
         _loading.pop()
 
 
-def _load_component(system, component, path, chain, force):
+loaded: dict = {}
+"""Name of each system that was loaded → its fingerprint."""
+
+
+def _load_component(path, chain, force):
     status = path.stat() if path.exists() else None
     key = (status.st_mtime_ns, status.st_size, chain) if status else None
     kept = _loaded.get(path)
     if kept is not None and kept[0] == key and not force:
         return kept[1]
+    _loaded.pop(path, None)
     fingerprint = loader.load_file(path, chain)
     _loaded[path] = (key, fingerprint)
     return fingerprint
 
 
-def files_of(system):
-    """(component, path) of every file of ``system`` in the order of loading."""
-    yield from _ordered_files(system, system.components, system.folder)
+def forget_system(name):
+    """Forget the definition of the system ``name`` and that its files were loaded; whether there was one."""
+    system = systems.pop(name, None)
+    loaded.pop(name, None)
+    if system is None:
+        return False
+    for component in files_of(system):
+        _loaded.pop(component.pathname, None)
+    _read.pop(system.file, None)
+    return True
 
 
-def _ordered_files(system, components, folder):
-    for component in _ordered(system, components):
-        if component.kind == "MODULE":
-            inner = component.path if component.path is not None else component.name
-            yield from _ordered_files(system, component.components, folder / inner)
-        elif component.kind == "FILE":
-            yield component, _file(folder, component)
+def files_of(module):
+    """The source files of a system or module, in the order of loading."""
+    for component in _ordered(module):
+        if isinstance(component, Module):
+            yield from files_of(component)
+        elif isinstance(component, SourceFile):
+            yield component
 
 
-def _file(folder, component):
-    name = component.path or component.name
-    for candidate in (folder / name, folder / f"{name}.lisp", folder / f"{name}.hy"):
-        if candidate.is_file():
-            return candidate
-    return folder / f"{name}.lisp"
-
-
-def _ordered(system, components):
-    """``components`` so that each comes after those it depends on, otherwise as they stand."""
-    by_name = {component.name: component for component in components}
+def _ordered(module):
+    """The components of ``module`` so that each comes after those it depends on, otherwise as they stand."""
+    by_name = {component.name: component for component in module.components}
     done, active, order = set(), [], []
 
     def visit(component):
         if component.name in done:
             return
         if component.name in active:
-            error("Circular dependency in system ~A: ~{~A~^ -> ~} -> ~A", system.name, list_from(active), component.name)
+            error("Circular dependency in system ~A: ~{~A~^ -> ~} -> ~A", module.system.name,
+                  list_from(active[active.index(component.name):]), component.name)
         active.append(component.name)
         for other in component.depends_on:
             if other not in by_name:
-                error(CompileError("DEFSYSTEM ~A: ~S depends on ~S, which is no component beside it.", system.name, component.name, other))
+                error(CompileError("DEFSYSTEM ~A: ~S depends on ~S, which is no component beside it.", module.system.name, component.name,
+                                   other))
             visit(by_name[other])
         active.pop()
         done.add(component.name)
         order.append(component)
 
-    for component in components:
+    for component in module.components:
         visit(component)
     return order
