@@ -29,8 +29,9 @@ def parser():
     run = commands.add_parser("run", parents=[common], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file")
     commands.add_parser("eval", parents=[common], help="evaluate forms given as JSON lines")
-    test = commands.add_parser("test", parents=[common], help="run the lisp-unit tests of a system or file")
-    test.add_argument("path")
+    test = commands.add_parser("test", parents=[common], help="run the lisp-unit and FiveAM tests of a system, file or folder")
+    test.add_argument("path", help="a system by its name, an .asd, .lisp or .hy file, or a folder")
+    test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
     for name, text in (("turtlesim", "the simulator alone"), ("teleop", "drive with the arrow keys"), ("view", "the live page")):
         commands.add_parser(name, parents=[common], help=text)
     shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
@@ -128,7 +129,22 @@ def _not_here(what):
 
 
 def _test(options):
-    return _not_here("lisp-unit is not part of this version; run the tests with pytest.")
+    """Run the tests of a system, an ``.asd``, ``.lisp`` or ``.hy`` file, or of all test files below a folder."""
+    from cramhy_runtime.lisp import unit_tests
+    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.repl.console import report
+    from cramhy_runtime.repl.session import Interruption, condition_of, handle_interrupts
+
+    handle_interrupts()
+    unit_tests.limit = options.limit
+    try:
+        made = session(options, default_time="virtual")
+        return 0 if made.test(options.path) else 1
+    except Interruption:
+        return 130
+    except (Exception, Condition) as problem:
+        report(condition_of(problem))
+        return 1
 
 
 def _turtlesim(options):

@@ -26,7 +26,8 @@ def boot():
         return
     _booted = True
     from cramhy_runtime import kernel
-    from cramhy_runtime.lisp import asdf, evaluator, importer, package, packages, places_in_source, ros_load, systems, uiop
+    from cramhy_runtime.lisp import asdf, evaluator, importer, package, packages, places_in_source, ros_load, systems, uiop, unit_tests
+    from cramhy_runtime.lisp.faces import define_face
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 
     kernel.allow_deep_recursion()
@@ -42,6 +43,7 @@ def boot():
     ros_load.define_faces()
     asdf.define_faces()
     uiop.define_faces()
+    define_face("CRAMHY", functions={"within-limit": unit_tests.within_limit})
     importer.install()
     kernel.describe_frame = places_in_source.describe_frame
     evaluator.PACKAGE.value = COMMON_LISP_USER

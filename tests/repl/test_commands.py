@@ -135,7 +135,7 @@ class TestEval:
         assert answers(*forms, options=("--seed", "5")) != answers(*forms, options=("--seed", "6"))
 
     @pytest.mark.parametrize(("options", "message"), [
-        (("--load", "no-such-system"), 'cramhy: ASDF::MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
+        (("--load", "no-such-system"), 'cramhy: ASDF:MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
         (("--package", "no-such-package"), 'cramhy: SB-EXT:PACKAGE-DOES-NOT-EXIST\n  The name "NO-SUCH-PACKAGE" does not designate any'),
         (("--eval", "(+ 1"), "cramhy: END-OF-FILE\n"),
         (("--eval", '(cpl:fail "x")'), "cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n"),

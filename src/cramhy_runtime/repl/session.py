@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp import conditions, evaluator, systems
+from cramhy_runtime.lisp import asdf, conditions, evaluator, systems, unit_tests
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values, list_from
 from cramhy_runtime.lisp.faces import define_face
@@ -98,6 +98,34 @@ class Session:
                                                         "by its name.", system))
         else:
             systems.load_system(system)
+
+    def test(self, path):
+        """Run the tests of a system by name, a file, or the test files below a folder; whether there were some and all passed."""
+        try:
+            return self._test(path)
+        except (kernel.Interrupted, kernel.Abandoned):
+            raise Interruption from None
+        finally:
+            kernel.interrupt_over()
+
+    def _test(self, path):
+        tests = self._tests(path)
+        if tests:
+            return unit_tests.report(tests)
+        system = None if Path(path).suffix in (".lisp", ".hy") or Path(path).is_dir() else systems.find_system(Path(path).stem)
+        if system is not None and system.methods:  # it says itself what its tests are
+            return asdf.test_system(system)
+        return conditions.error(f"There are no tests of lisp-unit or FiveAM in {path}.".replace("~", "~~"))
+
+    def _tests(self, path):
+        if Path(path).is_dir():
+            files = sorted(file for file in Path(path).rglob("*") if unit_tests.looks_like_tests(file))
+            return [test for file in files for test in unit_tests.load_tests(file)]
+        if path.endswith((".lisp", ".hy")):
+            return unit_tests.load_tests(path)
+        if path.endswith(".asd"):
+            return unit_tests.load_asd_tests(path)
+        return unit_tests.load_system_tests(path)
 
     def forms(self, text, name=None):
         """The forms of a text typed at the prompt, each with the reader that knows its places."""

@@ -85,7 +85,7 @@
                                                :condition condition :place (cramhy::source-position)
                                                :reason (format nil "Unexpected Error: ~S~%~A." condition condition))
                                    (return-from running *results*)))))
-                (funcall (test-function test)))
+                (cramhy::within-limit (test-function test)))
               *results*))))
     (setf *results* (append *results* results))
     (notany (lambda (result) (typep result 'test-failure)) results)))

@@ -34,7 +34,7 @@
                          (lambda (condition)
                            (unless (debug-p condition)
                              (return-from running (result condition (cramhy::source-position)))))))
-          (funcall (thunk test)))
+          (cramhy::within-limit (thunk test)))
         (result)))))
 
 (defun run-tests (&optional (test-names :all) (package *package*))

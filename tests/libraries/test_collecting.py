@@ -1,0 +1,184 @@
+"""Tests in Lisp files: pytest collects them, ``cramhy test`` runs them, and their reports name form, values and line."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from cramhy_runtime import cli
+from cramhy_runtime.lisp import systems, unit_tests
+
+FILES = {
+    "proj.asd": """(defsystem "proj" :components ((:module "src" :serial t :components ((:file "package") (:file "code"))))
+  :in-order-to ((test-op (test-op "proj/tests"))))
+(defsystem "proj/tests" :depends-on ("proj" "lisp-unit" "fiveam") :components ((:module "tests" :components ((:file "unit") (:file "five")))))
+""",
+    "src/package.lisp": "(defpackage :proj (:use :cl) (:export #:my-max))",
+    "src/code.lisp": "(in-package :proj) (defun my-max (a b) (if (> a b) a a))",
+    "tests/unit.lisp": """(defpackage :proj-tests (:use :cl :proj :lisp-unit))
+(in-package :proj-tests)
+(define-test maximum
+  (assert-equal 3 (my-max 3 2))
+  (let ((x 2))
+    (assert-equal 5 (my-max x 5) x)))
+(define-test erring (assert-true t)
+  (car 5))
+(define-test fine (assert-true t))
+""",
+    "tests/five.lisp": """(defpackage :proj-five (:use :cl :proj :5am))
+(in-package :proj-five)
+(def-suite proj) (in-suite proj)
+(test five-good (is (= 3 (my-max 3 2))))
+(test five-bad
+  (is (= 5 (my-max 2 5))))
+(test five-skip (skip "not now"))
+""",
+    "tests/no-tests-here.lisp": "(this is never read",
+    "other/endless-test.lisp": """(defpackage :endless (:use :cl :lisp-unit))
+(in-package :endless)
+(define-test spins (loop))
+(define-test waits (cpl:wait-for (cpl:make-fluent :value nil)))
+(define-test after (assert-true t))
+""",
+    "other/test-plan.hy": """(require cramhy *)
+(defpackage :hy-plan (:use :cl :lisp-unit))
+(in-package :hy-plan)
+(define-test in-hy (assert-equal '(1 2) (list 1 2)))
+""",
+    "broken/broken-tests.lisp": "(defpackage :broken (:use :cl :lisp-unit))\n(in-package :broken)\n(define-test x (let ((x 1 2)) x))\n",
+    "good/test-all.lisp": "(defpackage :all-good (:use :cl :5am)) (in-package :all-good) (test good (is (= 1 1)))\n",
+}
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """A folder with a system that has tests, and the working directory of the test."""
+    for name, text in FILES.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run_pytest(*arguments):
+    return subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", *arguments],
+                          capture_output=True, text=True, env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
+
+
+def test_pytest_reports_form_values_and_line(project):
+    done = run_pytest("tests", "other", "--lisp-limit", "1")
+    assert done.returncode == 1
+    assert "5 failed, 4 passed, 1 skipped" in done.stdout, done.stdout + done.stderr
+    for text in ("""\
+PROJ-TESTS::MAXIMUM ______________________________
+ | Failed Form: (MY-MAX X 5)
+ | Expected 5 but saw 2
+ | X => 2
+  at tests/unit.lisp:6:5
+      (assert-equal 5 (my-max x 5) x)))
+      ^
+""", """\
+ | Execution error:
+ | The value
+     5
+   is not of type
+     LIST
+   when binding LIST
+  at tests/unit.lisp:8:3
+    (car 5))
+    ^
+""", """\
+(MY-MAX 2 5)
+ evaluated to
+2
+ which is not
+=
+ to
+5
+  at tests/five.lisp:6:3
+    (is (= 5 (my-max 2 5))))
+    ^
+""", "The test did not end within 1 seconds, and was stopped.\n  at other/endless-test.lisp:3", "main waits for the fluent"):
+        assert text in done.stdout.replace(" \n", "\n")
+
+
+def test_a_file_that_cannot_be_loaded_is_an_error_of_collection(project):
+    done = run_pytest("broken", "good")
+    assert done.returncode == 2
+    assert """ERROR collecting broken/broken-tests.lisp""" in done.stdout
+    assert """\
+  A binding is a variable or (variable value), not (X 1 2).
+  at broken/broken-tests.lisp:3:16
+""" in done.stdout or "at broken/broken-tests.lisp:3" in done.stdout
+
+
+def test_an_asd_file_named_on_the_command_line(project):
+    assert "3 failed, 2 passed, 1 skipped" in run_pytest("proj.asd").stdout
+
+
+@pytest.mark.parametrize("name, expected", [
+    ("tests/unit.lisp", True), ("tests/no-tests-here.lisp", False), ("src/code.lisp", False), ("other/endless-test.lisp", True),
+    ("other/test-plan.hy", True), ("proj.asd", False), ("missing-test.lisp", False),
+])
+def test_which_files_look_like_tests(project, name, expected):
+    assert unit_tests.looks_like_tests(project / name) is expected
+
+
+@pytest.fixture
+def command(project, session, capsys, monkeypatch):
+    """A function: exit status, standard output and standard error of ``cramhy test``."""
+    monkeypatch.setattr(systems, "extra_folders", [str(project)])
+    monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
+
+    def run(*arguments):
+        capsys.readouterr()
+        status = cli.main(["test", *arguments, "--no-turtlesim"])
+        return status, *capsys.readouterr()
+
+    yield run
+    for name in ("proj", "proj/tests"):
+        systems.forget_system(name)
+
+
+@pytest.mark.parametrize("path", ["proj", "proj.asd", "tests"])
+def test_cramhy_test_prints_the_libraries_summaries(command, path):
+    status, printed, _ = command(path)
+    assert status == 1
+    assert """\
+Unit Test Summary
+ | 4 assertions total
+ | 3 passed
+ | 1 failed
+ | 1 execution errors
+ | 0 missing tests
+""" in printed
+    assert " | Failed Form: (MY-MAX X 5)\n | Expected 5 but saw 2\n | X => 2\n" in printed
+    assert " Did 3 checks.\n    Pass: 1 (33%)\n    Skip: 1 (33%)\n    Fail: 1 (33%)\n" in printed
+
+
+def test_the_status_is_0_when_all_is_well(command):
+    status, printed, _ = command("good/test-all.lisp")
+    assert (status, "Pass: 1 (100%)" in printed) == (0, True)
+
+
+def test_a_test_that_never_ends_is_stopped_and_the_others_run(command):
+    status, printed, _ = command("other/endless-test.lisp", "--limit", "0.3")
+    assert status == 1
+    assert "| The test did not end within 0.3 seconds, and was stopped." in printed and " | 2 execution errors" in printed
+    assert "AFTER: 1 assertions passed, 0 failed." in printed
+
+
+@pytest.mark.parametrize("path, text", [
+    ("no-such-system", 'cramhy: ASDF:MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
+    ("src/code.lisp", "There are no tests of lisp-unit or FiveAM in src/code.lisp."),
+    ("tests/no-tests-here.lisp", "end of file"),
+    ("nowhere.lisp", "nowhere.lisp"),
+    ("broken/broken-tests.lisp", "broken/broken-tests.lisp:3"),
+])
+def test_what_is_wrong(command, path, text):
+    status, _, problem = command(path)
+    assert status == 1 and text in problem
