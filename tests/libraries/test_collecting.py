@@ -12,9 +12,11 @@ from cramhy_runtime import cli
 from cramhy_runtime.lisp import systems, unit_tests
 
 FILES = {
-    "proj.asd": """(defsystem "proj" :components ((:module "src" :serial t :components ((:file "package") (:file "code"))))
+    "proj.asd": """(defsystem "proj"
+  :components ((:module "src" :serial t :components ((:file "package") (:file "code"))))
   :in-order-to ((test-op (test-op "proj/tests"))))
-(defsystem "proj/tests" :depends-on ("proj" "lisp-unit" "fiveam") :components ((:module "tests" :components ((:file "unit") (:file "five")))))
+(defsystem "proj/tests" :depends-on ("proj" "lisp-unit" "fiveam")
+  :components ((:module "tests" :components ((:file "unit") (:file "five")))))
 """,
     "src/package.lisp": "(defpackage :proj (:use :cl) (:export #:my-max))",
     "src/code.lisp": "(in-package :proj) (defun my-max (a b) (if (> a b) a a))",
@@ -65,8 +67,8 @@ def project(tmp_path, monkeypatch):
 
 
 def run_pytest(*arguments):
-    return subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", *arguments],
-                          capture_output=True, text=True, env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
 
 
 def test_pytest_reports_form_values_and_line(project):
