@@ -73,7 +73,7 @@ def search_folders():
 LIBRARIES = Path(__file__).parents[1] / "libraries"
 """The libraries that come with cramhy, each a folder with a ``.asd``; they are loaded when somebody asks for them."""
 LIBRARY_PACKAGES = {"ALEXANDRIA": "alexandria", "ALEXANDRIA-1": "alexandria", "LISP-UNIT": "lisp-unit",
-                    "FIVEAM": "fiveam", "5AM": "fiveam", "IT.BESE.FIVEAM": "fiveam"}
+                    "SPLIT-SEQUENCE": "split-sequence", "CL-UTILITIES": "cl-utilities", "FIVEAM": "fiveam", "5AM": "fiveam", "IT.BESE.FIVEAM": "fiveam"}
 """Their packages: the library is loaded when its package is first named."""
 
 
