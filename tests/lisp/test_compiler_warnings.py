@@ -226,6 +226,14 @@ def test_a_function_defined_twice_in_one_file(lisp, tmp_path):
 """
 
 
+def test_local_functions_of_one_name_are_no_duplicates(lisp, tmp_path):
+    (tmp_path / "local.lisp").write_text("""(defun one (x) (flet ((inner (y) (+ x y))) (inner 1)))
+(defun two (x) (flet ((inner (y) (* x y))) (labels ((inner2 (z) (inner z))) (inner2 1))))
+(defmethod three ((x integer)) 1) (defmethod three ((x symbol)) (call-next-method))""")
+    lisp('(load "local.lisp")')
+    assert lisp.said() == ""
+
+
 def test_compile_returns_whether_there_were_warnings(lisp):
     def flags(form):
         return printed(lisp(f"(cdr (multiple-value-list (compile nil '{form})))"))[0]

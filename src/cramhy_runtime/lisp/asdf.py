@@ -7,10 +7,11 @@ from pathlib import Path
 from . import systems
 from .conditions import error
 from .data import Cons, list_from, lisp_list, truth
+from .dispatch_macros import FEATURES
 from .faces import define_face
 from .files import lisp_path
 from .loader import folder_of_load
-from .packages import is_symbol, string_designator, sym, symbol_name
+from .packages import is_symbol, keyword, string_designator, sym, symbol_name
 from .streams import STANDARD_OUTPUT
 from .system_definitions import Component, OPERATIONS, Operation, PERFORM, System, TestOp, component_name, define_system
 
@@ -205,7 +206,8 @@ def define_system_here(form):
 
 def define_faces():
     """Make the packages ASDF and QL."""
-    define_face("ASDF", nicknames=["ASDF/INTERFACE"], functions={
+    FEATURES.value = list_from([*(FEATURES.value or ()), *(keyword(name) for name in ("ASDF", "ASDF2", "ASDF3", "ASDF3.1", "ASDF3.2"))])
+    define_face("ASDF", functions={
         "find-system": find_system, "load-system": load_system, "load-systems": load_systems, "require-system": require_system,
         "compile-system": load_system, "make": load_system, "operate": operate, "oos": operate, "test-system": test_system,
         "clear-system": clear_system, "load-asd": load_asd, "registered-systems": registered_systems,

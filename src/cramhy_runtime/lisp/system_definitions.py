@@ -14,10 +14,11 @@ from .data import Cons, Symbol, list_from, lisp_list
 from .dispatch_macros import FEATURES
 from .evaluator import evaluate
 from .generic import EqlSpecializer, add_method, generic, remove_method
-from .packages import ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
+from .packages import COMMON_LISP, ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
 from .printer import define_printer
 
-ensure_package("ASDF", "ASDF/INTERFACE")
+ensure_package("UIOP", "UIOP/DRIVER", use=[COMMON_LISP])
+ensure_package("ASDF", "ASDF/INTERFACE", use=[COMMON_LISP, ensure_package("UIOP")])
 
 
 class Operation:

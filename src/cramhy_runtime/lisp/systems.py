@@ -73,7 +73,8 @@ def search_folders():
 LIBRARIES = Path(__file__).parents[1] / "libraries"
 """The libraries that come with cramhy, each a folder with a ``.asd``; they are loaded when somebody asks for them."""
 LIBRARY_PACKAGES = {"ALEXANDRIA": "alexandria", "ALEXANDRIA-1": "alexandria", "LISP-UNIT": "lisp-unit",
-                    "SPLIT-SEQUENCE": "split-sequence", "CL-UTILITIES": "cl-utilities", "FIVEAM": "fiveam", "5AM": "fiveam", "IT.BESE.FIVEAM": "fiveam"}
+                    "SPLIT-SEQUENCE": "split-sequence", "CL-UTILITIES": "cl-utilities",
+                    "FIVEAM": "fiveam", "5AM": "fiveam", "IT.BESE.FIVEAM": "fiveam"}
 """Their packages: the library is loaded when its package is first named."""
 
 
@@ -161,8 +162,7 @@ def _read_definitions(path):
 
 def asdf_user():
     """The package ASDF-USER, in which ``.asd`` files are read."""
-    used = ["COMMON-LISP", *(name for name in ("ASDF", "UIOP") if find_package(name))]
-    return find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package(name) for name in used]))
+    return find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package(name) for name in ("COMMON-LISP", "ASDF", "UIOP")]))
 
 
 # ----------------------------------------------------------------------------------------------------------------- loading

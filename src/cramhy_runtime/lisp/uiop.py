@@ -125,12 +125,26 @@ def ensure_list(thing):
     return thing if thing is None or isinstance(thing, Cons) else Cons(thing, None)
 
 
+def _version(text):
+    return [int(part) for part in text.split(".")] if isinstance(text, str) and text.replace(".", "").isdigit() else None
+
+
+def version_le(version1, version2):
+    """``uiop:version<=``: whether a version such as ``"1.10"`` is no later than another."""
+    return True if None not in (_version(version1), _version(version2)) and _version(version1) <= _version(version2) else None
+
+
+def version_lt(version1, version2):
+    return True if None not in (_version(version1), _version(version2)) and _version(version1) < _version(version2) else None
+
+
 def define_faces():
     """Make the package UIOP."""
-    define_face("UIOP", nicknames=["UIOP/DRIVER"], functions={
+    define_face("UIOP", functions={
         "find-package*": find_package_, "find-symbol*": find_symbol_, "symbol-call": symbol_call, "getenv": getenv, "getenvp": getenvp,
         "file-exists-p": file_exists_p, "directory-exists-p": directory_exists_p, "probe-file*": probe_file,
         "read-file-string": read_file_string, "read-file-lines": read_file_lines, "read-file-line": read_file_line,
         "read-file-form": read_file_form, "subpathname": subpathname, "subpathname*": subpathname,
         "pathname-directory-pathname": pathname_directory_pathname, "getcwd": getcwd, "split-string": split_string, "strcat": strcat,
-        "string-prefix-p": string_prefix_p, "string-suffix-p": string_suffix_p, "emptyp": emptyp, "ensure-list": ensure_list})
+        "string-prefix-p": string_prefix_p, "string-suffix-p": string_suffix_p, "version<=": version_le, "version<": version_lt,
+        "emptyp": emptyp, "ensure-list": ensure_list})

@@ -213,10 +213,12 @@ class Analyzer(Scrutiny):
             return self.fail("A lambda expression needs a lambda list: ~S", form)
         return self.lambda_(form.cdr.car, form.cdr.cdr, env, name)
 
-    def lambda_(self, lambda_list, body, env, name=None, block=None):
-        """A function with ``lambda_list`` and the forms ``body``; ``block`` names an implicit block around them."""
+    def lambda_(self, lambda_list, body, env, name=None, block=None, local=False):
+        """A function with ``lambda_list`` and the forms ``body``; ``block`` names an implicit block around them, ``name`` is that
+        of a global function unless it is ``local``.
+        """
         parsed = parse(lambda_list)
-        if name is not None and env.function(_name_key(name)) is None:
+        if name is not None and not local and env.function(_name_key(name)) is None:
             self.defines(name, Shape(lambda_list))
         scope = FunctionScope(env.scope)
         inner = Env(env, scope)

@@ -223,7 +223,7 @@ def _local_functions(analyzer, form, env, recursive):
     for (_, symbol, lambda_list, body), variable in zip(definitions, variables):
         if recursive:
             variable.assigned = True  # a closure over it is made before it has its value
-        functions.append((variable, analyzer.lambda_(lambda_list, body, inner if recursive else env, symbol, symbol)))
+        functions.append((variable, analyzer.lambda_(lambda_list, body, inner if recursive else env, symbol, symbol, local=True)))
     specifiers, _, forms = analyzer.declarations(forms, env)
     _free_specials(analyzer.specials(specifiers), inner, ())
     body = analyzer.scope((), specifiers, forms, inner)
