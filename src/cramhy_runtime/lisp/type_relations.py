@@ -31,6 +31,9 @@ _ARRAYS = {"ARRAY": (False, False, None), "SIMPLE-ARRAY": (True, False, None), "
            "BIT-VECTOR": (False, True, "BIT"), "SIMPLE-BIT-VECTOR": (True, True, "BIT")}
 _PARENTS = {"KEYWORD": "SYMBOL", "BASE-CHAR": "CHARACTER", "STANDARD-CHAR": "BASE-CHAR", "EXTENDED-CHAR": "CHARACTER",
             "COMPILED-FUNCTION": "FUNCTION", "STANDARD-GENERIC-FUNCTION": "GENERIC-FUNCTION", "GENERIC-FUNCTION": "FUNCTION"}
+_CLASSES = {**{name: "INTEGER" for name in ("UNSIGNED-BYTE", "SIGNED-BYTE", "MOD", "BIT")}, "SHORT-FLOAT": "SINGLE-FLOAT",
+            "LONG-FLOAT": "DOUBLE-FLOAT", "BASE-STRING": "STRING", "SIMPLE-BASE-STRING": "SIMPLE-STRING"}
+"""Types without a class → the least class that contains them."""
 
 
 def subtypep(type_1, type_2, environment=None):
@@ -100,7 +103,9 @@ def _subtype(first, second):
         answer = _any(_subtype(first, argument) for argument in others)
         return answer if answer else _subtype_of_union(first, name, arguments, second, answer)
     if name == "AND":
-        return True if _any(_subtype(argument, second) for argument in arguments) else None
+        if _any(_subtype(argument, second) for argument in arguments):
+            return True
+        return False if _inhabited(first) and any(_disjoint(argument, second) for argument in arguments) else None
     if name == "SATISFIES" or other == "SATISFIES":
         return None
     if first is True:
@@ -148,8 +153,12 @@ def _compare(first, name, arguments, second, other, others):
         definition = _definition(its_name, its_arguments)
         if definition is not None and not _class_answer(specifier, second):
             return _subtype(definition, second)
+    if other in ("MEMBER", "EQL"):
+        return _few_within(numeric, others)
+    if name == "BIGNUM" and other_numeric is not None:  # bignums have both signs and no bounds
+        return _subtype(sym("INTEGER"), second)
     if others and other not in ("CONS",) and other not in _ARRAYS and other_numeric is None:
-        return None
+        return False if other == "COMPLEX" and _class_answer(first, sym(other)) is False else None
     definition = _definition(other, others)
     answer = _class_answer(first, second)
     if not answer and definition is not None and other not in ("LIST", "NULL"):
@@ -157,6 +166,13 @@ def _compare(first, name, arguments, second, other, others):
     if answer and others:
         return None if name != other else False
     return answer
+
+
+def _few_within(numeric, members):
+    """Whether a type that is no MEMBER type lies within the objects ``members``: only a range of a few integers can."""
+    if numeric is None or numeric[0] != ("INTEGER",) or numeric[1] is None or numeric[3] is None or numeric[3] - numeric[1] > len(members):
+        return False
+    return all(any(number.__class__ is int and number == member for member in members) for number in range(numeric[1], numeric[3] + 1))
 
 
 def _cons_parts(arguments):
@@ -176,8 +192,8 @@ def _class_answer(first, second):
         first = sym(name)
     if other in _PARENTS:
         return False
-    one_class = symbol_class(sym(name) if name else first)
-    other_class = symbol_class(sym(other) if other else second)
+    one_class = symbol_class(sym(_CLASSES.get(name, name)) if name else first)
+    other_class = symbol_class(sym(_CLASSES.get(other, other)) if other else second)
     if one_class is None or other_class is None:
         return None
     if other_class in lisp_mro(one_class) or issubclass(one_class, other_class):
@@ -282,9 +298,9 @@ def _disjoint(first, second):
         high = min((limit for limit in (numeric[3], other_numeric[3]) if limit is not None), default=None)
         return True if low is not None and high is not None and low > high else False
     if _class_answer(first, second) is False and _class_answer(second, first) is False:
-        # Two system classes that are not related have no common instances; classes of users may get a common subclass.
-        both = [symbol_class(sym(part) if part else specifier) for part, specifier in ((name, first), (other, second))]
-        return True if all(isinstance(cls, BuiltInClass) or name in _PARENTS for cls in both) else None
+        # A system class and one that is not related to it have no common instances; two of users may get a common subclass.
+        both = [symbol_class(sym(_CLASSES.get(part, part)) if part else specifier) for part, specifier in ((name, first), (other, second))]
+        return True if any(isinstance(cls, BuiltInClass) or name in _PARENTS for cls in both) else None
     return False
 
 
@@ -296,4 +312,7 @@ def _inhabited(specifier):
         return numeric[1] <= numeric[3]
     if name == "OR":
         return _any(_inhabited(argument) for argument in arguments)
+    if name == "AND" and len(arguments) == 2 and _parts(arguments[1])[0] == "NOT":
+        inner = _subtype(arguments[0], arguments[1].cdr.car)
+        return None if inner is None else not inner
     return None if name in ("SATISFIES", "AND", "NOT") else specifier is not None
