@@ -4,7 +4,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (require cramhy.operators [defoperator])
 (import cramhy.operators *
-        cramhy_runtime.lisp.compilation-unit [duplicate-keys])
+        cramhy_runtime.lisp.compilation-unit [duplicate-keys mention-type])
 
 (setv package "COMMON-LISP")
 
@@ -363,12 +363,14 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defn handler-function [clause]
   "(type function) for a clause (type (variable) . body)."
   (setv #(type variables #* body) clause)
+  (mention-type type)
   (setv ignored (gensym "CONDITION"))
   (if variables
       `(list (quote ~type) (lambda ~variables ~@body))
       `(list (quote ~type) (lambda [~ignored] ~@body))))
 
 (defoperator handler-bind [bindings #* body]
+  (for [#(type #* _) (elements bindings)] (mention-type type))
   `(%handler-bind (list ~@(lfor #(type function) (elements bindings) `(list (quote ~type) ~function))) (lambda [] ~@body)))
 
 (defoperator handler-case [form #* clauses]

@@ -278,8 +278,8 @@ def test_a_handler_around_load_sees_the_warnings(lisp, tmp_path):
     assert printed(lisp("""(let ((seen '()))
       (handler-bind ((style-warning (lambda (c) (push (format nil "~a" c) seen) (muffle-warning c))))
         (load "plan.lisp"))
-      (reverse seen))""")) == [
-          '("The variable X is defined but never used."\n "undefined function: COMMON-LISP-USER::NOWHERE")']
+      (format nil "~{~a~^; ~}" (reverse seen)))""")) == [
+          '"The variable X is defined but never used.; undefined function: COMMON-LISP-USER::NOWHERE"']
     assert lisp.said() == ""
 
 
@@ -288,3 +288,10 @@ def test_the_answers_of_cramhy_eval_have_them_apart_from_the_output(lisp):
         "output": "", "values": ["STOP"], "error": None,
         "warnings": [{"type": "SB-INT::SIMPLE-STYLE-WARNING", "message": "The variable X is defined but never used.",
                       "where": "<repl 1>:1:14"}]}
+
+
+def test_a_type_that_nobody_defines(lisp):
+    assert re.findall("caught (.*)|;   (und.*)", lisp.said("(defun f (x) (handler-case (typep x 'no-such-type) (no-such-error () 1)))")) == [
+        ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-ERROR"),
+        ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-TYPE")]
+    assert printed(lisp("(handler-case (handler-case (error \"x\") (no-such-error () 1)) (error () 2))")) == ["2"]  # it fits nothing

@@ -10,10 +10,11 @@ from . import pprint_dispatch
 from .conditions import types
 from .data import Symbol, UNBOUND, UndefinedFunction
 from .dynamic import binding
-from .packages import all_packages, near_names, symbol_name
+from .packages import all_packages, near_names, sym, symbol_name
 from .places_in_source import describe, excerpt
 from .print_controls import PACKAGE
 
+COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
 SHOWN_PLACES = 3
 """So many further places of the same thing are named."""
 
@@ -37,10 +38,21 @@ def explanation(condition):
     if also:
         more = len(also) - SHOWN_PLACES
         lines.append(f"  also at {', '.join(map(describe, also[:SHOWN_PLACES]))}{f' and {more} more' if more > 0 else ''}")
+    lines += _expansion(condition, position)
     hint = hint_for(condition)
     if hint:
         lines.append(f"  {hint}")
     return "\n".join(lines)
+
+
+def _expansion(condition, position):
+    """The macro call in whose expansion the condition arose, when that is not its own place."""
+    unit = COMPILATION_UNIT.value
+    entry = getattr(condition, "expanding", None) or (unit.expansions[-1] if unit is not None and unit.expansions else None)
+    place = entry and entry[1]
+    if not place or not position or tuple(place[:2]) == tuple(position[:2]):
+        return []
+    return [f"  in the expansion of the macro call at {describe(place)}", *(f"  {line}" for line in excerpt(place).splitlines())]
 
 
 def hint_for(condition):

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from .ansi_lambda_lists import standard_shape
 from .condition_types import shown_with
-from .conditions import SimpleStyleWarning, SimpleWarning, matches, signal_condition, with_simple_restart
+from .conditions import Condition, SimpleStyleWarning, SimpleWarning, matches, signal_condition, with_simple_restart
 from .data import Cons, Symbol, UndefinedFunction, lisp_list
 from .dynamic import bind, binding, special, unbind
 from .equality import eql_key
@@ -45,7 +45,7 @@ class CompilationUnit:
 
     def __init__(self, kind="form"):
         self.kind = kind
-        self.here = None  # the place of the macro call that is being expanded
+        self.expansions = []  # (form, place) of the macro calls that are being expanded
         self.mentions = []
         self.types = []
         self.defined = {}  # name → Shape of the function that this unit defines, None if it is not known
@@ -58,7 +58,7 @@ class CompilationUnit:
     def tell(self, kind, control, *arguments, position=None, muffled=(), **notes):
         """Signal a warning; it will be shown unless a handler or a declaration muffles it."""
         condition = kind(control, *arguments)
-        condition.position, condition.package = position or self.here, PACKAGE.value
+        condition.position, condition.package = position or (self.expansions[-1][1] if self.expansions else None), PACKAGE.value
         for name, value in notes.items():
             setattr(condition, name, value)
         if any(matches(condition, specifier) for specifier in (*muffled, *MUFFLED.value)):
@@ -184,6 +184,43 @@ class compilation_unit:
         finally:
             unbind()
             unit.show()
+
+
+class expanding:
+    """``with expanding(unit, form, place):`` is around the expansion of the macro call ``form``, so that what fails or warns in it
+    knows the call; ``unit`` may be ``None``."""
+
+    __slots__ = ("unit", "entry")
+
+    def __init__(self, unit, form, place):
+        self.unit, self.entry = unit, (form, place)
+
+    def __enter__(self):
+        if self.unit is not None:
+            self.unit.expansions.append(self.entry)
+
+    def __exit__(self, kind, exception, traceback):
+        if self.unit is not None:
+            self.unit.expansions.pop()
+        if isinstance(exception, Condition):
+            if getattr(exception, "position", None) is None:
+                exception.position = self.entry[1]
+            if getattr(exception, "expanding", None) is None:
+                exception.expanding = self.entry
+
+
+def expansion_place():
+    """The place of the innermost macro call that is being expanded, or ``None``."""
+    unit = CURRENT.value
+    return unit.expansions[-1][1] if unit is not None and unit.expansions else None
+
+
+def mention_type(specifier):
+    """Note that the macro call being expanded names a type; one that is undefined at the end of the unit is warned of."""
+    unit = CURRENT.value
+    name = specifier.car if isinstance(specifier, Cons) else specifier
+    if unit is not None and isinstance(name, Symbol) and not is_known_type(name):
+        unit.types.append(Mention(name, None, expansion_place(), ()))
 
 
 def noticing(thunk):

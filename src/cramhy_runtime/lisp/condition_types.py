@@ -67,7 +67,9 @@ class Condition(BaseException):
         try:
             return self.report()
         except Exception as problem:  # a broken :report must not hide the condition itself
-            return f"{type(self).__name__} (its report fails: {type(problem).__name__})"
+            control = getattr(self, "format_control", None)
+            told = f"{control!s}" if isinstance(control, str) else f"A condition of type {shown(late.class_name(type(self)))} was signalled"
+            return f"{told}\n(Its report could not be made: {' '.join(str(problem).split()) or type(problem).__name__})"
 
 
 @public

@@ -56,7 +56,8 @@ def matches(condition, specifier):
     if specifier is None:
         return False
 
-    return late.typep(condition, specifier) is not None
+    # what names no type fits nothing: an error about it here would come to the same handler again, without end
+    return late.is_known_type(specifier) and late.typep(condition, specifier) is not None
 
 
 def signal_condition(condition):

@@ -7,10 +7,10 @@ loader compiles whole files with `Unit`, whose code can be kept. Top-level ``pro
 
 from __future__ import annotations
 
-from .compilation_unit import compilation_unit, current
+from .compilation_unit import compilation_unit, current, expanding
 from .compiler.environment import EXECUTE, SITUATIONS
 from .compiler.support import NAMESPACE
-from .conditions import CompileError, Condition, error
+from .conditions import CompileError, error
 from .data import Cons, Keyword, Symbol, lisp_list, list_from, one
 from .form_places import FormPlaces
 from .lambda_lists import destructure, gensym
@@ -147,15 +147,9 @@ class Unit:
     def expand(self, form):
         from .macros import macroexpand_1
 
-        unit = current()
-        if unit is not None and id(form) in self.positions:
-            unit.here = (self.filename, *self.positions[id(form)][:2])
-        try:
+        place = (self.filename, *self.positions[id(form)][:2]) if id(form) in self.positions else None
+        with expanding(current(), form, place):
             expansion, expanded = macroexpand_1(form)
-        except Condition as problem:
-            if getattr(problem, "position", None) is None and id(form) in self.positions:
-                problem.position = (self.filename, *self.positions[id(form)][:2])
-            raise
         if expanded:
             self.positions.inherit(expansion, form)
         return expansion, expanded

@@ -6,7 +6,8 @@ A macro only rearranges forms; the work is done here. Users do not call these by
 from __future__ import annotations
 
 from . import conditions
-from .conditions import CaseFailure, SimpleTypeError, error, program_error
+from .compilation_unit import expansion_place
+from .conditions import CaseFailure, SimpleProgramError, SimpleTypeError, error, program_error
 from .data import Cons, MultipleValues, list_from, truth
 from .hash_tables import need_table
 from .packages import is_symbol, keyword, sym, symbol_name
@@ -25,8 +26,12 @@ def check_shape(lst, least, most, what, lambda_list):
     if improper or count < least or (most is not None and count > most):
         wanted = f"exactly {least}" if least == most else f"at least {least}" if most is None else f"between {least} and {most}"
         kind = "invalid number of" if improper else "too few" if count < least else "too many"
-        return program_error("Error while parsing arguments to ~A:~%  ~A elements in~%    ~:S~%  to satisfy lambda list~%    ~:S:~%  "
-                             "~A expected, but got ~A", what, kind, lst, lambda_list, wanted, "a non-list" if improper else count)
+        condition = SimpleProgramError("Error while parsing arguments to ~A:~%  ~A elements in~%    ~:S~%  to satisfy lambda list~%    "
+                                       "~:S:~%  ~A expected, but got ~A", what, kind, lst, lambda_list, wanted,
+                                       "a non-list" if improper else count)
+        if what.startswith(("DEFMACRO", "MACROLET")):
+            condition.position = expansion_place()  # the call is wrong, not the macro
+        return error(condition)
     return lst
 
 

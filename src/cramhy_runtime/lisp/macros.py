@@ -15,6 +15,7 @@ from fractions import Fraction
 from .conditions import CompileError, Condition, error
 from .data import Character, Cons, Symbol, list_from, one
 from .functions import function_of
+from .macro_shapes import SHAPES
 from .packages import COMMON_LISP, find_package_or_error, intern, is_symbol, keyword, sym
 
 FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp")
@@ -76,7 +77,11 @@ def malformed(form, symbol, problem):
         if marker in why:
             why = "it has the wrong number of parts, or a part is not a list."
             break
-    return error(CompileError("The ~A form ~S is malformed: ~A", symbol, form, why))
+    condition = CompileError("The ~A form ~S is malformed: ~A", symbol, form, why)
+    shape = SHAPES.get(symbol.name) if symbol.package is COMMON_LISP else None
+    if shape is not None:
+        condition.hint = f"It is written {shape}."
+    return error(condition)
 
 
 def from_hy(model, package):

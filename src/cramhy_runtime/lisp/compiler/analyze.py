@@ -7,8 +7,9 @@ has a value shows at run time, with the error that the user knows.
 
 from __future__ import annotations
 
-from ..conditions import CompileError, Condition, SimpleProgramError, error
+from ..conditions import CompileError, SimpleProgramError, error
 from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list
+from ..compilation_unit import expanding
 from ..faces import python_name
 from ..form_places import FormPlaces
 from ..lambda_lists import parse
@@ -104,7 +105,7 @@ class Analyzer(Scrutiny):
                 return self.fail("~S stands where a form must stand: declarations belong at the beginning of a body, before all forms.",
                                  form)
             if isinstance(local, LocalFunction):
-                self.local_call(head, local.shape, tuple_of(form))
+                self.local_call(head, local.shape, tuple_of(form), env)
                 return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
             expansion, expanded = self.expand(form, env)
             if expanded:
@@ -116,14 +117,8 @@ class Analyzer(Scrutiny):
 
     def expand(self, form, env):
         """(expansion, whether expanded); the expansion inherits the place of ``form``."""
-        if self.unit is not None:
-            self.unit.here = self.place()
-        try:
+        with expanding(self.unit, form, self.place()):
             expansion, expanded = macroexpand_1(form, env)
-        except Condition as problem:
-            if getattr(problem, "position", None) is None:
-                problem.position = self.place()
-            raise
         if expanded:
             self.positions.inherit(expansion, form)
         return expansion, expanded

@@ -23,7 +23,7 @@ from .environment import Variable
 CRAMHY = sym("CRAMHY::X").package
 
 IGNORE, IGNORABLE, SPECIAL, TYPE, OPTIMIZE = map(sym, ("IGNORE", "IGNORABLE", "SPECIAL", "TYPE", "OPTIMIZE"))
-QUOTE = sym("QUOTE")
+QUOTE, TYPEP = sym("QUOTE"), sym("TYPEP")
 WITHOUT_MEANING = {sym(name) for name in "INLINE NOTINLINE DYNAMIC-EXTENT DECLARATION FTYPE VALUES".split()}
 """Declarations that are known and need nothing done here."""
 STANDARD_DECLARATIONS = {symbol.name for symbol in WITHOUT_MEANING} - {"VALUES"} | {"IGNORE", "IGNORABLE", "SPECIAL", "TYPE", "OPTIMIZE"}
@@ -185,6 +185,8 @@ class Scrutiny:
             self._refuse(name)
         if unit is None:
             return
+        if name is TYPEP and arguments is not None and len(arguments) > 1 and isinstance(arguments[1], Cons) and arguments[1].car is QUOTE:
+            self.mention_type(arguments[1].cdr.car, form)
         if self.at_once and env.scope.parent is None:
             return  # the form itself makes the call, and the error tells
         if arguments is None or form is None or id(form) not in self.positions:
@@ -209,9 +211,9 @@ class Scrutiny:
         if first is not None:
             self.warn(SimpleWarning, "Duplicate definition for ~S found in one file.", name, also=[first])
 
-    def local_call(self, name, shape, arguments):
+    def local_call(self, name, shape, arguments, env):
         """Judge a call of a function of ``flet`` or ``labels``."""
-        if self.unit is None or shape is None:
+        if self.unit is None or shape is None or self.at_once and env.scope.parent is None:
             return
         for control, *rest in wrong_call(name, shape, arguments):
             self.warn(SimpleWarning, control, *rest)
