@@ -291,7 +291,8 @@ def test_the_answers_of_cramhy_eval_have_them_apart_from_the_output(lisp):
 
 
 def test_a_type_that_nobody_defines(lisp):
-    assert re.findall("caught (.*)|;   (und.*)", lisp.said("(defun f (x) (handler-case (typep x 'no-such-type) (no-such-error () 1)))")) == [
+    assert re.findall("caught (.*)|;   (und.*)", lisp.said(
+            "(defun f (x) (handler-case (typep x 'no-such-type) (no-such-error () 1)))")) == [
         ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-ERROR"),
         ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-TYPE")]
     assert printed(lisp("(handler-case (handler-case (error \"x\") (no-such-error () 1)) (error () 2))")) == ["2"]  # it fits nothing
