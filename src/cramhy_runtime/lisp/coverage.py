@@ -23,9 +23,9 @@ from .standard_names import ABSENT, INSIDE
 
 HEAD = """# The symbols of Common Lisp
 
-All {total} external symbols of the package COMMON-LISP: {there} of them are there, {absent} are not, each with the reason. This page is
-made from the code by `make docs`; what differs from SBCL in behaviour is in
-[differences.md](differences.md). A program that uses a symbol that is not there gets the reason when it is compiled, with its place.
+Of the {total} external symbols of the package COMMON-LISP {there} are there and {absent} are not. This page is made from the code by
+`make docs`; what differs from SBCL in behaviour is in [differences.md](differences.md). A program that uses a symbol that is not there
+gets the reason when it is compiled, with its place.
 
 {counts}
 
@@ -83,7 +83,8 @@ def page():
         if "function" in words and name in texts:
             words = words.replace("function", f"function `{texts[name].lower()}`", 1)
         lines.append(f"| `{_cell(name)}` | {_cell(words)} |")
-    lines += ["", "## Not there", "", "| symbol | why |", "|---|---|"]
+    if absent:
+        lines += ["", "## Not there", "", "| symbol | why |", "|---|---|"]
     lines += [f"| `{_cell(name)}` | {_cell(ABSENT.get(name, '?'))} |" for name, _, _ in absent]
     summary = "By kind: " + ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items())) + "."
     return HEAD.format(total=len(rows), there=len(there), absent=len(absent), counts=summary) + "\n".join(lines) + "\n"

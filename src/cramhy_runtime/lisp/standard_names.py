@@ -9,30 +9,16 @@ from __future__ import annotations
 
 from .conditions import CompileError
 from .data import Symbol, UNBOUND, UndefinedFunction
-from .packages import COMMON_LISP, sym
+from .packages import COMMON_LISP
 
-COMPILED = 'Files are compiled when they are loaded, and kept compiled: (load "plan.lisp").'
-
-ABSENT = {
-    "COMPILE-FILE": COMPILED,
-    "COMPILE-FILE-PATHNAME": COMPILED,
-    "*COMPILE-FILE-PATHNAME*": COMPILED,
-    "*COMPILE-FILE-TRUENAME*": COMPILED,
-    "*COMPILE-PRINT*": COMPILED,
-    "*COMPILE-VERBOSE*": COMPILED,
-    "*LOAD-PRINT*": "LOAD prints nothing about the forms that it loads.",
-    "*LOAD-VERBOSE*": "LOAD prints nothing about the forms that it loads.",
-}
-"""Name → why it is not there and what to do instead."""
+ABSENT: dict[str, str] = {}
+"""Name → why it is not there and what to do instead. At present all 978 are there."""
 
 INSIDE = {
     "CALL-METHOD": ("macro", "in the form of a DEFINE-METHOD-COMBINATION"),
     "MAKE-METHOD": ("operator", "in the form of a DEFINE-METHOD-COMBINATION"),
     "CALL-NEXT-METHOD": ("function", "in the body of a method"),
     "NEXT-METHOD-P": ("function", "in the body of a method"),
-    "PPRINT-POP": ("macro", "in the body of PPRINT-LOGICAL-BLOCK"),
-    "PPRINT-EXIT-IF-LIST-EXHAUSTED": ("macro", "in the body of PPRINT-LOGICAL-BLOCK"),
-    "LOOP-FINISH": ("macro", "in the body of LOOP"),
     "DECLARE": ("symbol", "at the head of a body, before its forms"),
     "OTHERWISE": ("symbol", "as the key of the last clause of CASE and its relatives"),
 }
@@ -53,8 +39,3 @@ def missing(symbol, position=None):
     if symbol.name in INSIDE:
         return CompileError(f"~S has a meaning only {INSIDE[symbol.name][1]}.", symbol, position=position)
     return None
-
-
-def absent_symbols():
-    """The symbols of the table `ABSENT`."""
-    return {sym(name) for name in ABSENT}
