@@ -1,5 +1,6 @@
-"""``make docs``: write ``docs/common-lisp.md``, the table of all symbols of Common Lisp, from the code."""
+"""``make docs``: write ``docs/common-lisp.md``, the table of all symbols of Common Lisp, from the code; with ``--print`` only show it."""
 
+import sys
 from pathlib import Path
 
 from cramhy_runtime import image
@@ -14,4 +15,7 @@ def text():
 
 
 if __name__ == "__main__":
-    PAGE.write_text(text(), encoding="utf-8")
+    if sys.argv[1:] == ["--print"]:
+        sys.stdout.write(text())
+    else:
+        PAGE.write_text(text(), encoding="utf-8")
