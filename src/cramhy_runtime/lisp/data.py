@@ -39,10 +39,12 @@ class Symbol:
 
     ``value`` is the current dynamic value: see ``lisp/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
+    ``reads`` and ``writes`` are the structure class whose slot ``function`` reads and ``setf_function`` writes: where the compiler
+    saw that they do, it takes the slot of an object of that class itself. `function_changed` keeps them right.
     """
 
     __slots__ = ("name", "package", "value", "function", "macro", "setf_function", "plist", "special", "constant",
-                 "compiler_data", "__weakref__")
+                 "compiler_data", "reads", "writes", "__weakref__")
 
     def __init__(self, name, package=None):
         self.name = name
@@ -55,12 +57,22 @@ class Symbol:
         self.special = False
         self.constant = False
         self.compiler_data = None
+        self.reads = self.writes = None
+
+    def function_changed(self):
+        """To be called after ``function`` or ``setf_function`` got another value."""
+        self.reads, self.writes = _slot_class(self.function), _slot_class(self.setf_function)
 
     def __repr__(self):
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
 
     def __reduce__(self):
         return (late.intern, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
+
+
+def _slot_class(function):
+    known = getattr(function, "__dict__", None)
+    return known.get("slot_of") if known and "traced" not in known else None
 
 
 class Keyword(Symbol):

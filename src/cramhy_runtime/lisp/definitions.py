@@ -42,6 +42,7 @@ def define_function(name, function, documentation=None, lambda_list=UNSUPPLIED):
         check_symbol(symbol, "setting fdefinition of ~S", name)
         function.__lisp_name__ = name
         symbol.setf_function = traced_like(symbol.setf_function, function)
+        symbol.function_changed()
         return name
     _check_name(name, "function")
     new = isinstance(name.function, UndefinedFunction)
@@ -54,6 +55,7 @@ def define_function(name, function, documentation=None, lambda_list=UNSUPPLIED):
     elif not isinstance(old, UndefinedFunction) and (source_of(old) != source_of(function) or source_of(function).startswith("<")):
         warn(RedefinitionWarning(f"redefining {printed(name)} in DEFUN"))
     name.function = traced_like(old, function)
+    name.function_changed()
     return name
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from .data import Cons, LispString, MultipleValues, Symbol, list_from
 from .format_parser import Directive, FormatError, parse
-from .printer import princ_to_string
+from .format_templates import filled, template
 from .streams import STANDARD_OUTPUT, OutputStream, StringOutputStream, output_stream
 
 
@@ -129,9 +129,12 @@ def format_(destination, control, *args):
 
 def format_to_string(control, *args):
     """The text that ``format`` makes of ``control`` and ``args``."""
-    if control == "~A" or control == "~a":
-        if len(args) == 1:
-            return princ_to_string(args[0])
+    if control.__class__ is str:
+        found = template(control)
+        if found is not None:
+            text = filled(found, args)
+            if text is not None:
+                return text
     stream = StringOutputStream()
     format_on(stream, control, args)
     return stream.text()

@@ -98,8 +98,10 @@ def compile_(name, definition=None):
         defined_function(name)
     elif isinstance(name, Cons):
         name.cdr.car.setf_function = function
+        name.cdr.car.function_changed()
     else:
         name.function = function
+        name.function_changed()
     return MultipleValues((name, warned, failed))
 
 

@@ -87,11 +87,11 @@ class GenericFunction(FunctionObject):
         if self.watcher is not None:
             self.__class__ = _WatchedGeneric
         elif len(positions) == 1 and fixed and self.minimum < 3:
-            self.__class__ = {(0, 1): _UnaryGeneric, (0, 2): _FirstOfTwo, (1, 2): _SecondOfTwo}[positions[0], self.minimum]
+            self.__class__ = {(0, 1): UnaryGeneric, (0, 2): FirstOfTwo, (1, 2): _SecondOfTwo}[positions[0], self.minimum]
         elif positions == [0]:
             self.__class__ = _FirstGeneric
         elif positions == [0, 1]:
-            self.__class__ = _TwoGeneric
+            self.__class__ = TwoGeneric
         else:
             self.__class__ = _ManyGeneric
 
@@ -227,7 +227,7 @@ def other_keys_allowed(given):
     return False
 
 
-class _UnaryGeneric(GenericFunction):
+class UnaryGeneric(GenericFunction):
     def __call__(self, *arguments, **keywords):
         try:
             argument, = arguments
@@ -240,7 +240,7 @@ class _UnaryGeneric(GenericFunction):
         return arguments[0].__class__
 
 
-class _FirstOfTwo(GenericFunction):
+class FirstOfTwo(GenericFunction):
     def __call__(self, *arguments, **keywords):
         try:
             argument, _ = arguments
@@ -277,7 +277,7 @@ class _FirstGeneric(GenericFunction):
         return arguments[0].__class__
 
 
-class _TwoGeneric(GenericFunction):
+class TwoGeneric(GenericFunction):
     def __call__(self, *arguments, **keywords):
         if len(arguments) < self.minimum or (self.maximum is not None and len(arguments) > self.maximum):
             return wrong_argument_count(len(arguments))
@@ -347,6 +347,7 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
             symbol.setf_function = function
         else:
             symbol.function, symbol.macro = function, None
+        symbol.function_changed()
     if method_combination is not None:
         options = python_list(method_combination)
         function.combination, function.combination_options = find_combination(options[0]), tuple(options[1:])

@@ -447,17 +447,17 @@ def mapcar(function, lst, *lists):
     function = function_of(function)
     if lists:
         return list_from([_one(function(*items)) for items in _lockstep((lst, *lists))])
-    results = []
+    tail = header = Cons(None)
     cell = lst
-    while isinstance(cell, Cons):
+    while cell.__class__ is Cons:
         value = function(cell.car)
         if value.__class__ is MultipleValues:
             value = value[0] if value else None
-        results.append(value)
+        tail.cdr = tail = Cons(value)
         cell = cell.cdr
     if cell is not None and cell is not False:
         not_a_list(cell)
-    return list_from(results)
+    return header.cdr
 
 
 def _one(value):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from .conditions import type_error
 from .data import Cons, list_from
+from .lists import not_a_list
 from .packages import Package, find_package, find_package_or_error, intern, register
 
 if find_package("CRAMHY") is None:
@@ -24,6 +25,11 @@ def car_of_cons(cell):
 def cdr_of_cons(cell):
     """``cdr`` of what is known to be a cons."""
     return cell.cdr
+
+
+def end_of_list(atom):
+    """Nothing, where a list ends; an error where something else stands in its place."""
+    return None if atom is None or atom is False else not_a_list(atom)
 
 
 def collect(tail, item):
@@ -82,7 +88,7 @@ def loop_symbols(kind, package):
     return list_from(list(dict.fromkeys(found)))
 
 
-CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_APPEND, COLLECT_NCONC, LOOP_VECTOR, TABLE_ENTRIES, LOOP_SYMBOLS = (
-    intern(name, "CRAMHY") for name in """CAR-OF-CONS CDR-OF-CONS COLLECT COLLECT-APPEND COLLECT-NCONC LOOP-VECTOR TABLE-ENTRIES
+CAR_OF_CONS, CDR_OF_CONS, END_OF_LIST, COLLECT, COLLECT_APPEND, COLLECT_NCONC, LOOP_VECTOR, TABLE_ENTRIES, LOOP_SYMBOLS = (
+    intern(name, "CRAMHY") for name in """CAR-OF-CONS CDR-OF-CONS END-OF-LIST COLLECT COLLECT-APPEND COLLECT-NCONC LOOP-VECTOR TABLE-ENTRIES
     LOOP-SYMBOLS""".split())
 """The symbols of these functions; `package.fill` defines them, because kept code calls them without LOOP having been loaded."""

@@ -33,7 +33,7 @@ HELPERS = {
     "declarations": "declaim",
     "compilation_unit": "with-compilation-unit",
     "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
-    "loop_support": "car-of-cons cdr-of-cons collect collect-append collect-nconc loop-vector table-entries loop-symbols",
+    "loop_support": "car-of-cons cdr-of-cons end-of-list collect collect-append collect-nconc loop-vector table-entries loop-symbols",
     "places_in_source": "source-position",
     "places": "define-modifier define-setf-function define-setf-form define-expander",
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed

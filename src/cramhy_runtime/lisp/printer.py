@@ -76,6 +76,10 @@ _ATOMS = {
 """The text of an atom (object, whether escaped), by class: what needs neither line breaks nor a stream."""
 
 
+atom_text = _ATOMS.get
+"""The function (object, whether escaped) that gives the text of an atom of a class; ``None`` for other classes."""
+
+
 def escaping():
     """Whether objects are to be printed so that they can be read back."""
     return PRINT_ESCAPE.value is not None or PRINT_READABLY.value is not None

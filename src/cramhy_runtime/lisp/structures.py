@@ -270,6 +270,7 @@ def _function(symbol, function):
     function.__lisp_name__ = symbol
     function.__name__ = function.__qualname__ = python_name(symbol.name)
     symbol.function, symbol.macro = function, None
+    symbol.function_changed()
 
 
 def _define_accessor(structure, slot, symbol, parent):
@@ -282,6 +283,7 @@ def _define_accessor(structure, slot, symbol, parent):
         reader, writer = _sequence_accessors(structure, slot)
     _function(symbol, reader)
     symbol.setf_function = None if slot.read_only else writer
+    symbol.function_changed()
 
 
 def _class_accessors(structure, slot):
@@ -303,6 +305,9 @@ def _class_accessors(structure, slot):
             return type_error(object, name)
         return new
 
+    accessor.slot_of, accessor.attribute = structure.cls, slot.attribute
+    if predicate is None:
+        setter.slot_of, setter.attribute = structure.cls, slot.attribute
     return accessor, setter
 
 

@@ -64,6 +64,7 @@ def symbol_function(symbol):
 def set_symbol_function(function, symbol):
     check_symbol(symbol, "setting the symbol-function of ~S", symbol)
     symbol.function = traced_like(symbol.function, function)
+    symbol.function_changed()
     return function
 
 
@@ -100,9 +101,11 @@ def fmakunbound(name):
     check_symbol(name.cdr.car if isinstance(name, Cons) else name, "removing the function or macro definition of ~S", name)
     if isinstance(name, Cons):
         name.cdr.car.setf_function = None
+        name.cdr.car.function_changed()
     else:
         name.function = UndefinedFunction(name)
         name.macro = None
+        name.function_changed()
     return name
 
 

@@ -153,6 +153,7 @@ def trace(specs):
                 function.watch(entry.watch)
             else:
                 setattr(symbol, cell, entry.around(function))
+                symbol.function_changed()
             names.append(name)
     return list_from(names)
 
@@ -168,6 +169,7 @@ def _untrace(name):
         function.watch(None)
     elif hasattr(function, "traced"):
         setattr(symbol, cell, function.traced)
+        symbol.function_changed()
 
 
 def untrace(specs):

@@ -7,6 +7,8 @@ callback whose message has arrived has run before the next prompt.
 
 from __future__ import annotations
 
+import functools
+import gc
 import linecache
 import os
 import signal
@@ -45,6 +47,13 @@ class Interruption(Exception):
     """A form was ended by Ctrl-C; the plan below it has been cleaned up."""
 
 
+@functools.cache
+def quiet_collector():
+    """Let the garbage collector leave the image alone, which lives as long as the process, and come less often: Lisp makes conses."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
+
+
 class Session:
     """Evaluates forms in an image. The calling thread becomes the kernel's main task.
 
@@ -63,6 +72,7 @@ class Session:
         DEFAULTS.value = parse_native(os.getcwd() + "/")
         self.virtual = time == "virtual"
         self.texts = 0
+        quiet_collector()
 
     @property
     def package(self):

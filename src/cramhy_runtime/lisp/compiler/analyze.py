@@ -21,6 +21,7 @@ from .declared_types import declared_types, kind_of_type
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable
 from .nodes import (Call, CallLocal, CallSetf, CallValue, Checked, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,
                     Parameters, Progn, SetGlobal, SetLocal)
+from .open_coding import MAPPING, open_coded
 from .scrutiny import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
@@ -110,6 +111,11 @@ class Analyzer(Scrutiny):
             expansion, expanded = self.expand(form, env)
             if expanded:
                 return self.form(expansion, env)
+            if head in MAPPING:
+                loop = open_coded(form)
+                if loop is not None:
+                    self._keep(loop)
+                    return self.form(loop, env)
             return self._call(form, env)
         if isinstance(head, Cons) and head.car is LAMBDA:
             return CallValue(self.function(head, env), self.arguments(form, env))
@@ -347,6 +353,7 @@ note_traits("car cdr cons list list* append nconc length reverse nreverse nth nt
             "mod rem abs symbol-name make-symbol symbol-value symbol-function string intern-keyword elt aref svref char mapcar mapc "
             "mapcan member assoc find position count remove delete sort concatenate format princ prin1 print terpri write-string "
             "gensym error make-hash-table vector copy-list cadr cddr caar cdar caddr string-upcase string-downcase coerce reduce "
+            "cramhy::car-of-cons cramhy::cdr-of-cons cramhy::collect cramhy::loop-vector "
             "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt", "single")
 
 

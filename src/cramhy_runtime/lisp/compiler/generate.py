@@ -10,6 +10,7 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 from __future__ import annotations
 
 from ..data import Symbol, UndefinedFunction
+from ..format_templates import SMALL, template
 from ..packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
@@ -21,7 +22,9 @@ from .generate_functions import FunctionGenerator
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
 
 
-COLLECT = sym("CRAMHY::COLLECT")
+COLLECT, FORMAT = sym("CRAMHY::COLLECT"), sym("FORMAT")
+DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 1, "TwoGeneric": 2}
+"""Kinds of generic functions that look only at the classes of so many first arguments, and may be asked in the caller's code."""
 
 
 class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
@@ -227,7 +230,15 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             model = self.small_function(node, symbol, arguments)
             if model is not None:
                 return self.finish(model, node, destination)
+        if symbol is FORMAT and destination.kind != "effect":
+            model = self.text(node, arguments)
+            if model is not None:
+                return self.finish(model, node, destination)
         models = self.arguments(arguments)
+        model = self.through_object(node, symbol, models)
+        if model is not None:
+            reader = symbol.reads is not None and model[0] == "if"
+            return self.finish(model, nodes.Constant(None) if reader else node, destination)
         if self.standard(symbol):
             model = expression(word(self.constants.name("function", symbol)), *models)
         elif is_symbol(symbol) and not isinstance(symbol, Symbol):
@@ -236,6 +247,80 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             function = expression(word("setx"), word("Lf"), expression(word("."), self.constant(symbol), word("function")))
             model = expression(function, *models)
         return self.finish(self.positioned(model, node), node, destination)
+
+    def text(self, node, arguments):
+        """``(format nil "..." ...)`` with a simple control: Python's formatting, if all arguments are atoms; else ``None``."""
+        if len(arguments) < 2 or any(argument.__class__ is not nodes.Constant for argument in arguments[:2]):
+            return None
+        control = arguments[1].value
+        if arguments[0].value is not None or control.__class__ is not str:
+            return None
+        found = template(control)
+        if found is None or len(found[1]) != len(arguments) - 2 or not found[1]:
+            return None
+        names = self.stable_names(self.arguments(arguments[2:]))
+        tests, parts = [], []
+        for kind, name in zip(found[1], names, strict=True):
+            if kind == "A" and name.__class__ is str:
+                parts.append(name)
+                continue
+            part, text = word(self.temporary()), self.call("text" + kind, name)
+            if kind == "A":
+                is_text = expression(word("is"), expression(word("."), name, word("__class__")), word("Lstr"))
+                text = expression(word("if"), is_text, name, text)
+            elif kind == "D":  # so small that Python surely prints it
+                is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
+                small = expression(word("<"), -SMALL, name, SMALL)
+                text = expression(word("if"), expression(word("and"), is_integer, small), name, text)
+            tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
+            parts.append(part)
+        filled = expression(word("%"), found[0], core.Tuple(parts))
+        if not tests:
+            return filled
+        general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)
+        simple = tests[0] if len(tests) == 1 else expression(word("and"), *tests)
+        return expression(word("if"), simple, filled, self.positioned(general, node))
+
+    def stable_names(self, models):
+        """``models``, evaluated and named as far as that is needed to use them twice."""
+        done = []
+        for model in models:
+            if model.__class__ in (core.Expression, core.List, core.Tuple):
+                name = self.temporary()
+                self.assign(name, model)
+                model = word(name)
+            done.append(model)
+        return done
+
+    def through_object(self, node, symbol, models):
+        """A call that goes through its first argument, if that is of the expected class, or ``None``.
+
+        A reader of a structure becomes an attribute. A generic function is asked for the effective function of its first
+        argument's class right here. Both look first whether the function is still that one.
+        """
+        if not isinstance(symbol, Symbol) or not models:
+            return None
+        function = symbol.function
+        if symbol.reads is not None and len(models) == 1:
+            target, = self.stable_names(models)
+            constant = self.constant(symbol)
+            quick = expression(word("is"), expression(word("."), target, word("__class__")), expression(word("."), constant, word("reads")))
+            slow = self.positioned(expression(expression(word("."), constant, word("function")), target), node)
+            return expression(word("if"), quick, expression(word("."), target, word(function.attribute)), self.first_value(slow))
+        kind = function.__class__.__name__
+        if kind not in DISPATCHERS or any(item.__class__ is core.Expression and item[0] == "unpack-iterable" for item in models):
+            return None
+        models = self.stable_names(models)
+        name = word("Lf")
+        classes = [expression(word("."), models[index], word("__class__")) for index in range(DISPATCHERS[kind]) if index < len(models)]
+        if len(classes) < DISPATCHERS[kind]:
+            return None
+        key = classes[0] if len(classes) == 1 else core.Tuple(classes)
+        cached = expression(expression(word("."), expression(word("."), name, word("cache")), word("get")), key)
+        current = expression(word("setx"), name, expression(word("."), self.constant(symbol), word("function")))
+        same = expression(word("is"), expression(word("."), current, word("__class__")), word("L" + kind))
+        chosen = expression(word("if"), same, expression(word("or"), cached, name), name)
+        return self.positioned(expression(chosen, *models), node)
 
     @staticmethod
     def truth_value(test):
@@ -260,6 +345,14 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
 
     def CallSetf(self, node, destination):
         arguments = self.arguments(node.arguments)
+        attribute = getattr(getattr(node.symbol, "setf_function", None), "attribute", None)
+        if attribute is not None and destination.kind == "effect" and len(arguments) == 2 and node.symbol.writes is not None:
+            new, target = self.stable_names(arguments)
+            symbol = self.constant(node.symbol)
+            quick = expression(word("is"), expression(word("."), target, word("__class__")), expression(word("."), symbol, word("writes")))
+            slow = self.positioned(expression(self.call("setf_function", symbol), new, target), node)
+            self.emit(word("if"), quick, expression(word("setv"), expression(word("."), target, word(attribute)), new), slow)
+            return None
         model = expression(self.call("setf_function", self.constant(node.symbol)), *arguments)
         return self.finish(self.positioned(model, node), node, destination)
 

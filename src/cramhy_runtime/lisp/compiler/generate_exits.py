@@ -143,7 +143,10 @@ class ExitGenerator:
             source, target = self.counted(found)
             body, _ = self.captured(lambda: [self.gen(item, EFFECT) for item in found.body])
             self.frames.pop()
-            self.emit(word("for"), List([target, source]), *(body or [NONE]))
+            # two loops in Python: over parts, between which others may get a turn, and over the elements of a part
+            part = word("Lpart")
+            inner = expression(word("for"), List([target, part]), *(body or [NONE]), expression(word("else"), expression(word("continue"))))
+            self.emit(word("for"), List([part, source]), inner, expression(word("break")))
             self.continue_exits(frame)
             return
 

@@ -3,7 +3,7 @@
 Where the kinds of the operands are known (``facts.py``) a Python operator stands alone. Where they are not, the operator stands
 behind a test of their classes, and the generic function of ``arithmetic.py`` behind it in turn: ratios, doubles, errors and
 several values are its business. Numbers stay what they are in Lisp: ``t`` is none although Python's ``True`` is, a quotient of
-integers is a ratio, and a product of floats that became infinite is an error.
+integers is a ratio, and a product of floats that became infinite is an error, unless it is only a term of a sum.
 """
 
 from __future__ import annotations
@@ -45,6 +45,12 @@ def class_of(model):
 def nameable(model):
     """Whether ``model`` may be evaluated twice: a name or a number."""
     return model.__class__ in (Symbol, int, float)
+
+
+def all_of(classes, wanted):
+    """A test that all ``classes`` are ``wanted``."""
+    tests = [expression(IS, each, wanted) for each in classes]
+    return tests[0] if len(tests) == 1 else expression(AND, *tests)
 
 
 class OperatorGenerator:
@@ -117,8 +123,9 @@ class OperatorGenerator:
         shared = self.shared_class(first, later)
         if symbol is not TIMES:
             return expression(IF, self.both(shared), quick, slow)
-        return expression(IF, self.only(shared, INT), quick, self.finite(expression(IS, CLASSES, FLOAT) if shared[1] is None else
-                          expression(AND, expression(IS, CLASSES, FLOAT), expression(IS, shared[1], FLOAT)), quick, slow))
+        names = [model for model in later if model.__class__ is Symbol]
+        again = expression(IS, *[class_of(name) for name in dict.fromkeys(names)], INT)
+        return self.finite(self.only(shared, FLOAT), quick, expression(IF, again, quick, slow))
 
     @staticmethod
     def finite(guard, product, slow):
@@ -231,22 +238,23 @@ class OperatorGenerator:
                                                                       for part in parts)), item)
 
         bare, generic = quick(symbol, parts), slow(symbol, node, parts)
-        product = any(operator is TIMES for operator, _ in operations)
+        product = symbol is TIMES
         unknown = [class_of(name) for variable, name in leaves.items() if variable.kind is None]
         if kinds == {"float"}:
             return self.finite(TRUE, bare, generic) if product else bare
         if kinds >= {"int"}:
-            return expression(IF, expression(IS, *unknown, INT), bare, generic)
+            return expression(IF, all_of(unknown, INT), bare, generic)
         if kinds >= {"float"}:
-            guard = expression(IS, *unknown, FLOAT)
+            guard = all_of(unknown, FLOAT)
             return self.finite(guard, bare, generic) if product else expression(IF, guard, bare, generic)
+        if any(operator is TIMES for operator, _ in operations):  # of floats, most likely
+            ints = expression(IF, all_of(unknown, INT), bare, generic)
+            floats = all_of(unknown, FLOAT)
+            return self.finite(floats, bare, ints) if product else expression(IF, floats, bare, ints)
         noted = expression(SETX, CLASSES, unknown[0])
         alike = expression(IS, noted, *unknown[1:]) if unknown[1:] else None
-        if not product:
-            either = expression(OR, expression(IS, noted if alike is None else CLASSES, INT), expression(IS, CLASSES, FLOAT))
-            return expression(IF, either if alike is None else expression(AND, alike, either), bare, generic)
-        floats = expression(IS, CLASSES, *unknown[1:], FLOAT)
-        return expression(IF, expression(IS, noted, *unknown[1:], INT), bare, self.finite(floats, bare, generic))
+        either = expression(OR, expression(IS, noted if alike is None else CLASSES, INT), expression(IS, CLASSES, FLOAT))
+        return expression(IF, either if alike is None else expression(AND, alike, either), bare, generic)
 
     # --------------------------------------------------------------------------------------------------------------- tests
 

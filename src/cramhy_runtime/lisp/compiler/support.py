@@ -7,8 +7,7 @@ The names that generated code uses begin with ``L``: no Lisp name becomes such a
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import chain, islice, zip_longest
-from operator import length_hint
+from itertools import zip_longest
 from types import FunctionType
 
 from cramhy_runtime import kernel
@@ -20,7 +19,9 @@ from ..conditions import SimpleControlError, error, program_error, unbound_varia
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
 from ..dynamic import Bindings, bind, unbind
+from ..format_templates import decimal, prin1_atom, princ_atom
 from ..functions import function_of
+from ..generic import FirstOfTwo, TwoGeneric, UnaryGeneric
 from ..irrational import complex_
 from ..late import late
 from ..packages import intern, keyword, printed, sym
@@ -44,20 +45,16 @@ class BlockExit(BaseException):
 
 
 def counting(start, limit, step, inclusive):
-    """What a loop counts through: from ``start`` by the integer ``step`` up or down to ``limit``. An iterable of numbers.
+    """What a loop counts through: from ``start`` by the integer ``step`` up or down to ``limit``, in parts.
 
-    Each turn is a checkpoint. A limit that is a float, or no number at all, is the generic functions' business.
+    Each turn counts as a checkpoint, and between the parts others may get a turn. A limit that is a float, or no number at all, is
+    the generic functions' business.
     """
     if start.__class__ is not int or limit.__class__ is not int:
-        return _counting_by_comparison(start, limit, step, inclusive)
+        return (_counting_by_comparison(start, limit, step, inclusive),)
     stop = limit + (1 if step > 0 else -1) if inclusive else limit
     turns = range(start, stop, step)
-    if len(turns) <= TICKS:
-        budget.left -= len(turns)
-        if budget.left < 0:
-            kernel.slice_over()
-        return turns
-    return chain.from_iterable(_ticking(iter(turns)))
+    return _parts(turns, len(turns))
 
 
 def _counting_by_comparison(number, limit, step, inclusive):
@@ -68,25 +65,27 @@ def _counting_by_comparison(number, limit, step, inclusive):
         kernel.checkpoint()
 
 
-def _ticking(iterator):
-    """The parts of ``iterator``, a checkpoint for each of their elements."""
-    while length_hint(iterator):
-        yield islice(iterator, TICKS)
+def _parts(sequence, size):
+    """``sequence`` in parts."""
+    if size <= TICKS:
+        budget.left -= size
+        if budget.left < 0:
+            kernel.slice_over()
+        return (sequence,)
+    return _ticking(sequence, size)
+
+
+def _ticking(sequence, size):
+    for start in range(0, size, TICKS):
+        yield sequence[start:start + TICKS]
         budget.left -= TICKS
         if budget.left < 0:
             kernel.slice_over()
 
 
 def items(vector):
-    """What a loop over the elements of ``vector`` goes through."""
-    if vector.__class__ is not list:
-        return _items(vector)
-    if len(vector) <= TICKS:
-        budget.left -= len(vector)
-        if budget.left < 0:
-            kernel.slice_over()
-        return vector
-    return chain.from_iterable(_ticking(iter(vector)))
+    """What a loop over the elements of ``vector`` goes through, in parts. The loop does not change the vector."""
+    return _parts(vector, len(vector)) if vector.__class__ is list else (_items(vector),)
 
 
 def _items(vector):
@@ -269,7 +268,9 @@ NAMESPACE = {
     "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
     "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
-    "LCons": Cons, "LFunction": FunctionType, "Lshield": kernel.shield,
+    "LCons": Cons, "Lstr": str, "LtextA": princ_atom, "LtextS": prin1_atom, "LtextD": decimal,
+     "LUnaryGeneric": UnaryGeneric, "LFirstOfTwo": FirstOfTwo,
+    "LTwoGeneric": TwoGeneric, "LFunction": FunctionType, "Lshield": kernel.shield,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lchecked": checked, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
