@@ -180,8 +180,11 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
                 and value.arguments[0].__class__ is nodes.LocalVariable and value.arguments[0].variable is variable and not variable.boxed:
             cell, tail = word(self.temporary("Lnew")), word(variable.name)
             item = self.value(value.arguments[1])
-            new = expression(word("setx"), cell, expression(word("LCons"), item))
-            self.emit(word("setv"), expression(word("."), tail, word("cdr")), new)
+            # made without its constructor, which would be a call of a Python function
+            self.emit(word("setv"), cell, expression(word("Lnew_object"), word("LCons")))
+            self.emit(word("setv"), expression(word("."), cell, word("car")), item)
+            self.emit(word("setv"), expression(word("."), cell, word("cdr")), NONE)
+            self.emit(word("setv"), expression(word("."), tail, word("cdr")), cell)
             self.emit(word("setv"), tail, cell)
             return None
         if not variable.boxed:

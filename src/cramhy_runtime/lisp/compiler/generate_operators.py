@@ -123,9 +123,10 @@ class OperatorGenerator:
         shared = self.shared_class(first, later)
         if symbol is not TIMES:
             return expression(IF, self.both(shared), quick, slow)
-        names = [model for model in later if model.__class__ is Symbol]
-        again = expression(IS, *[class_of(name) for name in dict.fromkeys(names)], INT)
-        return self.finite(self.only(shared, FLOAT), quick, expression(IF, again, quick, slow))
+        one, other = shared
+        either = expression(IF, expression(IS, one if other is None else CLASSES, INT), quick,
+                            self.finite(expression(IS, CLASSES, FLOAT), quick, slow))
+        return either if other is None else expression(IF, expression(IS, one, other), either, slow)
 
     @staticmethod
     def finite(guard, product, slow):
@@ -163,11 +164,6 @@ class OperatorGenerator:
         if other.__class__ is Symbol:
             return expression(SETX, CLASSES, class_of(one)), class_of(other)
         return class_of(one), expression(SETX, CLASSES, class_of(other))
-
-    @staticmethod
-    def only(shared, wanted):
-        one, other = shared
-        return expression(IS, one, wanted) if other is None else expression(IS, one, other, wanted)
 
     @staticmethod
     def both(shared):

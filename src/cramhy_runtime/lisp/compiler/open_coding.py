@@ -52,7 +52,8 @@ def _loop(name, variables, body, lists):
     rests = [gensym("REST") for _ in lists]
     first, header, tail, again, end = (gensym(text) for text in ("FIRST", "HEADER", "TAIL", "NEXT", "END"))
     bindings = [lisp_list(rest, each) for rest, each in zip(rests, lists, strict=True)]
-    tests = [lisp_list(IF, lisp_list(ATOM, rest), lisp_list(PROGN, lisp_list(END_OF_LIST, rest), lisp_list(GO, end)), None) for rest in rests]
+    leave = lisp_list(GO, end)
+    tests = [lisp_list(IF, lisp_list(ATOM, rest), lisp_list(PROGN, lisp_list(END_OF_LIST, rest), leave), None) for rest in rests]
     elements = list_from([lisp_list(variable, lisp_list(CAR_OF_CONS, rest)) for variable, rest in zip(variables, rests, strict=True)])
     value = Cons(LET, Cons(elements, body))
     steps = [lisp_list(SETQ, rest, lisp_list(CDR_OF_CONS, rest)) for rest in rests]

@@ -268,7 +268,7 @@ NAMESPACE = {
     "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
     "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
-    "LCons": Cons, "Lstr": str, "LtextA": princ_atom, "LtextS": prin1_atom, "LtextD": decimal,
+    "LCons": Cons, "Lnew_object": object.__new__, "Lstr": str, "LtextA": princ_atom, "LtextS": prin1_atom, "LtextD": decimal,
      "LUnaryGeneric": UnaryGeneric, "LFirstOfTwo": FirstOfTwo,
     "LTwoGeneric": TwoGeneric, "LFunction": FunctionType, "Lshield": kernel.shield,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
