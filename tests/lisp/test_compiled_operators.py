@@ -138,3 +138,52 @@ def test_a_function_that_is_defined_again_is_seen_by_its_callers(session):
 def test_an_endless_loop_lets_others_run_and_can_be_ended(session, loop):
     plan = f"(cpl:top-level (let ((x 0)) (cpl:pursue (progn (cpl:sleep* 0.5) :slept) {loop})))"
     assert answer(session, plan) == ":SLEPT"
+
+
+@pytest.mark.parametrize(("program", "wanted"), [
+    # slots of structures: taken directly, until the accessor is another function
+    ("(defstruct spot x (y 0 :type integer)) (defstruct (deep (:include spot)) z)"
+     "(defun sum-of (p) (+ (spot-x p) (spot-y p))) (defun put-x (p v) (setf (spot-x p) v) p) (defun put-y (p v) (setf (spot-y p) v) p)"
+     "(list (sum-of (make-spot :x 1 :y 2)) (sum-of (make-deep :x 3 :y 4)) (sum-of (put-x (make-spot :x 1 :y 2) 5)))", "(3 7 7)"),
+    ("(sum-of 5)", "TYPE-ERROR: The value 5 is not of type COMMON-LISP-USER::SPOT"),
+    ("(put-x nil 5)", "TYPE-ERROR: The value NIL is not of type COMMON-LISP-USER::SPOT"),
+    ("(handler-case (put-y (make-spot :x 1) \"a\") (type-error () :wrong))", ":WRONG"),
+    ("(sum-of (put-y (make-spot :x 1) 8))", "9"),
+    ("(progn (defun spot-x (p) (declare (ignore p)) 100) (sum-of (make-spot :x 1 :y 2)))", "102"),
+    # generic functions: methods and functions that come later are seen
+    ("(defgeneric who (x)) (defmethod who ((x integer)) :integer) (defun ask (x) (who x)) (list (ask 1) (ask 2))", "(:INTEGER :INTEGER)"),
+    ("(progn (defmethod who ((x (eql 2))) :two) (defmethod who ((x symbol)) :symbol) (list (ask 1) (ask 2) (ask 'a) (ask nil)))",
+     "(:INTEGER :TWO :SYMBOL :SYMBOL)"),
+    ("(handler-case (ask 1.5) (error () :none))", ":NONE"),
+    ("(handler-case (who 1 2) (program-error () :count))", ":COUNT"),
+    ("(progn (fmakunbound 'who) (defun who (x) (list :function x)) (ask 3))", "(:FUNCTION 3)"),
+    # mapping functions, in place
+    ("(mapcar (lambda (x y) (list x y)) '(1 2 3) '(a b))", "((1 A) (2 B))"),
+    ("(mapcar #'(lambda (x) (values x 2)) '(1 2))", "(1 2)"),
+    ("(mapc (lambda (x) x) '(1 2))", "(1 2)"),
+    ("(mapcan (lambda (x) (if (oddp x) (list x x) nil)) (list 1 2 3))", "(1 1 3 3)"),
+    ("(mapcar (lambda (x) x) 5)", "TYPE-ERROR: The value 5 is not of type LIST"),
+    ("(mapcar (lambda (x) x) '(1 . 2))", "TYPE-ERROR: The value 2 is not of type LIST"),
+    ("(mapcar #'funcall (mapcar (lambda (x) (lambda () (incf x))) '(1 2)))", "(2 3)"),
+    ("(block b (mapcar (lambda (x) (when (= x 2) (return-from b :left)) x) '(1 2 3)))", ":LEFT"),
+    ("(let ((x 10)) (mapcar (lambda (x) (declare (special x)) (symbol-value 'x)) '(1 2)))", "(1 2)"),
+    ("(handler-case (mapcar (lambda (x y) (list x y)) '(1)) (error () :count))", ":COUNT"),
+    # format with a constant control
+    ("(format nil \"~a ~s ~d%~%\" \"x\" \"y\" 5)", "\"x \\\"y\\\" 5%\n\""),
+    ("(format nil \"~a\" (list 1 \"a\" 'b))", "\"(1 a B)\""),
+    ("(format nil \"~d ~d\" 1.5 (expt 10 30))", "\"1.5 1000000000000000000000000000000\""),
+    ("(let ((*print-base* 2)) (format nil \"~a ~d ~s\" 5 5 'a))", "\"101 5 A\""),
+    ("(let ((*print-case* :downcase)) (format nil \"~a ~s ~s\" 'abc 'abc :key))", "\"abc abc :key\""),
+    ("(let ((r nil)) (list (format nil \"~a ~a\" (progn (push 1 r) '(1)) (progn (push 2 r) 2)) r))", "(\"(1) 2\" (2 1))"),
+    ("(format nil \"~a\" nil)", "\"NIL\""),
+    ("(handler-case (format nil \"~a ~a\" 1) (error () :few))", ":FEW"),
+    ("(format nil \"~a ~s\" 1.5 1.5d0)", "\"1.5 1.5d0\""),
+    ("(format nil \"~a\" (values 1 2))", "\"1\""),
+])
+def test_what_stands_in_place_of_a_call_means_the_call(session, program, wanted):
+    assert answer(session, program).endswith(wanted)
+
+
+def test_both_operands_are_evaluated_once(session):
+    program = "(let ((n 0)) (flet ((f () (incf n) 1.5) (g () (incf n) 2)) (list (* (f) (f)) (* (f) (g)) (* (g) (f)) (- (f) (g)) n)))"
+    assert answer(session, program) == "(2.25 3.0 3.0 -0.5 8)"

@@ -91,7 +91,7 @@ class GenericFunction(FunctionObject):
         elif positions == [0]:
             self.__class__ = _FirstGeneric
         elif positions == [0, 1]:
-            self.__class__ = TwoGeneric
+            self.__class__ = _TwoGeneric
         else:
             self.__class__ = _ManyGeneric
 
@@ -277,7 +277,7 @@ class _FirstGeneric(GenericFunction):
         return arguments[0].__class__
 
 
-class TwoGeneric(GenericFunction):
+class _TwoGeneric(GenericFunction):
     def __call__(self, *arguments, **keywords):
         if len(arguments) < self.minimum or (self.maximum is not None and len(arguments) > self.maximum):
             return wrong_argument_count(len(arguments))

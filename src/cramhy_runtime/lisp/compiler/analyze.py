@@ -114,7 +114,7 @@ class Analyzer(Scrutiny):
             if head in MAPPING:
                 loop = open_coded(form)
                 if loop is not None:
-                    self._keep(loop)
+                    self.positions.inherit(loop, form)
                     return self.form(loop, env)
             return self._call(form, env)
         if isinstance(head, Cons) and head.car is LAMBDA:

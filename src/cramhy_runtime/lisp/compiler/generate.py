@@ -23,8 +23,8 @@ from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS,
 
 
 COLLECT, FORMAT = sym("CRAMHY::COLLECT"), sym("FORMAT")
-DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 1, "TwoGeneric": 2}
-"""Kinds of generic functions that look only at the classes of so many first arguments, and may be asked in the caller's code."""
+DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
+"""Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
 
 
 class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
@@ -311,14 +311,10 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             slow = self.positioned(expression(expression(word("."), constant, word("function")), target), node)
             return expression(word("if"), quick, expression(word("."), target, word(function.attribute)), self.first_value(slow))
         kind = function.__class__.__name__
-        if kind not in DISPATCHERS or any(item.__class__ is core.Expression and item[0] == "unpack-iterable" for item in models):
+        if DISPATCHERS.get(kind) != len(models):
             return None
         models = self.stable_names(models)
-        name = word("Lf")
-        classes = [expression(word("."), models[index], word("__class__")) for index in range(DISPATCHERS[kind]) if index < len(models)]
-        if len(classes) < DISPATCHERS[kind]:
-            return None
-        key = classes[0] if len(classes) == 1 else core.Tuple(classes)
+        name, key = word("Lf"), expression(word("."), models[0], word("__class__"))
         cached = expression(expression(word("."), expression(word("."), name, word("cache")), word("get")), key)
         current = expression(word("setx"), name, expression(word("."), self.constant(symbol), word("function")))
         same = expression(word("is"), expression(word("."), current, word("__class__")), word("L" + kind))

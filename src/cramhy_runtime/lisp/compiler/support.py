@@ -21,7 +21,7 @@ from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbo
 from ..dynamic import Bindings, bind, unbind
 from ..format_templates import decimal, prin1_atom, princ_atom
 from ..functions import function_of
-from ..generic import FirstOfTwo, TwoGeneric, UnaryGeneric
+from ..generic import FirstOfTwo, UnaryGeneric
 from ..irrational import complex_
 from ..late import late
 from ..packages import intern, keyword, printed, sym
@@ -269,8 +269,7 @@ NAMESPACE = {
     "Lunbind": unbind, "Lblock": BlockExit, "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
     "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
     "LCons": Cons, "Lnew_object": object.__new__, "Lstr": str, "LtextA": princ_atom, "LtextS": prin1_atom, "LtextD": decimal,
-     "LUnaryGeneric": UnaryGeneric, "LFirstOfTwo": FirstOfTwo,
-    "LTwoGeneric": TwoGeneric, "LFunction": FunctionType, "Lshield": kernel.shield,
+     "LUnaryGeneric": UnaryGeneric, "LFirstOfTwo": FirstOfTwo, "LFunction": FunctionType, "Lshield": kernel.shield,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lchecked": checked, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
