@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import codecs
 
-from .conditions import StreamError, error, with_simple_restart
+from .conditions import StreamError, error, restart_case
 from .data import Cons, list_from, python_list
 from .late import late
 from .packages import is_symbol, keyword, sym
@@ -17,6 +17,13 @@ _NAMES = {"DEFAULT": "utf-8", "UTF-8": "utf-8", "UTF8": "utf-8", "LATIN-1": "lat
           "ASCII": "ascii", "US-ASCII": "ascii", "UTF-16": "utf-16", "UTF-16LE": "utf-16-le", "UTF-16BE": "utf-16-be",
           "UTF-32": "utf-32", "UTF-32LE": "utf-32-le", "UTF-32BE": "utf-32-be"}
 _CANONICAL = {"utf-8": "UTF-8", "latin-1": "LATIN-1", "ascii": "ASCII"}
+
+
+OUTPUT_NOTHING, OUTPUT_REPLACEMENT = sym("SB-IMPL::OUTPUT-NOTHING"), sym("SB-IMPL::OUTPUT-REPLACEMENT")
+ATTEMPT_RESYNC, FORCE_END_OF_FILE = sym("SB-INT::ATTEMPT-RESYNC"), sym("SB-INT::FORCE-END-OF-FILE")
+INPUT_REPLACEMENT = sym("SB-IMPL::INPUT-REPLACEMENT")
+for _restart in (ATTEMPT_RESYNC, FORCE_END_OF_FILE):
+    _restart.package.export(_restart)
 
 
 class StreamEncodingError(StreamError):
@@ -63,16 +70,18 @@ class ExternalFormat:
         return list_from([self.name, keyword("REPLACEMENT"), late.Character(self.replacement)])
 
     def encode(self, text, stream):
-        """The bytes of ``text``. Errors: `StreamEncodingError`, with a restart that leaves the character out."""
+        """The bytes of ``text``. Errors: `StreamEncodingError`, with restarts that leave the character out or replace it."""
         try:
             return text.encode(self.codec)
         except UnicodeEncodeError as problem:
             head, bad, rest = text[:problem.start], text[problem.start], text[problem.start + 1:]
             if self.replacement is not None:
                 return self.encode(head + self.replacement + rest, stream)
-            with_simple_restart(sym("SB-IMPL::OUTPUT-NOTHING"), "Skip output of this character.",
-                                lambda: error(StreamEncodingError(stream, ord(bad))))
-            return self.encode(head + rest, stream)
+            instead = restart_case(
+                [(OUTPUT_NOTHING, lambda: "", "Skip output of this character."),
+                 (OUTPUT_REPLACEMENT, lambda text="?": str(getattr(text, "char", text)), "Output replacement string.")],
+                lambda: error(StreamEncodingError(stream, ord(bad))))
+            return self.encode(head + instead + rest, stream)
 
     def width(self, text):
         """How many bytes ``text`` takes."""
@@ -84,7 +93,9 @@ def external_format(designator):
     replacement, name = None, designator
     if isinstance(designator, Cons):
         name, *options = python_list(designator)
-        if len(options) == 2 and options[0] is keyword("REPLACEMENT"):
+        if len(options) != 2 or options[0] is not keyword("REPLACEMENT"):
+            name = keyword("(UNKNOWN OPTIONS)")
+        else:
             replacement = getattr(options[1], "char", None) or str(options[1])
     text = "DEFAULT" if name is None else name.name if is_symbol(name) and name is not True else str(name).upper()
     codec = _NAMES.get(text)

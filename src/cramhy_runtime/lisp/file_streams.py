@@ -7,6 +7,7 @@ byte that means no character is an error at its place, not at the beginning of t
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 
@@ -15,7 +16,7 @@ from cramhy_runtime import kernel
 from .basic_streams import InputStream, OutputStream, complain_closed, misused
 from .conditions import SimpleFileError, StreamError, error, restart_case, type_error
 from .data import UNSUPPLIED, Cons, Symbol, lisp_list
-from .external_formats import StreamDecodingError, external_format
+from .external_formats import ATTEMPT_RESYNC, FORCE_END_OF_FILE, INPUT_REPLACEMENT, StreamDecodingError, external_format
 from .files import FileDoesNotExist, FileExists, absolute, is_regular, physical, reason
 from .late import late
 from .namestrings import native_namestring
@@ -105,9 +106,9 @@ class FileStream(FileStreamClass):
 
         self.file.seek(start)
         return restart_case(
-            [(sym("SB-INT::ATTEMPT-RESYNC"), resynchronize, "Attempt to resync the stream at a character boundary and continue."),
-             (sym("SB-INT::FORCE-END-OF-FILE"), lambda: "", "Force an end of file."),
-             (sym("SB-INT::INPUT-REPLACEMENT"), replace, "Use string as replacement input, attempt to resync at a character "
+            [(ATTEMPT_RESYNC, resynchronize, "Attempt to resync the stream at a character boundary and continue."),
+             (FORCE_END_OF_FILE, lambda: "", "Force an end of file."),
+             (INPUT_REPLACEMENT, replace, "Use string as replacement input, attempt to resync at a character "
               "boundary and continue.")],
             lambda: error(StreamDecodingError(self, octets[:length])))
 
@@ -197,17 +198,21 @@ class FileStream(FileStreamClass):
         if self.closed:
             return
         try:
-            if self.file is not None:
+            if self.file is not None and not abort:
                 self._system(self.file.close, "close")
         finally:
             self.closed = True
             self._text, self._position = "", 0
+            with contextlib.suppress(OSError):  # what could not be written is known, or not wanted any more
+                if self.file is not None:
+                    self.file.close()
         if self.target is None:
             return
-        if abort:
-            os.replace(self.original, self.target) if self.original else os.unlink(self.target)
-        elif self.original and not self.original.endswith(".bak"):
-            os.unlink(self.original)
+        with contextlib.suppress(FileNotFoundError):  # somebody deleted it meanwhile
+            if abort:
+                os.replace(self.original, self.target) if self.original else os.unlink(self.target)
+            elif self.original and not self.original.endswith(".bak"):
+                os.unlink(self.original)
 
 
 # -------------------------------------------------------------------------------------------------------------- opening
@@ -242,6 +247,8 @@ def _element(specifier):
         name, argument = sym("UNSIGNED-BYTE"), 1
     if name is sym("UNSIGNED-BYTE") or name is sym("SIGNED-BYTE"):
         bits = argument if argument.__class__ is int else 8
+        if bits <= 0:
+            return error("could not find any input routine for ~S", specifier)
         size = next((size for size in (1, 2, 4, 8) if bits <= size * 8), (bits + 7) // 8)
         return lisp_list(name, size * 8), size, name is sym("SIGNED-BYTE")
     for sign in ("UNSIGNED-BYTE", "SIGNED-BYTE"):  # (integer 0 255), (mod 256)

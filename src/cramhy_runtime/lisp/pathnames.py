@@ -285,6 +285,8 @@ def _checked(part):
 def make_pathname(*, host=UNSUPPLIED, device=UNSUPPLIED, directory=UNSUPPLIED, name=UNSUPPLIED, type=UNSUPPLIED, version=UNSUPPLIED,
                   defaults=None, case=UNSUPPLIED):
     """``make-pathname``: the pathname of these parts; those that are not given come from ``defaults``, nil if given as nil."""
+    if version is not UNSUPPLIED and version.__class__ is not int and version not in (None, NEWEST, WILD, UNSPECIFIC):
+        return type_error(version, "(OR INTEGER (MEMBER NIL :NEWEST :WILD :UNSPECIFIC))")
     base = Pathname() if defaults is None else pathname(defaults)
     owner = (base.host if defaults is not None else _defaults().host) if host is UNSUPPLIED or host is None else _host(host)
     path = Pathname(

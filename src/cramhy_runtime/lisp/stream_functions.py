@@ -153,6 +153,8 @@ def peek_char(peek_type=None, stream=None, eof_error_p=True, eof_value=None, rec
 
 
 def unread_char(character, stream=None):
+    if not isinstance(character, Character):
+        return type_error(character, "CHARACTER")
     input_stream(stream).unread_char(character.char)
 
 

@@ -257,11 +257,11 @@ class SynonymStream(_Delegate):
 
     @property
     def sink(self):
-        return output_stream(self.symbol.value)
+        return output_stream(self.stream)
 
     @property
     def source(self):
-        return input_stream(self.symbol.value)
+        return input_stream(self.stream)
 
     @property
     def stream(self):
@@ -288,15 +288,15 @@ class SynonymStream(_Delegate):
 
     @property
     def is_input(self):
-        return self.symbol.value.is_input
+        return self.stream.is_input
 
     @property
     def is_output(self):
-        return self.symbol.value.is_output
+        return self.stream.is_output
 
     @property
     def is_interactive(self):
-        return self.symbol.value.is_interactive
+        return self.stream.is_interactive
 
 
 CONSOLE_OUTPUT = ConsoleOutput("stdout", "standard output")
