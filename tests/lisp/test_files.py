@@ -205,7 +205,7 @@ def test_compiled_files_of_others_and_damaged_ones_are_refused(answer, complaint
 
 def test_a_source_in_another_encoding_is_loaded_when_it_is_named(answer, complaint, tmp_path):
     (tmp_path / "x.lisp").write_bytes('(defvar *name* "Jürgen")'.encode("latin-1"))
-    assert complaint('(load "x.lisp")').startswith("FILE-ERROR Cannot load /here/x.lisp: it is no UTF-8 text (line 1, byte 17 of the file).")
+    assert complaint('(load "x.lisp")').startswith("FILE-ERROR Cannot load /here/x.lisp: it is no UTF-8 text (line 1, byte 17 of the file)")
     assert answer('(load "x.lisp" :external-format :latin-1) *name*') == '"Jürgen"'
 
 

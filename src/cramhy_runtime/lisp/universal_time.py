@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import datetime
 import resource
+import time
 from fractions import Fraction
 
 from cramhy_runtime import kernel
@@ -51,8 +52,6 @@ def _local_offset(seconds):
         return 0, False
     moment = min(max(seconds - UNIVERSAL_EPOCH, -2 ** 31), 2 ** 32)  # the rules of time zones reach no further
     local = datetime.datetime.fromtimestamp(moment, datetime.UTC).astimezone()
-    import time
-
     return -int(local.utcoffset().total_seconds()), time.localtime(moment).tm_isdst > 0
 
 
