@@ -11,7 +11,7 @@ import codecs
 from .conditions import StreamError, error, restart_case
 from .data import Cons, list_from, python_list
 from .late import late
-from .packages import is_symbol, keyword, sym
+from .packages import ensure_package, is_symbol, keyword, sym
 
 _NAMES = {"DEFAULT": "utf-8", "UTF-8": "utf-8", "UTF8": "utf-8", "LATIN-1": "latin-1", "LATIN1": "latin-1", "ISO-8859-1": "latin-1",
           "ASCII": "ascii", "US-ASCII": "ascii", "UTF-16": "utf-16", "UTF-16LE": "utf-16-le", "UTF-16BE": "utf-16-be",
@@ -19,6 +19,8 @@ _NAMES = {"DEFAULT": "utf-8", "UTF-8": "utf-8", "UTF8": "utf-8", "LATIN-1": "lat
 _CANONICAL = {"utf-8": "UTF-8", "latin-1": "LATIN-1", "ascii": "ASCII"}
 
 
+for _name in ("SB-INT", "SB-IMPL"):
+    ensure_package(_name)
 OUTPUT_NOTHING, OUTPUT_REPLACEMENT = sym("SB-IMPL::OUTPUT-NOTHING"), sym("SB-IMPL::OUTPUT-REPLACEMENT")
 ATTEMPT_RESYNC, FORCE_END_OF_FILE = sym("SB-INT::ATTEMPT-RESYNC"), sym("SB-INT::FORCE-END-OF-FILE")
 INPUT_REPLACEMENT = sym("SB-IMPL::INPUT-REPLACEMENT")
