@@ -376,16 +376,19 @@ def find_restart(designator, condition=None):
 
 def invoke_restart(designator, *arguments):
     """``cl:invoke-restart``: call the restart's function, which usually does not return."""
+    return _active(designator).function(*arguments)
+
+
+def _active(designator):
+    """The restart that ``designator`` names, which must be active."""
     if not isinstance(designator, Restart) and not is_symbol(designator):
         return type_error(designator, RESTART_DESIGNATOR, "\nwhen binding RESTART")
     restart = find_restart(designator)
-    if restart is None:
-        return error(types.SimpleControlError("No restart ~S is active.", designator))
-    return restart.function(*arguments)
+    return error(types.SimpleControlError("No restart ~S is active.", designator)) if restart is None else restart
 
 
 def invoke_restart_interactively(designator):
-    restart = find_restart(designator) if not isinstance(designator, Restart) else designator
+    restart = _active(designator)
     arguments = restart.interactive() if restart.interactive else ()
     return restart.function(*(arguments or ()))
 
