@@ -204,23 +204,30 @@ def define_structure(name, slots=None, *, conc_name=UNSUPPLIED, constructors=UNS
     representation = symbol_name(type.car if isinstance(type, Cons) else type) if type is not None else None
     structure = Structure(name, _all_slots(name, parent, own, python_list(include_slots)), parent, representation,
                           named is not None, initial_offset)
+    package = PACKAGE.value if isinstance(PACKAGE.value, Package) else name.package
+    prefix = f"{name.name}-" if conc_name is UNSUPPLIED else "" if conc_name is None else string_designator(conc_name)
+    accessors = [(slot, intern(prefix + symbol_name(slot.name), package)) for slot in structure.slots]
+    constructors = [intern(f"MAKE-{name.name}", package)] if constructors is UNSUPPLIED else python_list(constructors)
+    copier = intern(f"COPY-{name.name}", package) if copier is UNSUPPLIED else copier
+    predicate = intern(f"{name.name}-P", package) if predicate is UNSUPPLIED else predicate
+    names = [("an accessor", symbol) for _, symbol in accessors] + [("a copier", copier), ("a predicate", predicate)]
+    names += [("a constructor", entry if is_symbol(entry) else python_list(entry)[0]) for entry in constructors]
+    for what, symbol in names:
+        if symbol is not None:
+            check_symbol(symbol, f"defining ~S as {what} for ~S structure", symbol, name)
     if representation is None:
         _make_class(structure, parent, documentation)
     else:
         _typed_structures[name] = structure
     structure.prepare()
-    package = PACKAGE.value if isinstance(PACKAGE.value, Package) else name.package
-    prefix = f"{name.name}-" if conc_name is UNSUPPLIED else "" if conc_name is None else string_designator(conc_name)
-    for slot in structure.slots:
-        _define_accessor(structure, slot, intern(prefix + symbol_name(slot.name), package), parent)
-    if constructors is UNSUPPLIED:
-        constructors = [intern(f"MAKE-{name.name}", package)]
-    for constructor in python_list(constructors):
+    for slot, symbol in accessors:
+        _define_accessor(structure, slot, symbol, parent)
+    for constructor in constructors:
         _define_constructor(structure, constructor)
     if copier is not None:
-        _define_copier(structure, intern(f"COPY-{name.name}", package) if copier is UNSUPPLIED else copier)
+        _define_copier(structure, copier)
     if predicate is not None and (representation is None or structure.named):
-        _define_predicate(structure, intern(f"{name.name}-P", package) if predicate is UNSUPPLIED else predicate)
+        _define_predicate(structure, predicate)
     _define_printing(structure, print_function, print_object)
     return name
 

@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
-from .data import Cons, Symbol, lisp_list, list_from, python_list
+from fractions import Fraction
+
+from .data import Cons, DoubleFloat, Symbol, lisp_list, list_from, python_list
 from .packages import sym
 from .types import expand_type
 
@@ -25,12 +27,31 @@ def simplified_type(specifier):
         return lisp_list(head, *[True if part is STAR else simplified_type(part) for part in (*arguments, True, True)[:2]])
     if name == "INTEGER":
         return _integer(*(*arguments, STAR, STAR)[:2], specifier)
+    if name in ("FLOAT", "REAL") and any(bound is not STAR for bound in arguments):
+        parts = [_range("SINGLE-FLOAT", float, arguments), _range("DOUBLE-FLOAT", DoubleFloat, arguments)]
+        if name == "REAL":
+            parts.append(_range("RATIONAL", _exact, arguments))
+        return Cons(sym("OR"), list_from(parts))
     if name == "MOD":
         return _integer(0, arguments[0] - 1, specifier)
     return head if not arguments else specifier
 
 
 STAR = sym("*")
+
+
+def _exact(number):
+    value = Fraction(number)
+    return value.numerator if value.denominator == 1 else value
+
+
+def _range(name, convert, bounds):
+    def converted(bound):
+        if bound is STAR:
+            return bound
+        return lisp_list(convert(bound.car)) if isinstance(bound, Cons) else convert(bound)
+
+    return Cons(sym(name), list_from([converted(bound) for bound in bounds]))
 
 
 def _integer(low, high, specifier):
