@@ -27,7 +27,7 @@ def evaluate(session):
 
 
 def test_an_exception_of_python_is_an_error(evaluate):
-    assert evaluate("(handler-case (python-fails) (error (c) (princ-to-string c)))") == '''"Python raised KeyError: 'missing'"'''
+    assert evaluate("(handler-case (python-fails) (error (c) (princ-to-string c)))") == '''"There is no key 'missing'."'''
     assert evaluate("(ignore-errors (python-fails) 1)").startswith("NIL ; #<")
     assert evaluate("(let ((r nil)) (ignore-errors (unwind-protect (python-fails) (push 'cleanup r))) r)") == "(CLEANUP)"
 

@@ -30,6 +30,12 @@ class StandardClass(type):
     def mro(cls):
         return precedence_list(cls)
 
+    def __call__(cls, *initargs, **keywords):
+        """Python's way of ``make-instance``. A subclass that Python code wrote is made as Python makes it."""
+        if "lisp_direct_slots" in vars(cls):
+            return late.make_instance(cls, *initargs, **keywords)
+        return super().__call__(*initargs, **keywords)
+
 
 def precedence_list(cls):
     """The class precedence list of ``cls`` by the rule of ANSI 4.3.5.1; a contradiction is an error that explains it."""
@@ -132,6 +138,13 @@ class StandardObject(metaclass=StandardClass):
     """STANDARD-OBJECT: the root of the classes of ``defclass``."""
 
     lisp_name = "STANDARD-OBJECT"
+
+    def __init__(self, *initargs, **keywords):
+        """For subclasses written in Python: ``super().__init__(name="x")`` sets slots as ``make-instance`` does."""
+        late.initialize_from_python(self, initargs, keywords)
+
+    def __repr__(self):
+        return late.prin1_to_string(self)
 
     def __getattr__(self, attribute):
         # Called only when the attribute is missing: the slot is unbound, or the class was defined again with more slots.
@@ -251,10 +264,14 @@ def _inherit(slot, direct):
 
 
 def _python_attributes(cls):
-    """Names that a slot may not take as its attribute: those that Python code of runtime superclasses uses."""
+    """Names that a slot may not take as its attribute: those that Python code of runtime superclasses uses.
+
+    A subclass that somebody wrote in Python knows the slots by their names and takes none away.
+    """
     taken = set()
+    lisp_defined = tuple(base for base in cls.__mro__ if "lisp_direct_slots" in vars(base))
     for base in cls.__mro__:
-        if base is object:
+        if base is object or lisp_defined and issubclass(base, lisp_defined) and base not in lisp_defined:
             continue
         for name, value in vars(base).items():
             if isinstance(value, ClassSlot):

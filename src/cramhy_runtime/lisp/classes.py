@@ -54,6 +54,11 @@ def register_class(symbol, cls):
     return cls
 
 
+def alias_class(symbol, cls):
+    """Let ``symbol`` name a class that has another name of its own, or is Python's."""
+    _classes[symbol] = cls
+
+
 def registered_class(symbol):
     """The class registered under ``symbol``, without looking for runtime classes; ``None`` if there is none."""
     return _classes.get(symbol)

@@ -214,7 +214,7 @@ class UnboundSlot(CellError):
 
 
 @public
-class ArithmeticError_(Error):
+class ArithmeticError_(Error, ArithmeticError):
     lisp_name = "ARITHMETIC-ERROR"
     initargs = {"OPERATION": "operation", "OPERANDS": "operands"}
 
@@ -232,12 +232,12 @@ class ArithmeticError_(Error):
 
 
 @public
-class DivisionByZero(ArithmeticError_):
+class DivisionByZero(ArithmeticError_, ZeroDivisionError):
     lisp_name = "DIVISION-BY-ZERO"
 
 
 @public
-class FloatingPointOverflow(ArithmeticError_):
+class FloatingPointOverflow(ArithmeticError_, OverflowError):
     lisp_name = "FLOATING-POINT-OVERFLOW"
 
 
@@ -395,7 +395,7 @@ class CompileError(SimpleCondition, ProgramError):
 
 @public
 class PythonError(Error):
-    """An exception of Python code that is not a condition; ``exception`` is the original."""
+    """An exception of Python code that is not a condition; ``exception`` is the original. See ``python_exceptions.py``."""
 
     lisp_name = "CRAMHY::PYTHON-ERROR"
     initargs = {"EXCEPTION": "exception"}
@@ -406,7 +406,12 @@ class PythonError(Error):
         self.__cause__ = exception
 
     def report(self):
-        return f"Python raised {type(self.exception).__name__}: {self.exception}"
+        if self.exception is None:
+            return super().report()
+        text = str(self.exception)
+        if isinstance(self.exception, KeyError):  # whose text is only the key
+            return f"There is no key {text}."
+        return text or type(self.exception).__name__
 
 
 @public
@@ -530,4 +535,4 @@ def condition_for(exception):
         wrong = _wrong_argument_count(exception)
         if wrong is not None:
             return wrong
-    return PythonError(exception)
+    return late.python_condition(exception)

@@ -106,7 +106,8 @@ def handler_bind(clauses, thunk):
         except types.Condition:
             raise
         except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
-            _offer(from_python(exception), clauses, outer)
+            if not hasattr(exception, "__lisp_signalled__"):
+                _offer(from_python(exception), clauses, outer)
             raise
 
 
@@ -490,6 +491,21 @@ def program_error(control, *arguments):
 def wrong_argument_count(given):
     """Signal the program-error of a call with ``given`` arguments, SBCL's text."""
     return error(types.SimpleProgramError("invalid number of arguments: ~S", given))
+
+
+def signal_exception(exception):
+    """Signal the condition for a foreign ``exception`` where it came into Lisp. Handlers run, the debugger opens if there is one.
+
+    Returns when nobody wanted it: then the exception is to be raised again, so that Python code above sees its own.
+    """
+    condition = from_python(exception)
+    signal_condition(condition)
+    if _debugger is not None or truth(DEBUGGER_HOOK.value):
+        invoke_debugger(condition)
+    try:
+        exception.__lisp_signalled__ = True
+    except AttributeError:
+        pass
 
 
 def from_python(exception):

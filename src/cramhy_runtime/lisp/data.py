@@ -119,6 +119,28 @@ class Cons:
             yield cell.car
             cell = cell.cdr
 
+    # For Python code that gets a list from Lisp. A list is never empty (that is None), so it is true whatever its length.
+
+    def __bool__(self):
+        return True
+
+    def __len__(self):
+        count, cell = 0, self
+        while isinstance(cell, Cons):
+            count += 1
+            cell = cell.cdr
+        return count
+
+    def __getitem__(self, index):
+        """The element at ``index``, which may be negative; a slice gives a Python list."""
+        if isinstance(index, slice) or index < 0:
+            return list(self)[index]
+        for item in self:
+            if not index:
+                return item
+            index -= 1
+        raise IndexError("list index out of range")
+
     def __repr__(self):
         parts, cell, limit = [], self, 50
         while isinstance(cell, Cons) and limit:
@@ -147,7 +169,13 @@ def list_from(iterable, tail=None):
 
 def python_list(lst):
     """The elements of the Lisp list ``lst`` as a Python list."""
-    return [] if lst is None else list(lst)
+    if lst.__class__ is not Cons:
+        return [] if lst is None else list(lst)
+    items = []
+    while isinstance(lst, Cons):
+        items.append(lst.car)
+        lst = lst.cdr
+    return items
 
 
 class MultipleValues(tuple):
@@ -264,3 +292,18 @@ class LispString:
 
     def __repr__(self):
         return f"LispString({str(self)!r})"
+
+    def __eq__(self, other):
+        """Equal to a text with the same characters, for Python code; Lisp does not compare by it."""
+        return str(self) == str(other) if isinstance(other, (str, LispString)) else NotImplemented
+
+    __hash__ = object.__hash__  # it can be changed, so its text is no key
+
+    def __iter__(self):
+        return iter(str(self))
+
+    def __getitem__(self, index):
+        return str(self)[index]
+
+    def __contains__(self, text):
+        return str(text) in str(self)

@@ -295,6 +295,7 @@ def describe_array(array, out):
 
 
 def describe_package(package, out):
+    package.complete()
     out.line()
     out.line()
     out.documentation(package.documentation)

@@ -28,6 +28,7 @@ from .generic_errors import incongruent, no_applicable_method_error
 from .late import late
 from .method_combination import STANDARD, Combination, find_combination
 from .methods import EqlSpecializer, Method, Shape
+from .package_errors import check_symbol
 from .packages import is_symbol, keyword, sym, symbol_name
 
 _all = weakref.WeakSet()
@@ -342,6 +343,8 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
         old = symbol.setf_function if setf else symbol.function
         if not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
             _refuse_ordinary(symbol)
+        if not setf:
+            check_symbol(symbol, "proclaiming ~S as a function", symbol)
         function = GenericFunction(name, lambda_list)
         if setf:
             symbol.setf_function = function

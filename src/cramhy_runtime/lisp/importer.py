@@ -14,8 +14,8 @@ import sys
 import types
 from pathlib import Path
 
-from . import loader, systems
-from .data import Symbol, UNBOUND, UndefinedFunction
+from . import loader, python_face, systems
+from .data import Symbol
 from .faces import attribute_symbols, python_name
 from .packages import all_packages, find_package
 
@@ -27,13 +27,7 @@ class PackageModule(types.ModuleType):
         package = self.__dict__.get("lisp_package")
         if package is None or name.startswith("__"):
             raise AttributeError(name)
-        for symbol in attribute_symbols(package, name):
-            if isinstance(symbol, Symbol):
-                if not isinstance(symbol.function, UndefinedFunction):
-                    return symbol.function
-                if symbol.value is not UNBOUND:
-                    return symbol.value
-        raise AttributeError(f"the Lisp package {package.name} defines no function or variable for the Python name {name!r}")
+        return python_face.find(package, name)
 
     def __setattr__(self, name, value):
         package = self.__dict__.get("lisp_package")
@@ -44,8 +38,7 @@ class PackageModule(types.ModuleType):
         super().__setattr__(name, value)
 
     def __dir__(self):
-        package = self.lisp_package
-        return sorted({python_name(name) for table in (package.internal, package.external) for name in table})
+        return python_face.names(self.lisp_package)
 
 
 def package_for(name):

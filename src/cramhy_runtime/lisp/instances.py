@@ -190,8 +190,7 @@ def make_instance(class_, *initargs, **keywords):
     """``cl:make-instance`` for a class or its name. Python callers may give initargs as keywords: ``make_instance(cls, x=1)``."""
     cls = class_ if isinstance(class_, type) else find_class_or_error(class_)
     if keywords:
-        initargs = (*initargs, *(part for name, value in keywords.items()
-                                 for part in (keyword(name.rstrip("_").replace("_", "-").upper()), value)))
+        initargs = _with_keywords(initargs, keywords)
     plan = _plans.get(cls) or _plan_or_error(cls)
     if isinstance(cls, StructureClass):
         return cls.lisp_structure.construct(*initargs)
@@ -203,6 +202,22 @@ def make_instance(class_, *initargs, **keywords):
     else:
         plan.fill(obj, initargs)
     return obj
+
+
+def _with_keywords(initargs, keywords):
+    return (*initargs, *(part for name, value in keywords.items()
+                         for part in (keyword(name.rstrip("_").replace("_", "-").upper()), value)))
+
+
+def initialize_from_python(instance, initargs, keywords):
+    """Set the slots of an instance of a Python subclass, whose ``__init__`` is running, from initargs and initforms."""
+    plan = plan_for(type(instance))
+    initargs = plan.with_defaults(_with_keywords(initargs, keywords))
+    plan.check(initargs)
+    if plan.custom:
+        late.initialize_instance(instance, *initargs)
+    else:
+        plan.fill(instance, initargs)
 
 
 def _plan_or_error(cls):

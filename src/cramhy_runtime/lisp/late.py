@@ -14,11 +14,13 @@ from importlib import import_module
 WHERE = {
     "conditions": "error package_error package_does_not_exist program_error type_error undefined_function",
     "condition_types": "ClosedStreamError SimpleParseError SimpleTypeError StyleWarning UnboundVariable",
+    "python_exceptions": "python_condition",
     "packages": "intern",
     "data": "Character",
     "equality": "equal",
     "namestrings": "namestring native_namestring",
     "classes": "class_name find_class make_instance",
+    "instances": "initialize_from_python",
     "slots": "missing_value",
     "structures": "slots_of",
     "types": "expand_type is_known_type type_of type_predicate typep",

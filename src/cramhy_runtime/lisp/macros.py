@@ -18,7 +18,7 @@ from .functions import function_of
 from .macro_shapes import SHAPES
 from .packages import COMMON_LISP, find_package_or_error, intern, is_symbol, keyword, sym
 
-FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp")
+FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp", "python")
 """The modules of ``hy_src/cramhy`` that define operators, in order."""
 
 HOOK, FUNCALL = sym("*MACROEXPAND-HOOK*"), sym("FUNCALL")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import importlib
 
-from . import cl_names, extension_packages
+from . import cl_names, extension_packages, python_packages
 from .faces import define_face, lispify
 from .packages import COMMON_LISP, sym
 
@@ -62,6 +62,7 @@ def fill():
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})
     extension_packages.define_faces()
+    python_packages.define_faces()
     COMMON_LISP.locked = True
 
 

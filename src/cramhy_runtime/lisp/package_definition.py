@@ -162,6 +162,7 @@ def call_unlocked(packages, thunk):
 def package_symbols(package, external_only):
     """The symbols accessible in a package, or only its external ones, each once."""
     package = find_package_or_error(package)
+    package.complete()
     symbols = dict(package.external)
     if not truth(external_only):
         symbols.update(package.internal)

@@ -210,6 +210,7 @@ def use_package(used, package=None):
         other = find_package_or_error(designator)
         if other is not home and other not in home.use:
             check_package(home, "using package ~A", other)
+            other.complete()
             _settle_use(home, other)
             home.use_package(other)
     return True

@@ -67,6 +67,9 @@ class Package:
         """Whether a symbol ``name`` is in this package itself, not inherited."""
         return name in self.external or name in self.internal
 
+    def complete(self):
+        """Make sure that all external symbols are there; see `PythonPackage`, whose symbols are made when they are asked for."""
+
     def import_symbol(self, symbol):
         """Make ``symbol`` present here. An equally named other symbol is an error of class package-error."""
         name = symbol_name(symbol)
