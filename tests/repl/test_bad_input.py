@@ -101,7 +101,7 @@ SB-INT:SIMPLE-PROGRAM-ERROR:
   The function F takes 1 argument.
 """),
     ('(ros-load:load-system "no-such-system")', """\
-ASDF::MISSING-COMPONENT:
+ASDF:MISSING-COMPONENT:
   Component "no-such-system" not found
   at {file}:1:1
     (ros-load:load-system "no-such-system")
