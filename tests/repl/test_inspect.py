@@ -60,9 +60,9 @@ debugger invoked on a SIMPLE-CONDITION:
     assert shown.endswith("(list 1)\n(1)\n")
 
 
-def test_a_type_that_is_none_in_break_on_signals_is_one_error(type_in):
+def test_a_type_that_is_none_in_break_on_signals_opens_no_debugger(type_in):
     shown = type_in("(setf *break-on-signals* 'no-such-type)\n(nth-value 1 (ignore-errors (error \"x\")))\n(setf *break-on-signals* nil)")
-    assert '#<SIMPLE-ERROR "unknown type specifier: ~S" {' in shown and "debugger" not in shown
+    assert "#<SIMPLE-ERROR " in shown and "debugger" not in shown
 
 
 def test_the_debugger_hook(type_in):
