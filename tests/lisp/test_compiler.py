@@ -207,3 +207,36 @@ def test_both_operands_of_a_quotient_are_evaluated(evaluate):
     assert evaluate("""(labels ((mean (s) (/ (reduce #'+ s) (length s))) (part (s) (/ (car s) (length s)))
                               (whole (s) (/ (length s) (car s))))
                          (list (mean '(1 2)) (mean '(1.0 2)) (part '(1 2)) (whole '(1.0 2)) (whole '(4 5))))""") == "(3/2 1.5 1/2 2.0 1/2)"
+
+
+def nested(depth, around, body):
+    """``body`` in ``depth`` copies of ``around``, where ``~`` stands for what is inside and ``#`` for the level."""
+    for level in range(depth):
+        body = around.replace("~", body).replace("#", str(level))
+    return body
+
+
+@pytest.mark.parametrize("around", [
+    "(loop for v# from 1 to 1 do (incf total) ~)",
+    "(unwind-protect ~ (incf total))",
+    "(let ((*print-base* 10)) (incf total) ~)",
+    "(dotimes (i# 1) (incf total) (handler-case ~ (type-error () 1)))",
+    "(block b# (tagbody again# (incf total) (loop while (< total 0) do (go again#)) ~))",
+], ids=["loops", "cleanups", "specials", "handlers", "blocks"])
+def test_forms_may_be_nested_deeper_than_pythons_blocks(evaluate, around):
+    assert evaluate(f"(let ((total 0)) {nested(30, around, '(incf total 100)')} total)") == "130"
+
+
+def test_ways_out_of_deeply_nested_blocks(evaluate):
+    around = "(dolist (x# '(1 2 3)) (unwind-protect (progn (when (= x# 2) (return)) ~) (incf ends)))"
+    assert evaluate(f"(let ((ends 0) (found 0)) {nested(25, around, '(incf found)')} (list found ends))") == "(1 50)"
+    assert evaluate(f"(defun deep (ends) {nested(25, around, '(return-from deep (list :out ends))')})") == "DEEP"
+    assert evaluate("(deep 0)") == "(:OUT 0)"
+    closures = nested(25, "(dolist (x# '(#)) (push (lambda () (incf x#)) calls) ~)", "(push (lambda () (list x0 x24)) calls)")
+    assert evaluate(f"(let (calls) {closures} (mapcar #'funcall (list (car (last calls)) (first calls))))") == "(25 (0 25))"
+
+
+@pytest.mark.parametrize("form", ["(progn (defvar *pairs* #((1 2) (\"x\" 3))) *pairs*)", "(when t #((1 2) (\"x\" 3)))",
+                                  "(dolist (x '(1) #((1 2) (\"x\" 3))) x)"])
+def test_a_literal_vector_stays_one_in_the_macros_of_the_standard(evaluate, form):
+    assert evaluate(form) == '#((1 2) ("x" 3))'

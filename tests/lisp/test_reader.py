@@ -291,3 +291,7 @@ def _seconds(text):
 
 def test_a_list_made_by_hand_prints_and_reads_back():
     assert alike(read_from_string("(1 . (2 3))")[0], lisp_list(1, 2, 3))
+
+
+def test_a_conditional_within_a_skipped_form_skips_as_well():
+    assert prin1_to_string(read_from_string("(1 #+lispworks #+lispworks :element-type 'lw:char 2)")[0]) == "(1 2)"

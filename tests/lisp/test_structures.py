@@ -132,3 +132,13 @@ def test_slots_with_names_that_are_alike_in_python_do_not_meet():
                                                 structures.structure_slot(here("CLASS"))])
     alike = here("MAKE-ALIKE").function(keyword("A-B"), 1, keyword("A_B"), 2, keyword("CLASS"), 3)
     assert (here("ALIKE-A-B").function(alike), here("ALIKE-A_B").function(alike), here("ALIKE-CLASS").function(alike)) == (1, 2, 3)
+
+
+def test_the_type_of_a_slot_may_be_defined_later(session):
+    session.package = "CL-USER"
+    session.evaluate_text("(defstruct early (next nil :type (or null later-type)))")
+    assert session.evaluate_text("(early-next (make-early))") == [None]
+    with pytest.raises(Exception, match="unknown type specifier: LATER-TYPE"):
+        session.evaluate_text("(make-early :next 3)")
+    session.evaluate_text("(defstruct later-type)")
+    assert session.evaluate_text("(later-type-p (early-next (make-early :next (make-later-type))))") == [True]

@@ -107,3 +107,14 @@ def test_coercion_that_is_impossible_says_so():
     with pytest.raises(SimpleTypeError) as problem:
         types.coerce("12", sym("NUMBER"))
     assert str(problem.value) == '"12" can\'t be converted to type NUMBER.'
+
+
+@pytest.mark.parametrize(("specifier", "shown"), [("colour", "(MEMBER :RED :GREEN)"), ("(small 4)", "(MOD 5)"), ("(integer 0 255)", "(UNSIGNED-BYTE 8)"),
+                                                  ("(or colour (small 1))", "(OR (MEMBER :RED :GREEN) BIT)"), ("symbol", "SYMBOL")])
+def test_check_type_shows_what_a_type_means(session, specifier, shown):
+    session.package = "CL-USER"
+    session.evaluate_text("(deftype colour () '(member :red :green))")
+    session.evaluate_text("(deftype small (limit) `(integer 0 ,limit))")
+    [text] = session.evaluate_text(f"""(handler-case (let ((x "a")) (check-type x {specifier}))
+                                         (type-error (c) (prin1-to-string (type-error-expected-type c))))""")
+    assert str(text) == shown

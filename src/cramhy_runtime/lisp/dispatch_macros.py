@@ -300,7 +300,7 @@ def _conditional(reader, sub, argument, wanted):
         expression = reader.required()
     finally:
         PACKAGE.value, SUPPRESS.value = package, suppress
-    if _suppressed() or feature(expression, reader, start) is wanted:
+    if feature(expression, reader, start) is wanted:
         return reader.required()
     SUPPRESS.value = True
     try:

@@ -70,7 +70,13 @@ class Unit:
     def code(self, statements):
         """The code object of core statements."""
         try:
-            return compile(compiler().python_tree(statements, self.filename), self.filename, "exec")
+            tree = compiler().python_tree(statements, self.filename)
+            try:
+                return compile(tree, self.filename, "exec")
+            except SyntaxError as problem:
+                if "nested blocks" not in str(problem):
+                    raise
+                return compile(compiler().flatten(tree), self.filename, "exec")
         except RecursionError:
             pass
         return too_deep()

@@ -10,6 +10,7 @@ from .compiler import special_forms  # noqa: F401  fills SPECIAL_FORMS
 from .compiler.analyze import SPECIAL_FORMS, Analyzer
 from .compiler.constants import Constants, NotStorable
 from .compiler.environment import Env, FunctionScope, LocalMacro
+from .compiler.deep_blocks import flatten
 from .compiler.generate import Generator
 from .compiler.nodes import Lambda, Parameters
 
@@ -36,4 +37,4 @@ def toplevel_with_macros(analyzer, form, environment):
     return Lambda(None, Parameters(), analyzer.form(form, env), scope)
 
 
-__all__ = ["Analyzer", "Constants", "Generator", "NotStorable", "is_special", "python_tree", "toplevel_with_macros"]
+__all__ = ["Analyzer", "Constants", "Generator", "NotStorable", "flatten", "is_special", "python_tree", "toplevel_with_macros"]

@@ -62,7 +62,7 @@ def define_operator(package, name, function):
             raise
         except (TypeError, ValueError, AttributeError) as problem:
             return malformed(form, symbol, problem)
-        return from_hy(expansion, home)
+        return from_hy(expansion, home, form)
 
     symbol.macro, expander.source = expander, function
     if short not in owner.external:
@@ -84,8 +84,40 @@ def malformed(form, symbol, problem):
     return error(condition)
 
 
-def from_hy(model, package):
-    """Lisp data for a Hy model; forms inside it that are Lisp data already stay as they are."""
+def from_hy(model, package, form=None):
+    """Lisp data for a Hy model; forms inside it that are Lisp data already stay as they are.
+
+    A Python list is a list of forms if the macro made it, and a literal vector if it stands in the ``form`` that is expanded.
+    """
+    kept = None
+
+    def convert(model):
+        nonlocal kept
+        if type(model) is list:
+            if kept is None:
+                kept = _vectors_in(form)
+            if id(model) in kept:
+                return model
+        return _converted(model, package, convert)
+
+    return convert(model)
+
+
+def _vectors_in(form):
+    """The identities of the vectors that stand in ``form``."""
+    found, seen, rest = set(), set(), [form]
+    while rest:
+        item = rest.pop()
+        while isinstance(item, Cons) and id(item) not in seen:
+            seen.add(id(item))
+            rest.append(item.car)
+            item = item.cdr
+        if type(item) is list:
+            found.add(id(item))
+    return found
+
+
+def _converted(model, package, convert):
     from hy import models
 
     kind = type(model)
@@ -96,7 +128,7 @@ def from_hy(model, package):
     if isinstance(model, models.Keyword):
         return keyword(model.name.upper())
     if isinstance(model, (models.Expression, models.List, models.Tuple)) or kind in (list, tuple):
-        items = [from_hy(item, package) for item in model]
+        items = [convert(item) for item in model]
         dot = sym("CRAMHY::|.|")
         if len(items) > 2 and items[-2] is dot:
             return list_from(items[:-2], items[-1])

@@ -26,6 +26,9 @@ PACKAGE = sym("*PACKAGE*")
 ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
 
 
+OR = sym("OR")
+
+
 class StructureObject(metaclass=StructureClass):
     """STRUCTURE-OBJECT: the root of all structure types."""
 
@@ -59,6 +62,15 @@ class StructureSlot:
         return value
 
 
+def _predicate(specifier):
+    """The test of a slot's type; a type that is defined only later is asked for when a value needs it."""
+    if isinstance(specifier, Cons) and specifier.car is OR:
+        parts = [_predicate(part) for part in python_list(specifier.cdr)]
+        if not all(map(late.is_known_type, python_list(specifier.cdr))):
+            return lambda value: any(part(value) for part in parts)
+    return late.type_predicate(specifier) if late.is_known_type(specifier) else lambda value: late.type_predicate(specifier)(value)
+
+
 def structure_slot(name, *, initform=None, type=True, read_only=None):
     """The description of a slot for `define_structure`: a Symbol, a thunk or nil, a type specifier, t or nil."""
     return StructureSlot(name, initform, type, read_only is not None)
@@ -83,7 +95,7 @@ class Structure:
     def prepare(self):
         """Compute what `construct` needs for each slot: how to set it, its keyword, initform and type test."""
         for slot in self.slots:
-            slot.predicate = None if slot.type is True else late.type_predicate(slot.type)
+            slot.predicate = None if slot.type is True else _predicate(slot.type)
         if self.cls is not None:
             self.fields = tuple((getattr(self.cls, slot.attribute).__set__, slot) for slot in self.slots)
             self.recipe = tuple((set_slot, slot.keyword, slot.initform, slot.predicate, slot) for set_slot, slot in self.fields)
