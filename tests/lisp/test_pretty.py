@@ -187,18 +187,3 @@ def test_a_block_on_standard_output_binds_it_to_the_pretty_stream():
 
 def test_standard_syntax_turns_the_pretty_printer_off():
     assert printing_support.with_standard_io_syntax(lambda: prin1_to_string(read("'x"))) == "(QUOTE X)"
-
-
-def test_a_macro_with_a_body_is_indented_like_one(session):
-    session.package = "CL-USER"
-    session.evaluate_text("(defmacro with-grip ((&rest clauses) &body body) `(progn ,clauses ,@body))")
-    [text] = session.evaluate_text("""(let ((*print-right-margin* 30))
-                                        (format nil "~S" '(with-grip (left right) (pick-up cup) (put-down cup))))""")
-    assert str(text) == "(WITH-GRIP (LEFT RIGHT)\n  (PICK-UP CUP)\n  (PUT-DOWN CUP))"
-
-
-def test_the_report_of_a_condition_breaks_where_the_line_ends(session):
-    session.package = "CL-USER"
-    session.evaluate_text('(define-condition long (error) () (:report (lambda (c s) c (format s "~S" \'(0 1 2 3 4 5 6 7 8)))))')
-    [text] = session.evaluate_text('(let ((*print-right-margin* 30)) (format nil "12345678901234 ~A" (make-condition \'long)))')
-    assert str(text) == "12345678901234 (0 1 2 3 4 5 6\n                7 8)"
