@@ -109,8 +109,9 @@ def test_coercion_that_is_impossible_says_so():
     assert str(problem.value) == '"12" can\'t be converted to type NUMBER.'
 
 
-@pytest.mark.parametrize(("specifier", "shown"), [("colour", "(MEMBER :RED :GREEN)"), ("(small 4)", "(MOD 5)"), ("(integer 0 255)", "(UNSIGNED-BYTE 8)"),
-                                                  ("(or colour (small 1))", "(OR (MEMBER :RED :GREEN) BIT)"), ("symbol", "SYMBOL")])
+@pytest.mark.parametrize(("specifier", "shown"), [
+    ("colour", "(MEMBER :RED :GREEN)"), ("(small 4)", "(MOD 5)"), ("(integer 0 255)", "(UNSIGNED-BYTE 8)"), ("symbol", "SYMBOL"),
+    ("(or colour (small 1))", "(OR (MEMBER :RED :GREEN) BIT)")])
 def test_check_type_shows_what_a_type_means(session, specifier, shown):
     session.package = "CL-USER"
     session.evaluate_text("(deftype colour () '(member :red :green))")

@@ -65,7 +65,7 @@ class _Cutter:
 
     def statements(self, body, depth, in_loop):
         """Cut the statements ``body``, which stand ``depth`` blocks deep; ``in_loop``: a loop of this function is around them."""
-        for index, statement in enumerate(list(body)):
+        for statement in list(body):
             if isinstance(statement, _BLOCKS) and depth >= LIMIT:
                 body[body.index(statement):body.index(statement) + 1] = self.cut(statement, in_loop)
             elif not isinstance(statement, _FUNCTIONS):
