@@ -2,6 +2,7 @@
 
 (require cramhy.operators [defoperator])
 (import cramhy.operators *)
+(import cramhy_runtime.lisp.macros [mentions])
 
 (setv package "COMMON-LISP")
 
@@ -79,18 +80,6 @@
 
 ;; ----------------------------------------------------------------------------------------------------------- generic functions
 
-(setv method-words #{"CALL-NEXT-METHOD" "NEXT-METHOD-P"})
-
-(defn mentions-next [forms]
-  "Whether the forms may call the next method."
-  (setv cell forms)
-  (while (listp cell)
-    (setv item cell.car)
-    (when (or (and (isinstance item LispSymbol) (in item.name method-words)) (and (listp item) (mentions-next item)))
-      (return True))
-    (setv cell cell.cdr))
-  False)
-
 (defn method-parts [forms]
   "(qualifiers, lambda list, body) of what follows the name in `defmethod`."
   (setv forms (list forms) qualifiers [])
@@ -142,7 +131,7 @@
   (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) (sym "DECLARE")))
     (.append declarations (.pop forms 0)))
   (.append declarations `(declare (ignorable ~@(required-names plain))))  ; their classes choose the method, which is a use
-  (if (mentions-next (list-from body))
+  (if (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")})
       (do
         (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
         #(`(lambda [~next ~@(elements plain)]

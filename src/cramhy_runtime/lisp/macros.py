@@ -12,6 +12,7 @@ from __future__ import annotations
 import importlib
 from fractions import Fraction
 
+from .backquote import QUOTE, Comma
 from .conditions import CompileError, Condition, error
 from .data import Character, Cons, Symbol, list_from, one
 from .functions import function_of
@@ -172,6 +173,29 @@ def macroexpand_1(form, environment=None):
         if expansion is not None:
             return expansion, True
     return form, False
+
+
+def mentions(form, symbols):
+    """Whether one of ``symbols`` stands in ``form``: in its code, its templates, or what the user's macros make of it."""
+    if isinstance(form, Cons) and form.car is QUOTE:
+        return False
+    while isinstance(form, Cons):
+        head = form.car
+        if isinstance(head, Symbol) and hasattr(head.macro, "__lisp_lambda_list__") and head.package is not COMMON_LISP:
+            try:
+                expansion = head.macro(form, None)
+            except Exception:  # no call, or one of a macrolet; what is wrong with it the compiler will say
+                expansion = None
+            if expansion is not form and mentions(expansion, symbols):
+                return True
+        if mentions(head, symbols):
+            return True
+        form = form.cdr
+    if type(form) is Comma:
+        return mentions(form.form, symbols)
+    if type(form) is list:
+        return any(mentions(item, symbols) for item in form)
+    return isinstance(form, Symbol) and form in symbols
 
 
 def macroexpand(form, environment=None):
