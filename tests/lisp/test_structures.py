@@ -142,3 +142,11 @@ def test_the_type_of_a_slot_may_be_defined_later(session):
         session.evaluate_text("(make-early :next 3)")
     session.evaluate_text("(defstruct later-type)")
     assert session.evaluate_text("(later-type-p (early-next (make-early :next (make-later-type))))") == [True]
+
+
+def test_slots_whose_names_no_python_name_could_have(session):
+    session.package = "CL-USER"
+    session.evaluate_text("(defstruct odd 100k-size *b %a |d e| + class ² |1|)")
+    names = "(odd-100k-size odd-*b odd-%a |ODD-d e| odd-+ odd-class odd-² odd-1)"
+    session.evaluate_text("(defparameter *odd* (make-odd :100k-size 1 :*b 2 :%a 3 :|d e| 4 :+ 5 :class 6 :² 7 :|1| 8))")
+    assert session.evaluate_text(f"(equal (mapcar (lambda (name) (funcall name *odd*)) '{names}) '(1 2 3 4 5 6 7 8))") == [True]

@@ -29,10 +29,10 @@ def python_name(name):
                             ("+", "_plus"), ("*", "_star"), ("/", "_slash"), ("?", "_p"), ("!", "_bang"), ("%", "_"),
                             ("-", "_"), (".", "_"), ("&", "_and_")):
         name = name.replace(character, word)
-    name = "".join(character if character.isalnum() or character == "_" else "_" for character in name)
-    if python_keywords.iskeyword(name) or name[:1].isdigit():
+    name = "".join(character if f"_{character}".isidentifier() else "_" for character in name)
+    if python_keywords.iskeyword(name):
         name += "_"
-    return name
+    return name if name.isidentifier() else f"_{name}"
 
 
 def lispify(function):
