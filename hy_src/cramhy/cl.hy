@@ -297,7 +297,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%define-macro (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator define-compiler-macro [name lambda-list #* body]
-  "Its function is kept for those who ask for it; the compiler does without the optimization."
+  "Its function rewrites the calls that are compiled from now on."
   (import cramhy_runtime.lisp.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body) "DEFINE-COMPILER-MACRO"))
   `(%define-compiler-macro (quote ~name) ~function))

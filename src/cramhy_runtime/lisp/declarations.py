@@ -52,6 +52,14 @@ def _proclaim(specifier):
     elif kind is sym("DECLARATION"):
         for symbol in names:
             data(symbol)["declaration"] = True
+    elif kind is sym("NOTINLINE"):
+        for symbol in names:
+            if isinstance(symbol, Symbol):
+                data(symbol)["notinline"] = True
+    elif kind is sym("INLINE"):
+        for symbol in names:
+            if isinstance(symbol, Symbol):
+                data(symbol).pop("notinline", None)
     elif is_extension(kind, "MUFFLE-CONDITIONS", "UNMUFFLE-CONDITIONS"):
         muffle(names, kind.name == "MUFFLE-CONDITIONS")
     elif not (kind in PROCLAIMED or is_extension(kind, *EXTENSIONS) or is_declared(kind) or is_known_type(kind)):

@@ -52,12 +52,15 @@ def special_operator_p(symbol):
 
 
 def compiler_macro_function(name, environment=None):
-    """The function of a compiler macro, which ``define-compiler-macro`` made; calls are compiled without it."""
+    """The function of a compiler macro, which ``define-compiler-macro`` made; calls of the global function are compiled with it."""
     return _setf_name_data(name).get("compiler-macro")
 
 
 def set_compiler_macro_function(function, name, environment=None):
-    _setf_name_data(name)["compiler-macro"] = function
+    if function is None:
+        _setf_name_data(name).pop("compiler-macro", None)
+    else:
+        _setf_name_data(name)["compiler-macro"] = function
     return function
 
 
@@ -75,10 +78,36 @@ def _setf_name_data(name):
 
 
 def constantp(form, environment=None):
-    """``constantp``: whether ``form`` always has the same value."""
+    """``constantp``: whether ``form`` always has the same value: also a call of a function of numbers or lists on constants, as in SBCL."""
     if isinstance(form, Cons):
-        return True if form.car is sym("QUOTE") else None
+        return True if _constant_compound(form, environment) else None
+    if isinstance(form, Symbol):
+        local = environment.variable(form) if environment is not None else None
+        expansion, expanded = macros.macroexpand_1(form, environment)
+        if expanded:
+            return constantp(expansion, environment)
+        if local is not None:
+            return None
     return True if not isinstance(form, Symbol) or isinstance(form, Keyword) or form.constant else None
+
+
+FOLDABLE = {sym(name) for name in """+ - * / 1+ 1- = /= < > <= >= ABS MIN MAX MOD REM FLOOR CEILING ROUND TRUNCATE EXPT SQRT EXP LOG SIN COS
+TAN ASH LOGAND LOGIOR LOGXOR LOGNOT GCD LCM EVENP ODDP ZEROP PLUSP MINUSP CAR CDR NOT NULL EQ EQL CONSP LISTP ATOM NUMBERP STRINGP
+SYMBOLP CHAR-CODE CODE-CHAR CHAR= NUMERATOR DENOMINATOR FLOAT""".split()}
+"""Functions whose call on constants is a constant."""
+
+
+def _constant_compound(form, environment):
+    head, arguments = form.car, list(form.cdr or ())
+    if head is sym("QUOTE"):
+        return len(arguments) == 1
+    if environment is not None and isinstance(head, Symbol) and environment.function(head) is not None:
+        return False
+    if head is sym("THE"):
+        return len(arguments) == 2 and constantp(arguments[1], environment)
+    if head in (sym("IF"), sym("PROGN")) or head in FOLDABLE:
+        return all(constantp(argument, environment) for argument in arguments)
+    return False
 
 
 def compile_(name, definition=None):

@@ -8,7 +8,7 @@ has a value shows at run time, with the error that the user knows.
 from __future__ import annotations
 
 from ..conditions import CompileError, SimpleProgramError, error
-from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list
+from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
 from ..compilation_unit import expanding
 from ..faces import python_name
 from ..form_places import FormPlaces
@@ -116,7 +116,8 @@ class Analyzer(Scrutiny):
                 if loop is not None:
                     self.positions.inherit(loop, form)
                     return self.form(loop, env)
-            return self._call(form, env)
+            shorter = self.compiler_macro_expansion(form, env)
+            return self._call(form, env) if shorter is form else self.form(shorter, env)
         if isinstance(head, Cons) and head.car is LAMBDA:
             return CallValue(self.function(head, env), self.arguments(form, env))
         return self.fail("~S cannot be called: the head of a form must be a symbol or a lambda expression.", head)
@@ -128,6 +129,17 @@ class Analyzer(Scrutiny):
         if expanded:
             self.positions.inherit(expansion, form)
         return expansion, expanded
+
+    def compiler_macro_expansion(self, form, env):
+        """What the compiler macro of the function that ``form`` calls makes of it; ``form`` itself when it declines (ANSI 3.2.2.1)."""
+        data = form.car.compiler_data
+        if data is None or "compiler-macro" not in data or form.car in self.notinline or "notinline" in data:
+            return form
+        with expanding(self.unit, form, self.place()):
+            expansion = one(data["compiler-macro"](form, env))
+        if expansion is not form:
+            self.positions.inherit(expansion, form)
+        return expansion
 
     def arguments(self, form, env):
         nodes, cell = [], form.cdr
@@ -262,7 +274,7 @@ class Analyzer(Scrutiny):
         bindings = [(symbol, LocalVariable(variable)) for symbol, variable in dynamic]
         for symbol in [*(symbol for symbol, _ in dynamic), *specials]:
             inner.variables[symbol] = SpecialVariable(symbol)
-        muffled = self.muffled
+        around = self.muffled, self.notinline
         self.declare(specifiers, own, inner)
         if parsed.aux:
             aux = lisp_list(*(lisp_list(symbol, form) for symbol, form in parsed.aux))
@@ -273,7 +285,7 @@ class Analyzer(Scrutiny):
         else:
             body_node = self._blocked(block, forms, inner)
         self.unused(own)
-        self.muffled = muffled
+        self.muffled, self.notinline = around
         if bindings:
             body_node = Let(bindings, body_node)
         if checks:

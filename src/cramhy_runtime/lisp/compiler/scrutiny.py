@@ -23,7 +23,7 @@ from .environment import Variable
 CRAMHY = sym("CRAMHY::X").package
 
 IGNORE, IGNORABLE, SPECIAL, TYPE, OPTIMIZE = map(sym, ("IGNORE", "IGNORABLE", "SPECIAL", "TYPE", "OPTIMIZE"))
-QUOTE, TYPEP = sym("QUOTE"), sym("TYPEP")
+QUOTE, TYPEP, NOTINLINE = sym("QUOTE"), sym("TYPEP"), sym("NOTINLINE")
 WITHOUT_MEANING = {sym(name) for name in "INLINE NOTINLINE DYNAMIC-EXTENT DECLARATION FTYPE VALUES".split()}
 """Declarations that are known and need nothing done here."""
 STANDARD_DECLARATIONS = {symbol.name for symbol in WITHOUT_MEANING} - {"VALUES"} | {"IGNORE", "IGNORABLE", "SPECIAL", "TYPE", "OPTIMIZE"}
@@ -37,6 +37,7 @@ class Scrutiny:
         self.unit = compilation_unit.current()
         self.source = None  # the innermost list around what is being analysed that the user wrote
         self.muffled = ()
+        self.notinline = frozenset()  # functions whose compiler macros are not to be used here
 
     # -------------------------------------------------------------------------------------------------------------- places
 
@@ -99,11 +100,11 @@ class Scrutiny:
 
     def scope(self, variables, specifiers, forms, env):
         """The node of the body ``forms`` of a form that binds ``variables`` and begins with declarations."""
-        muffled = self.muffled
+        around = self.muffled, self.notinline
         self.declare(specifiers, variables, env)
         node = self.body(forms, env)
         self.unused(variables)
-        self.muffled = muffled
+        self.muffled, self.notinline = around
         return node
 
     # ------------------------------------------------------------------------------------------------------- declarations
@@ -119,6 +120,8 @@ class Scrutiny:
             if head is IGNORE or head is IGNORABLE:
                 for name in rest:
                     self._ignore(head, name, by_symbol, env, specifier)
+            elif head is NOTINLINE:
+                self.notinline |= {name for name in rest if isinstance(name, Symbol)}
             elif is_extension(head, "MUFFLE-CONDITIONS"):
                 self.muffled = (*self.muffled, *rest)
             elif is_extension(head, "UNMUFFLE-CONDITIONS"):

@@ -19,7 +19,7 @@ from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue,
                     Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom, Support,
                     TagbodyNode, UnwindProtect)
 
-PROGN = sym("PROGN")
+PROGN, FUNCTION = sym("PROGN"), sym("FUNCTION")
 
 
 def special(name):
@@ -425,6 +425,12 @@ def _multiple_value_list(analyzer, form, env):
 @special("FUNCALL")
 def _funcall(analyzer, form, env):
     function, *arguments = _parts(analyzer, form, 1)
+    if isinstance(function, Cons) and function.car is FUNCTION and isinstance(function.cdr, Cons) and isinstance(function.cdr.car, Symbol) \
+            and env.function(function.cdr.car) is None:
+        direct = Cons(function.cdr.car, form.cdr.cdr)
+        shorter = analyzer.compiler_macro_expansion(direct, env)
+        if shorter is not direct:
+            return analyzer.form(shorter, env)
     nodes = [analyzer.form(argument, env) for argument in arguments]
     node = analyzer.form(function, env)
     if isinstance(node, FunctionReference):
