@@ -25,6 +25,8 @@ from .type_relations import subtypep
 from .types import expand_type
 
 CHARACTER = sym("CHARACTER")
+CHUNK = 8192
+"""About how many bytes of text are fetched at a time."""
 
 
 class FileStreamClass(OutputStream, InputStream):
@@ -67,23 +69,24 @@ class FileStream(FileStreamClass):
         try:
             return kernel.run_blocking(function) if self.waits else function()
         except (OSError, ValueError) as problem:
-            if self.closed:
-                return complain_closed(self)
-            return error(SimpleStreamError(self, doing, problem))
+            return self._failed(doing, problem)
+
+    def _failed(self, doing, problem):
+        return complain_closed(self) if self.closed else error(SimpleStreamError(self, doing, problem))
 
     def more(self):
         if self.closed:
             return complain_closed(self)
         if not (self.is_input and self.characters):
             return misused(self, "character input")
-        start = self.file.tell() if not self.waits else 0
-        octets = self._system(self.file.readline)
+        # of a file several lines at a time, of what may keep us waiting no more than there is
+        octets = self._system(self.file.readline if self.waits else lambda: b"".join(self.file.readlines(CHUNK)))
         if self.format.codec.startswith(("utf-16", "utf-32")):
             octets += self._system(self.file.read)  # the byte of a newline may be half of another character
         try:
             return octets.decode(self.format.codec)
         except UnicodeDecodeError as problem:
-            return self._undecodable(octets, problem.start, problem.end, start)
+            return self._undecodable(octets, problem.start, problem.end, 0 if self.waits else self.file.tell() - len(octets))
 
     def _undecodable(self, octets, bad, after, start):
         if bad:  # first what stands before it
@@ -118,9 +121,15 @@ class FileStream(FileStreamClass):
     def emit(self, text):
         if not (self.is_output and self.characters):
             return complain_closed(self) if self.closed else misused(self, "character output")
-        self._forget_fetched()
+        if self._text:
+            self._forget_fetched()
         octets = self.format.encode(text, self)
-        return self._system(lambda: self.file.write(octets), "write to")
+        if self.waits:
+            return self._system(lambda: self.file.write(octets), "write to")
+        try:
+            return self.file.write(octets)
+        except (OSError, ValueError) as problem:
+            return self._failed("write to", problem)
 
     def flush(self):
         if self.is_output and not self.closed:
