@@ -77,3 +77,18 @@ def test_the_debugger_hook(type_in):
 
 def test_room(type_in):
     assert "bytes at most so far.\nGarbage collection is currently enabled.\n; No value\n" in type_in("(room)")
+
+
+def test_dribble_records_what_is_typed_and_shown(cramhy, tmp_path):
+    path = tmp_path / "dribble.txt"
+    cramhy("repl", "--time", "virtual", input=f'(dribble "{path}")\n(+ 1\n 2)\n(format t "hello~%")\n(dribble)\n(+ 3 4)\n')
+    assert path.read_text() == """\
+NIL
+CL-USER> (+ 1
+ 2)
+3
+CL-USER> (format t "hello~%")
+hello
+NIL
+CL-USER> (dribble)
+"""

@@ -14,7 +14,7 @@ import sys
 from .conditions import error, type_error
 from .data import NO_VALUES, Character, LispString, list_from
 from .packages import is_symbol, string_designator, sym
-from .streams import STANDARD_INPUT, STANDARD_OUTPUT, BroadcastStream, EchoStream, standard_output
+from .streams import CONSOLE_OUTPUT, STANDARD_INPUT, STANDARD_OUTPUT, BroadcastStream, EchoStream, standard_output
 
 LISP_NAMES = """lisp-implementation-type lisp-implementation-version machine-type machine-instance machine-version software-type
 software-version short-site-name long-site-name room ed dribble provide"""
@@ -108,6 +108,8 @@ _dribbling: list = []
 def dribble(pathname=None, *, if_exists=":APPEND"):
     """``dribble``: record the session in a file, what is printed and what is read; without ``pathname`` end that.
 
+    At the prompt the console writes to the file what it shows and what is typed.
+
     Errors: to end what was not begun, and a file that cannot be written.
     """
     from .file_streams import open_
@@ -116,12 +118,17 @@ def dribble(pathname=None, *, if_exists=":APPEND"):
         if_exists = sym(if_exists) if isinstance(if_exists, str) else if_exists
         file = open_(pathname, direction=sym(":OUTPUT"), if_exists=if_exists, if_does_not_exist=sym(":CREATE"))
         _dribbling.append((file, STANDARD_INPUT.value, STANDARD_OUTPUT.value))
-        STANDARD_OUTPUT.value = BroadcastStream(STANDARD_OUTPUT.value, file)
+        if STANDARD_OUTPUT.value is CONSOLE_OUTPUT:
+            CONSOLE_OUTPUT.copies.append(file)
+        else:
+            STANDARD_OUTPUT.value = BroadcastStream(STANDARD_OUTPUT.value, file)
         STANDARD_INPUT.value = EchoStream(STANDARD_INPUT.value, file)
         return None
     if not _dribbling:
         return error("not currently dribbling")
     file, STANDARD_INPUT.value, STANDARD_OUTPUT.value = _dribbling.pop()
+    if file in CONSOLE_OUTPUT.copies:
+        CONSOLE_OUTPUT.copies.remove(file)
     file.close()
     return None
 

@@ -33,11 +33,21 @@ __all__ = ["FileOutput", "InputStream", "OutputStream", "Stream", "StringInputSt
 
 
 class ConsoleOutput(FileOutput):
-    """``sys.stdout`` or ``sys.stderr``, whatever it is at the moment."""
+    """``sys.stdout`` or ``sys.stderr``, whatever it is at the moment. ``copies``: streams that get everything, too (``dribble``)."""
 
     def __init__(self, name, label):
         super().__init__(None, label)
         self.name = name
+        self.copies = []
+
+    def emit(self, text):
+        super().emit(text)
+        self.record(text)
+
+    def record(self, text):
+        """Write only to the copies: what the user typed stands on the terminal already."""
+        for stream in self.copies:
+            stream.write(text)
 
     @property
     def file(self):

@@ -129,6 +129,7 @@ class Console:
                 continue
             if line is None:
                 return "\n".join(lines) if lines else None
+            streams.CONSOLE_OUTPUT.record(f"{'' if lines else prompt}{line}\n")
             lines.append(line)
             text = "\n".join(lines)
             if not text.strip():
