@@ -240,3 +240,7 @@ def test_ways_out_of_deeply_nested_blocks(evaluate):
                                   "(dolist (x '(1) #((1 2) (\"x\" 3))) x)"])
 def test_a_literal_vector_stays_one_in_the_macros_of_the_standard(evaluate, form):
     assert evaluate(form) == '#((1 2) ("x" 3))'
+
+
+def test_gensym_names_with_the_counter_and_then_counts(evaluate):
+    assert evaluate("(let ((*gensym-counter* 5)) (list (gensym \"F\") (gensym) *gensym-counter*))") == "(#:F5 #:G6 7)"

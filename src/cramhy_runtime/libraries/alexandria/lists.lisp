@@ -113,18 +113,22 @@
                  (loop for element in (first lists) nconc (choose (rest lists) (cons element chosen))))))
     (choose (cons list more-lists) '())))
 
+(defun first-number (start step)
+  "START as a number of the type that START and STEP have together."
+  (if (and (complexp step) (floatp start))
+      (complex start (* 0 start))
+      (+ start (- step step))))
+
 (defun iota (n &key (start 0) (step 1))
   "N numbers from START on, STEP apart."
-  (loop with first = (+ start (- step step))
-        for index below n
-        for number = first then (+ number step)
+  (loop for index below n
+        for number = (first-number start step) then (+ number step)
         collect number))
 
 (defun map-iota (function n &key (start 0) (step 1))
   "Call FUNCTION with N numbers from START on, STEP apart. Returns N."
-  (loop with first = (+ start (- step step))
-        for index below n
-        for number = first then (+ number step)
+  (loop for index below n
+        for number = (first-number start step) then (+ number step)
         do (funcall function number))
   n)
 
