@@ -67,3 +67,32 @@
   (for [function (reversed (elements functions))]
     (setv form `(flet [~function] ~form)))
   form)
+
+(defoperator string-case [string #* clauses]
+  "Dispatch on a string whatever its case; the keys of a clause are one string or a list of them, or `t`."
+  (setv value (gensym "STRING"))
+  `(let [[~value ~string]]
+     (cond
+       ~@(lfor clause clauses
+           (if (is clause.car True)
+               `[t ~@(elements clause.cdr)]
+               `[(or ~@(lfor key (if (listp clause.car) (elements clause.car) [clause.car]) `(string-equal ~value ~key)))
+                 ~@(elements clause.cdr)])))))
+
+(defoperator destructure-case [form #* clauses]
+  "Dispatch on the first element of a list and destructure the rest: `((:move x y) ...)`."
+  (setv value (gensym "VALUE"))
+  `(let [[~value ~form]]
+     (case (car ~value)
+       ~@(lfor clause clauses
+           (if (is clause.car True)
+               clause
+               `[~clause.car.car (destructuring-bind ~clause.car.cdr (cdr ~value) ~@(elements clause.cdr))]))
+       ~@(if (and clauses (is (. (get clauses -1) car) True)) [] [`[t (error "destructure-case failed: ~S" ~value)]]))))
+
+(defoperator "pop-if!" [predicate place]
+  `(setf ~place (delete-if ~predicate ~place :count 1)))
+
+(defoperator with-file-cache [variable file value #* body]
+  "`variable` is the value of the form `value`, computed again only when the file has changed."
+  `(let [[~variable (%file-value ~file (lambda [] ~value))]] ~@body))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import list_from, python_list
 from cramhy_runtime.lisp.faces import define_face
 
-from . import facts, lazy_lists, natives, patterns, rete
+from . import facts, file_cache, lazy_lists, natives, patterns, rete
 
 
 class FactCollector:
@@ -72,4 +72,5 @@ define_face("CRAMHY", functions={
     "fact-outside-group": fact_outside_group, "lazy-list-of": lazy_list_of, "lazy-environment": lazy_environment,
     "delay-thunk": lazy_lists.delay, "lazy-dolist": lazy_lists.lazy_dolist, "values-of-variables": values_of_variables,
     "strict-values-of-variables": strict_values_of_variables, "values-of-pattern": values_of_pattern,
+    "file-value": file_cache.file_value,
 })

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp.faces import define_face
 
-from . import builtins, lazy_lists, patterns, query, rete, utilities  # noqa: F401  the built-in predicates come along
+from . import builtins, file_cache, lazy_lists, patterns, query, rete, utilities  # noqa: F401  the built-in predicates come along
 from .lisp_calls import BREAK_ON_LISP_ERRORS
 
 CUT = define_face(
     "CRAM-UTILITIES", nicknames=("CUT",), use=("COMMON-LISP",),
     functions={
+        **file_cache.without_threads(), file_cache: "cached-file-value execute-string",
         lazy_lists: """lazy-car lazy-cdr lazy-elt force-ll lazy-list-p lazy-mapcar lazy-mapcan lazy-filter lazy-fold lazy-append
             lazy-take lazy-skip lazy-flatten lazy-rests copy-lazy-list delay-p force""",
         patterns: """is-var is-unnamed-var is-segvar is-segform var-name gen-var is-genvar add-bdg var-value substitute-vars
@@ -38,6 +39,7 @@ CUT = define_face(
     internal="lazy-cons-elem on-prepare-prolog-prove on-finish-prolog-prove",
 )
 CUT.intern("POOL-VALUE").setf_function = utilities.set_pool_value
+CUT.intern("CACHED-FILE-VALUE").setf_function = file_cache.set_cached_file_value
 
 PROLOG = define_face(
     "CRAM-PROLOG", nicknames=("PROLOG",), use=("COMMON-LISP", "CRAM-UTILITIES"),

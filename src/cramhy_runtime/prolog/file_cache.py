@@ -1,0 +1,73 @@
+"""Values that were computed from files, as long as the files do not change; and what CRAM-UTILITIES takes from SBCL's threads.
+
+Source: cpl.md 13.3.
+"""
+
+from __future__ import annotations
+
+import os
+
+from cramhy_runtime.lisp.conditions import error
+from cramhy_runtime.lisp.data import one
+from cramhy_runtime.lisp.packages import sym
+
+_values: dict = {}
+
+
+def _date(file):
+    name = os.path.abspath(os.fspath(file))
+    try:
+        status = os.stat(name)
+    except OSError as problem:
+        return error("The file ~A cannot be looked at: ~A.", name, problem.strerror)
+    return name, (status.st_mtime_ns, status.st_size)
+
+
+def cached_file_value(file):
+    """``cut:cached-file-value``: the value kept for a file, nil when there is none or the file has changed since."""
+    name, date = _date(file)
+    kept = _values.get(name)
+    return kept[1] if kept is not None and kept[0] == date else None
+
+
+def set_cached_file_value(value, file):
+    name, date = _date(file)
+    _values[name] = (date, value)
+    return value
+
+
+def file_value(file, compute):
+    """The value kept for a file; ``compute`` makes it when the file is new or has changed."""
+    name, date = _date(file)
+    kept = _values.get(name)
+    if kept is None or kept[0] != date:
+        kept = _values[name] = (date, one(compute()))
+    return kept[1]
+
+
+def execute_string(string, *, filename=None, cleanup=True):
+    """``cut:execute-string``: evaluate the forms in a string; T."""
+    from cramhy_runtime.lisp.loader import load_text
+
+    load_text(str(string), filename and str(filename) or "<string>")
+    return True
+
+
+THREADS = """current-thread all-threads thread-name spawn-thread spawn-threads run-in-thread kill-thread thread-alive-p join-thread
+make-lock make-recursive-lock make-condition-variable condition-variable-wait condition-variable-wait-with-timeout
+condition-variable-signal condition-variable-broadcast make-synchronized-hash-table thread-local-binding-p make-semaphore
+wait-on-semaphore try-semaphore signal-semaphore semaphore-count semaphore-name make-mailbox send-message receive-message
+receive-message-no-hang receive-pending-messages list-mailbox-messages mailbox-count mailbox-empty-p mailbox-name mailboxp"""
+
+
+def _no_threads(name):
+    def call(*arguments):
+        return error("~S: cramhy has no threads besides the tasks of plans. Use par, pursue or with-task for what runs beside, fluents and "
+                     "wait-for for waiting; data needs no locks, because one task runs at a time.", sym(f"CRAM-UTILITIES::{name.upper()}"))
+
+    return call
+
+
+def without_threads():
+    """Lisp names of SBCL's thread functions → functions that say what to use instead."""
+    return {name: _no_threads(name) for name in THREADS.split()}
