@@ -36,6 +36,7 @@ from cramhy_runtime.lisp.conditions import Condition
     ("(list (funcall (a:conjoin #'numberp #'plusp) 3) (funcall (a:conjoin #'numberp #'plusp) :a))", "(T NIL)"),
     ("(list (funcall (a:disjoin #'symbolp #'plusp) 3) (funcall (a:disjoin #'null #'minusp) 3))", "(T NIL)"),
     ("(funcall (a:rcurry '- 1) 10)", "9"),
+    ("(let ((n 0)) (list (mapcar (a:curry #'+ (incf n)) (list 1 2)) n (funcall (a:compose #'1+ (lambda (x) (* x 2))) 3)))", "((2 3) 1 7)"),
     ("(a:flatten '((1 . 2) nil ((3)) #(4)))", "(1 2 3 #(4))"),
     ("(list (a:proper-list-p '(1 . 2)) (a:circular-list-p (a:circular-list 1 2)) (a:lastcar '(1 2 3)))", "(NIL T 3)"),
     ("(a:circular-tree-p (let ((x (list 1 2))) (setf (car x) x)))", "T"),

@@ -48,3 +48,24 @@
       (loop for (test . more) on predicates
             if more do (let ((value (apply test arguments))) (when value (return value)))
             else do (return (apply test arguments))))))
+
+;;; ------------------------------------------------------------------------------------------------------- compiler macros
+
+(define-compiler-macro curry (function &rest arguments)
+  (let ((variable (gensym "FUNCTION")) (names (make-gensym-list (length arguments) "ARGUMENT")))
+    `(let ((,variable (ensure-function ,function)) ,@(mapcar #'list names arguments))
+       (lambda (&rest more) (apply ,variable ,@names more)))))
+
+(defun composition-form (functions call)
+  "The lambda expression of a composition of the forms FUNCTIONS, each evaluated once; CALL is the operator for the outer ones."
+  (let ((names (make-gensym-list (length functions) "FUNCTION")))
+    `(let ,(mapcar (lambda (name function) `(,name (ensure-function ,function))) names functions)
+       (lambda (&rest arguments)
+         ,(reduce (lambda (name inner) `(,call ,name ,inner)) names
+                  :end (1- (length names)) :from-end t :initial-value `(apply ,(car (last names)) arguments))))))
+
+(define-compiler-macro compose (function &rest more-functions)
+  (composition-form (cons function more-functions) 'funcall))
+
+(define-compiler-macro multiple-value-compose (function &rest more-functions)
+  (composition-form (cons function more-functions) 'multiple-value-call))
