@@ -94,6 +94,15 @@ def test_features_and_versions(write, run):
     assert run("(list (asdf:version-satisfies \"2.10\" \"2.9\") (asdf:version-satisfies (asdf:find-system :newer) \"2.2\"))") == "(T NIL)"
 
 
+def test_an_asd_file_in_the_package_asdf(write, run):
+    write("older.asd", """(in-package :asdf)
+(pushnew :older-system cl:*features*)
+(defsystem :older :components ((:file "older-x")))
+(defmethod perform ((o test-op) (c (eql (find-system :older)))) (push :tested cl-user::*log*))""")
+    write("older-x.lisp", "#+older-system " + logging(":older"))
+    assert run("(asdf:oos 'asdf:load-op :older) (asdf:operate 'asdf:test-op :older) (reverse *log*)") == "(:OLDER :TESTED)"
+
+
 def test_the_version_may_stand_in_a_file(write, run):
     write("filed.asd", '(defsystem "filed" :version (:read-file-form "version.sexp"))')
     write("version.sexp", ";; the version\n\"0.7\"\n")

@@ -292,3 +292,11 @@ print("hy" in sys.modules)"""
     runs = [subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment) for _ in range(2)]
     assert [run.stdout.split("\n") for run in runs] == [["", '((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) True', ""],
                                                         ["", '((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) False', ""]], runs[1].stderr
+
+
+def test_a_circular_literal_is_loaded_but_not_kept(folder, compiled):
+    path = write(folder, "(defparameter *ring* '#1=(1 #2=#(#2# 2) . #1#)) (defparameter *third* (third *ring*))")
+    for _ in range(2):
+        loader.load_file(path)
+        assert value("*THIRD*") == "1"
+    assert compiled[0] >= 4
