@@ -155,11 +155,8 @@ def _is_for(pattern):
 
 def _bind(loop, iterations):
     """Bind hidden and numeric variables to their forms, and the other variables to nil."""
-    if len(iterations) == 1:
-        for binding in iterations[0][1].bindings:
-            bind_patterns(loop, [binding])
-    else:
-        bind_patterns(loop, [binding for _, iteration in iterations for binding in iteration.bindings])
+    # all at once: the forms of a clause do not see its own variables
+    bind_patterns(loop, [binding for _, iteration in iterations for binding in iteration.bindings])
     for variables, iteration in iterations:
         bound = {binding[0] for binding in iteration.bindings if not isinstance(binding[0], Cons)}
         for variable in variables:

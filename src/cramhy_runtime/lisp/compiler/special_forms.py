@@ -11,7 +11,8 @@ from ..data import Cons, Symbol, lisp_list, list_from, truth
 from ..lambda_lists import gensym
 from ..methods import Shape
 from ..late import late
-from ..packages import is_symbol, sym
+from ..package_errors import locked
+from ..packages import COMMON_LISP, is_symbol, sym
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
@@ -19,7 +20,7 @@ from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue,
                     Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom, Support,
                     TagbodyNode, UnwindProtect)
 
-PROGN, FUNCTION = sym("PROGN"), sym("FUNCTION")
+PROGN, FUNCTION, MACROLET = sym("PROGN"), sym("FUNCTION"), sym("MACROLET")
 
 
 def special(name):
@@ -198,6 +199,17 @@ def _locally(analyzer, form, env):
     return analyzer.scope((), specifiers, forms, inner)
 
 
+LOCAL_NAMES = {sym(name) for name in "CALL-NEXT-METHOD NEXT-METHOD-P LOOP-FINISH PPRINT-POP PPRINT-EXIT-IF-LIST-EXHAUSTED".split()}
+"""Functions of Common Lisp that exist only locally: macros of the standard define them."""
+
+
+def _check_lock(analyzer, symbol, what):
+    """A function of Common Lisp must not get another meaning, not even locally (ANSI 11.1.2.1.2)."""
+    if isinstance(symbol, Symbol) and symbol.package is COMMON_LISP and symbol not in LOCAL_NAMES and locked(COMMON_LISP):
+        analyzer.fail("Lock on package COMMON-LISP violated when binding ~A as ~A.~%Choose another name, or shadow the symbol: "
+                      "(:shadow #:~(~A~)) in the definition of your package.", symbol.name, what, symbol.name)
+
+
 def _definitions(analyzer, form):
     parts = _parts(analyzer, form, 1)
     definitions = []
@@ -209,6 +221,7 @@ def _definitions(analyzer, form):
             analyzer.fail("~S is no name of a function.", name)
         key = ("setf", name.cdr.car) if isinstance(name, Cons) else name
         symbol = name.cdr.car if isinstance(name, Cons) else name
+        _check_lock(analyzer, symbol, "a local macro" if form.car is MACROLET else "a local function")
         definitions.append((key, symbol, item.cdr.car, item.cdr.cdr))
     return definitions, parts[1:]
 
