@@ -102,6 +102,19 @@ def test_a_handler_is_asked_once(lisp):
         (handler-bind ((py:ValueError (lambda (e) (incf n 10)))) (py:int "x")))) n)""") == "11"
 
 
+def test_an_exception_that_passes_lisp_and_python_in_turn_is_signalled_once(lisp):
+    assert lisp("""(let ((n 0)) (ignore-errors (handler-bind ((error (lambda (e) (incf n))))
+        (py:list (py:map (lambda (x) (py:int "x")) '(1))))) n)""") == "1"
+
+
+def test_an_exception_that_is_raised_again_is_signalled_again(lisp):
+    lisp('(defvar *exception* (py:call "ValueError" "again"))')
+    for _ in range(2):
+        with pytest.raises(ValueError):
+            lisp("(py:raise *exception*)")
+        assert lisp("(handler-case (py:raise *exception*) (py:ValueError () :seen))") == ":SEEN"
+
+
 def test_python_code_above_sees_its_own_exception(lisp, session):
     lisp("(defun reads (text) (py:int text))")
     with pytest.raises(ValueError, match="invalid literal"):

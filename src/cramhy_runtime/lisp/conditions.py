@@ -100,13 +100,14 @@ def _offer(condition, cluster, outer):
 def handler_bind(clauses, thunk):
     """Call ``thunk`` with ``clauses`` in force, a list of (type specifier, function); returns its values."""
     outer = _handlers.value
-    with binding(_handlers, (clauses, outer)):
+    cluster = (clauses, outer)
+    with binding(_handlers, cluster):
         try:
             return thunk()
         except types.Condition:
             raise
         except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
-            if not hasattr(exception, "__lisp_signalled__"):
+            if not _were_asked(exception, cluster):
                 _offer(from_python(exception), clauses, outer)
             raise
 
@@ -496,16 +497,30 @@ def wrong_argument_count(given):
 def signal_exception(exception):
     """Signal the condition for a foreign ``exception`` where it came into Lisp. Handlers run, the debugger opens if there is one.
 
-    Returns when nobody wanted it: then the exception is to be raised again, so that Python code above sees its own.
+    Returns when nobody wanted it: then the exception is to be raised again, so that Python code above sees its own. On its way up
+    it may come into Lisp again; handlers that were asked are not asked once more.
     """
+    if _were_asked(exception, _handlers.value):
+        return
     condition = from_python(exception)
     signal_condition(condition)
     if _debugger is not None or truth(DEBUGGER_HOOK.value):
         invoke_debugger(condition)
     try:
-        exception.__lisp_signalled__ = True
+        exception.__lisp_asked__ = (_handlers.value,)
     except AttributeError:
         pass
+
+
+def _were_asked(exception, clusters):
+    """Whether the handlers ``clusters`` have seen the condition of ``exception`` before."""
+    asked = getattr(exception, "__lisp_asked__", None)
+    if asked is None:
+        return False
+    asked = asked[0]
+    while asked is not clusters and asked is not None:
+        asked = asked[1]
+    return asked is clusters
 
 
 def from_python(exception):
