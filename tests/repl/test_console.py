@@ -185,3 +185,11 @@ def test_the_same_seed_gives_the_same_random_numbers(type_in):
     first = type_in("(list (random 1000000) (random 1000000))", seed=5)
     assert type_in("(list (random 1000000) (random 1000000))", seed=5) == first
     assert type_in("(list (random 1000000) (random 1000000))", seed=6) != first
+
+
+def test_a_condition_is_shown_by_its_method_of_print_object(type_in):
+    shown = type_in("(define-condition lost (error) ((at :initarg :at)))\n"
+                    "(defmethod print-object ((lost lost) stream)\n"
+                    "  (if *print-escape* (call-next-method) (format stream \"Lost at ~A.\" (slot-value lost 'at))))\n"
+                    "(error 'lost :at 3)")
+    assert "Lost at 3." in shown and "was signalled" not in shown

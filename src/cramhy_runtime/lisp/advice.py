@@ -7,12 +7,14 @@ were forgotten, a function of another package, a typing mistake.
 from __future__ import annotations
 
 from . import pprint_dispatch
+from .condition_types import Condition
 from .conditions import types
 from .data import Symbol, UNBOUND, UndefinedFunction
 from .dynamic import binding
 from .packages import all_packages, near_names, sym, symbol_name
 from .places_in_source import describe, excerpt
 from .print_controls import PACKAGE
+from .printer import princ_to_string
 
 COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
 SHOWN_PLACES = 3
@@ -22,6 +24,11 @@ SHOWN_PLACES = 3
 def report_text(condition):
     """The text of ``condition``, with messages and other long objects in their short form, as SBCL's debugger shows them."""
     with binding(pprint_dispatch.PRINT_PPRINT_DISPATCH, pprint_dispatch.INITIAL):
+        if type(condition).report is Condition.report:  # without a :report, a method of print-object may tell what happened
+            try:
+                return princ_to_string(condition)
+            except Exception:
+                pass  # a broken method must not hide the condition
         return str(condition)
 
 
