@@ -9,4 +9,4 @@
   (asdf:load-system "kitchen-courier/tests"))
 
 (funcall (intern "MAIN" "COURIER-PLANS"))
-(funcall (intern "RUN-ALL" "KITCHEN-COURIER-TESTS"))
+(asdf:test-system "kitchen-courier/tests")

@@ -49,4 +49,4 @@
                              (:file "execution-tests"))))
   :perform (test-op (operation component)
              (declare (ignorable operation component))
-             (funcall (intern "RUN-ALL" "KITCHEN-COURIER-TESTS"))))
+             (uiop:symbol-call :kitchen-courier-tests :run-all)))
