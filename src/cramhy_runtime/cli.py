@@ -15,6 +15,7 @@ def _session_options():
     options.add_argument("--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first")
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in")
     options.add_argument("--no-turtlesim", action="store_true", help="do not start the simulator with the first node")
+    options.add_argument("--backtrace", choices=["none", "lisp", "python"], default="none", help="show the calls that led to an error")
     options.add_argument("--eval", action="append", default=[], dest="forms", metavar="FORM", help="a form to evaluate after loading")
     return options
 
@@ -44,8 +45,10 @@ def parser():
 
 def session(options, default_time="wall"):
     """The `Session` that the options describe, with systems loaded and the package set."""
+    from cramhy_runtime.repl import backtrace
     from cramhy_runtime.repl.session import Session
 
+    backtrace.show(options.backtrace)
     made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
                    turtlesim=not options.no_turtlesim)
     for system in options.load:

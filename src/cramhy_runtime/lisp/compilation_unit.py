@@ -12,6 +12,7 @@ Nothing is compiled only in order to warn: a file whose compiled form was kept i
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 
 from .ansi_lambda_lists import standard_shape
@@ -22,6 +23,7 @@ from .dynamic import bind, binding, special, unbind
 from .equality import eql_key
 from .function_shapes import shape_of, wrong_call
 from .packages import COMMON_LISP, sym
+from .places_in_source import frame_position, is_user_file
 from .print_controls import PACKAGE
 from .types import is_known_type
 
@@ -45,7 +47,7 @@ class CompilationUnit:
 
     def __init__(self, kind="form"):
         self.kind = kind
-        self.expansions = []  # (form, place) of the macro calls that are being expanded
+        self.expansions = []  # (form, place, Python frame of the compiler) of the macro calls that are being expanded
         self.mentions = []
         self.types = []
         self.defined = {}  # name → Shape of the function that this unit defines, None if it is not known
@@ -197,7 +199,7 @@ class expanding:
 
     def __enter__(self):
         if self.unit is not None:
-            self.unit.expansions.append(self.entry)
+            self.unit.expansions.append((*self.entry, sys._getframe(1)))
 
     def __exit__(self, kind, exception, traceback):
         if self.unit is not None:
@@ -213,6 +215,20 @@ def expansion_place():
     """The place of the innermost macro call that is being expanded, or ``None``."""
     unit = CURRENT.value
     return unit.expansions[-1][1] if unit is not None and unit.expansions else None
+
+
+def signalling_position():
+    """Where in the user's text the code is that runs now: its innermost frame, or the macro call that is expanded further inside."""
+    unit = CURRENT.value
+    _, place, compiling = unit.expansions[-1] if unit is not None and unit.expansions else (None, None, None)
+    frame = sys._getframe(1)
+    while frame is not None:
+        if frame is compiling and place is not None:
+            return place
+        if is_user_file(frame.f_code.co_filename):
+            return frame_position(frame)
+        frame = frame.f_back
+    return None
 
 
 def mention_type(specifier):

@@ -17,7 +17,7 @@ from cramhy_runtime.lisp.advice import explanation
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
 
-from . import commands
+from . import backtrace, commands
 from . import session
 from .session import Interruption, condition_of, handle_interrupts, signalled_here
 
@@ -34,7 +34,7 @@ def report(condition, file=None):
     """Print an error that ends a program."""
     streams.CONSOLE_OUTPUT.fresh_line()
     streams.CONSOLE_OUTPUT.flush()
-    print(f"cramhy: {condition_type(condition)}\n{explanation(condition)}", file=file or sys.stderr)
+    print("\n".join([f"cramhy: {condition_type(condition)}", explanation(condition), *backtrace.lines(condition)]), file=file or sys.stderr)
 
 
 class Input:
@@ -202,7 +202,7 @@ class Console:
         output = streams.CONSOLE_OUTPUT
         output.fresh_line()
         width = max(len(symbol_name(restart.name)) for restart in restarts)
-        lines = ["", f"debugger invoked on a {condition_type(condition)}:", explanation(condition), "",
+        lines = ["", f"debugger invoked on a {condition_type(condition)}:", explanation(condition), *backtrace.lines(condition), "",
                  "restarts (type a number to choose one, or a form to evaluate):"]
         lines += [f"  {index}: [{symbol_name(restart.name):{width}}] {restart.report()}" for index, restart in enumerate(restarts)]
         output.write("\n".join(lines) + "\n")

@@ -17,6 +17,7 @@ from cramhy_runtime.lisp.classes import class_name
 from cramhy_runtime.lisp.packages import COMMON_LISP, symbol_name, symbol_package
 from cramhy_runtime.lisp.places_in_source import describe
 
+from . import backtrace
 from .session import Interruption, condition_of, signalled_here
 
 
@@ -98,7 +99,7 @@ def _type(condition):
 def _condition(output, condition):
     restarts = [symbol_name(restart.name) for restart in condition.restarts or ()]
     return _failure(output, _type(condition), report_text(condition), restarts or ["ABORT"], describe(condition.position)
-                    if getattr(condition, "position", None) else None, hint_for(condition))
+                    if getattr(condition, "position", None) else None, hint_for(condition), backtrace.lines(condition))
 
 
 def _warning(condition):
@@ -107,11 +108,13 @@ def _warning(condition):
     return {key: value for key, value in shown.items() if value}
 
 
-def _failure(output, kind, message, restarts=("ABORT",), where=None, hint=None):
+def _failure(output, kind, message, restarts=("ABORT",), where=None, hint=None, calls=()):
     # what a form printed before it failed is not its answer; it is kept with the error, so that nothing is lost
     error = {"type": kind, "message": message, "restarts": list(restarts)}
     if output:
         error["output"] = output
+    if calls:
+        error["backtrace"] = "\n".join(calls).lstrip("\n")
     if where:
         error["where"] = where
     if hint:

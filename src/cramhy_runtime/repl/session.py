@@ -17,13 +17,14 @@ from pathlib import Path
 
 from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import asdf, conditions, evaluator, systems, unit_tests
+from cramhy_runtime.lisp.compilation_unit import signalling_position
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values, list_from
 from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.lisp.namestrings import parse_native
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
 from cramhy_runtime.lisp.pathnames import DEFAULTS
-from cramhy_runtime.lisp.places_in_source import locate, user_position
+from cramhy_runtime.lisp.places_in_source import locate
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
@@ -186,7 +187,7 @@ class Session:
 def signalled_here(condition):
     """Note the place of a condition while its stack is still there; for debuggers."""
     if getattr(condition, "position", None) is None:
-        condition.position = user_position()
+        condition.position = signalling_position()
 
 
 def condition_of(exception):

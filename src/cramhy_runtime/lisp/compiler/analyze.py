@@ -230,7 +230,8 @@ class Analyzer(Scrutiny):
         """A function with ``lambda_list`` and the forms ``body``; ``block`` names an implicit block around them, ``name`` is that
         of a global function unless it is ``local``.
         """
-        parsed = parse(lambda_list)
+        with expanding(self.unit, lambda_list, self.place()):
+            parsed = parse(lambda_list)
         if name is not None and not local and env.function(_name_key(name)) is None:
             self.defines(name, Shape(lambda_list))
         scope = FunctionScope(env.scope)

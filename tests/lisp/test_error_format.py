@@ -1,0 +1,147 @@
+"""Errors of every phase have one format: what, file:line:column, the source line with a marker, what to try."""
+
+import pytest
+
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.advice import explanation
+from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.repl.session import condition_of, signalled_here
+
+READING = [
+    ("(list 1\n  '(1 . 2 3))", """\
+  More than one object follows . in list.
+  at plan.lisp:2:11
+    '(1 . 2 3))
+            ^
+  After the dot and one object the list must end."""),
+    ("(list 1\n  (nope::x))", """\
+  Package NOPE does not exist.
+  at plan.lisp:2:4
+    (nope::x))
+     ^
+  There is no package NOPE. Is the system that defines it loaded?"""),
+]
+EXPANSION = [
+    ("(defun f (x)\n  (dolist x '(1 2)\n    (print x)))", """\
+  The DOLIST form (DOLIST X '(1 2) (PRINT X)) is malformed: it has the wrong number of parts, or a part is not a list.
+  at plan.lisp:2:3
+      (dolist x '(1 2)
+      ^
+  It is written (dolist (variable list [result]) form...)."""),
+    ("(defun f (x)\n  (cond (= x 1) 2))", """\
+  The COND form (COND (= X 1) 2) is malformed: it has the wrong number of parts, or a part is not a list.
+  at plan.lisp:2:3
+      (cond (= x 1) 2))
+      ^
+  It is written (cond (test form...) (test form...)...)."""),
+    ("(defmacro twice-of (a b)\n  `(list ,a ,b))\n(defun f (x)\n  (twice-of x))", """\
+  Error while parsing arguments to DEFMACRO TWICE-OF:
+    too few elements in
+      (X)
+    to satisfy lambda list
+      (A B):
+    exactly 2 expected, but got 1
+  at plan.lisp:4:3
+      (twice-of x))
+      ^"""),
+    ("(defmacro broken-one (a)\n  `(list ,a ,(car 5)))\n(defun f (x)\n  (broken-one x))", """\
+  The value
+    5
+  is not of type
+    LIST
+  when binding LIST
+  at plan.lisp:2:14
+      `(list ,a ,(car 5)))
+                 ^
+  in the expansion of the macro call at plan.lisp:4:3
+      (broken-one x))
+      ^"""),
+    ("(defmacro misspelt (form)\n  `(list ,form ,fom))\n(misspelt 1)", """\
+  The variable FOM is unbound.
+  at plan.lisp:2:17
+      `(list ,form ,fom))
+                    ^
+  in the expansion of the macro call at plan.lisp:3:1
+    (misspelt 1)
+    ^"""),
+    ("(macrolet ((m (x)\n             (car x)))\n  (m 7))", """\
+  The value
+    7
+  is not of type
+    LIST
+  when binding LIST
+  at plan.lisp:2:14
+                 (car x)))
+                 ^
+  in the expansion of the macro call at plan.lisp:3:3
+      (m 7))
+      ^"""),
+]
+COMPILATION = [
+    ("(defun f x\n  x)", """\
+  The lambda list X is malformed: the parameters stand in a list.
+  at plan.lisp:1:1
+    (defun f x
+    ^"""),
+    ("(defun f ()\n  (list 1\n    (return-from g 2)))", """\
+  return for unknown block: G
+  at plan.lisp:3:5
+        (return-from g 2)))
+        ^"""),
+    ("(defun f ()\n  (let ((x 1))\n    ((g x) 2)))", """\
+  (G X) cannot be called: the head of a form must be a symbol or a lambda expression.
+  at plan.lisp:3:5
+        ((g x) 2)))
+        ^"""),
+]
+RUNNING = [
+    ("(defvar *speed-limit* 3)\n(defun f ()\n  (list 1\n    (+ 2 speed-limit)))\n(f)", """\
+  The variable SPEED-LIMIT is unbound.
+  at plan.lisp:4:10
+        (+ 2 speed-limit)))
+             ^
+  There is a variable *SPEED-LIMIT*, with stars."""),
+    ("(let ((x 1)\n      (y no-such-variable))\n  (list x y))", """\
+  The variable NO-SUCH-VARIABLE is unbound.
+  at plan.lisp:2:10
+          (y no-such-variable))
+             ^"""),
+    ("(cond\n  ((evenp 3) 1)\n  (t (list no-such-variable)))", """\
+  The variable NO-SUCH-VARIABLE is unbound.
+  at plan.lisp:3:12
+      (t (list no-such-variable)))
+               ^"""),
+    ("(defun f ()\n  (prnit 1))\n(f)", """\
+  The function COMMON-LISP-USER::PRNIT is undefined.
+  at plan.lisp:2:3
+      (prnit 1))
+      ^
+  Did you mean PRINT?"""),
+    ('(error "speed ~a of ~a" 1)', """\
+  speed ~a of ~a
+  (Its report could not be made: error in FORMAT: No more arguments speed ~a of ~a ^)
+  at plan.lisp:1:1
+    (error "speed ~a of ~a" 1)
+    ^"""),
+]
+
+
+@pytest.fixture
+def shown(session, tmp_path, monkeypatch):
+    """What is shown of the error of a file with this text."""
+    monkeypatch.chdir(tmp_path)
+    session.package = "COMMON-LISP-USER"
+    monkeypatch.setattr(conditions, "_debugger", signalled_here)
+
+    def load(text):
+        (tmp_path / "plan.lisp").write_text(text)
+        with pytest.raises((Condition, Exception)) as caught:
+            session.evaluate_text('(load "plan.lisp")')
+        return explanation(condition_of(caught.value))
+
+    return load
+
+
+@pytest.mark.parametrize(("text", "expected"), [*READING, *EXPANSION, *COMPILATION, *RUNNING])
+def test_an_error_in_a_file(shown, text, expected):
+    assert shown(text) == expected
