@@ -79,6 +79,17 @@ def test_what_the_names_do(values, form, value):
     assert values(form.replace("(a:", "(alexandria:").replace("'a:", "'alexandria:")) == value
 
 
+@pytest.mark.parametrize("form, value", [
+    ("(alexandria-2:line-up-first 5 (+ 20) / (+ 40))", "1001/25"), ("(alexandria-2:line-up-last 5 (- 20) (list 1))", "(1 15)"),
+    ("(alexandria-2:subseq* \"abc\" 1 9)", '"bc"'), ("(alexandria-2:row-major-index '(4 3 2 1) 3 2 1 0)", "23"),
+    ("(alexandria-2:rmajor-to-indices '(4 3 2 1) 23)", "(3 2 1 0)"), ("(alexandria-2:dim-in-bounds-p '(2 2) 0 2)", "NIL"),
+    ("(alexandria-2:delete-from-plist* (list :a 1 :b 2 :c 3) :a :c)", "(:B 2) ((:C . 3) (:A . 1))"),
+    ("(alexandria-2:clamp 3 1 2)", "2"),
+])
+def test_the_second_version(values, form, value):
+    assert values(form) == value
+
+
 @pytest.mark.parametrize("form, text", [
     ("(alexandria:eswitch (5) (4 1))", "No keys match in ESWITCH. Value: 5, tested with EQL."),
     ("(alexandria:required-argument :x)", "Required argument :X missing."),

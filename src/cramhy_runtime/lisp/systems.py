@@ -72,7 +72,8 @@ def search_folders():
 
 LIBRARIES = Path(__file__).parents[1] / "libraries"
 """The libraries that come with cramhy, each a folder with a ``.asd``; they are loaded when somebody asks for them."""
-LIBRARY_PACKAGES = {"ALEXANDRIA": "alexandria", "ALEXANDRIA-1": "alexandria", "LISP-UNIT": "lisp-unit",
+LIBRARY_PACKAGES = {"ALEXANDRIA": "alexandria", "ALEXANDRIA-1": "alexandria", "ALEXANDRIA-2": "alexandria",
+                    "LISP-UNIT": "lisp-unit",
                     "SPLIT-SEQUENCE": "split-sequence", "CL-UTILITIES": "cl-utilities",
                     "CRAM-MATH": "cram-math", "CMA": "cram-math",
                     "FIVEAM": "fiveam", "5AM": "fiveam", "IT.BESE.FIVEAM": "fiveam"}

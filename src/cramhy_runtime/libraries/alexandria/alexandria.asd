@@ -9,4 +9,5 @@
                (:file "lists")
                (:file "sequences")
                (:file "numbers")
-               (:file "tables-and-files")))
+               (:file "tables-and-files")
+               (:file "alexandria-2")))
