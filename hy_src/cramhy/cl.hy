@@ -373,14 +373,23 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (for [#(type #* _) (elements bindings)] (mention-type type))
   `(%handler-bind (list ~@(lfor #(type function) (elements bindings) `(list (quote ~type) ~function))) (lambda [] ~@body)))
 
+(defn plain-variables? [variables]
+  "Whether the lambda list of a clause has no variable, or one."
+  (or (is variables None)
+      (and (listp variables) (is variables.cdr None) (isinstance variables.car LispSymbol)
+           (not (.startswith (. variables.car name) "&")))))
+
 (defoperator handler-case [form #* clauses]
   (setv no-error (lfor clause clauses :if (is clause.car (sym ":NO-ERROR")) clause))
   (setv handlers (lfor clause clauses :if (is-not clause.car (sym ":NO-ERROR")) (handler-function clause)))
-  `(%handler-case (list ~@handlers) (lambda [] ~form)
-                  ~(if no-error `(lambda ~@(. (get no-error 0) cdr)) None)))
+  (if (and clauses (not no-error) (all (gfor clause clauses (plain-variables? clause.cdr.car))))
+      `(%catching ~(list-from (lfor clause clauses clause.car)) ~form ~@(lfor clause clauses clause.cdr))
+      `(%handler-case (list ~@handlers) (lambda [] ~form)
+                      ~(if no-error `(lambda ~@(. (get no-error 0) cdr)) None))))
 
 (defoperator ignore-errors [#* body]
-  `(%ignore-errors (lambda [] ~@body)))
+  (setv condition (gensym "CONDITION"))
+  `(handler-case (progn ~@body) (error [~condition] (values nil ~condition))))
 
 (defn restart-clause [clause]
   "A clause (name lambda-list [:report r] [:interactive i] [:test t] . body) of `restart-case`."

@@ -187,3 +187,35 @@ def test_what_stands_in_place_of_a_call_means_the_call(session, program, wanted)
 def test_both_operands_are_evaluated_once(session):
     program = "(let ((n 0)) (flet ((f () (incf n) 1.5) (g () (incf n) 2)) (list (* (f) (f)) (* (f) (g)) (* (g) (f)) (- (f) (g)) n)))"
     assert answer(session, program) == "(2.25 3.0 3.0 -0.5 8)"
+
+
+@pytest.mark.parametrize(("program", "wanted"), [
+    ("(handler-case (car 5) (type-error (c) (list :te (type-error-datum c))) (error () :e))", "(:TE 5)"),
+    ("(handler-case (error \"x\") (warning () :w) (error () :e))", ":E"),
+    ("(handler-case (values 1 2) (error () :e))", "1 2"),
+    ("(handler-case (error \"x\") (error () (values 3 4)))", "3 4"),
+    ("(multiple-value-list (ignore-errors 1))", "(1)"),
+    ("(let ((r (multiple-value-list (ignore-errors (error \"x\"))))) (list (car r) (typep (cadr r) 'simple-error)))", "(NIL T)"),
+    ("(+ 1 (handler-case (error \"x\") (error () (values 3 4))))", "4"),
+    # the handlers are not in force in a clause, nor in the handlers of an outer form
+    ("(handler-case (handler-case (error \"x\") (error () (error \"y\"))) (error (c) (princ-to-string c)))", "\"y\""),
+    ("(handler-case (handler-bind ((error (lambda (c) (declare (ignore c)) (error \"inner\")))) (error \"x\")) "
+     "(error (c) (princ-to-string c)))", "\"inner\""),
+    # exits, cleanup and variables
+    ("(let ((n 0)) (dotimes (i 5 n) (handler-case (if (oddp i) (error \"x\") (incf n)) (error () (incf n 10)))))", "23"),
+    ("(block b (dotimes (i 5) (handler-case (if (= i 2) (return-from b i) (error \"x\")) (error () nil))) :end)", "2"),
+    ("(block b (handler-case (error \"x\") (error () (return-from b :left))) :end)", ":LEFT"),
+    ("(let ((r nil)) (handler-case (unwind-protect (error \"x\") (push 1 r)) (error () (push 2 r))) r)", "(2 1)"),
+    ("(let ((fs nil)) (dotimes (i 3) (handler-case (error \"~a\" i) (error (c) (push (lambda () (princ-to-string c)) fs)))) "
+     "(mapcar #'funcall fs))", "(\"2\" \"1\" \"0\")"),
+    ("(let ((fs nil)) (dotimes (i 2) (handler-case (error \"~a\" i) (error (c) (push (lambda () (setq c (list c))) fs)))) "
+     "(mapcar (lambda (f) (length (funcall f))) fs))", "(1 1)"),
+    ("(labels ((f (n) (handler-case (if (= n 0) (error \"x\") (f (- n 1))) (error (c) (if (= n 3) :three (error c)))))) (f 5))", ":THREE"),
+    ("(handler-case (signal 'condition) (error () :e))", "NIL"),
+    ("(handler-case (let ((*print-base* 2)) (error \"x\")) (error () *print-base*))", "10"),
+    ("(let ((s 0)) (dolist (a '(1 2)) (dolist (b '(1 2)) (dolist (c '(1 2)) (dolist (d '(1 2)) (dolist (e '(1 2)) (dolist (f '(1 2)) "
+     "(dolist (g '(1 2)) (handler-case (handler-case (if (= a b c d e f g) (error \"x\") (incf s)) (type-error () 5)) "
+     "(error () (incf s 100))))))))))  s)", "326"),
+])
+def test_handler_case_in_place(session, program, wanted):
+    assert answer(session, program) == wanted

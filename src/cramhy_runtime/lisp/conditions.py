@@ -17,10 +17,12 @@ from __future__ import annotations
 
 import functools
 
+from functools import partial
+
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .data import Symbol, UNBOUND, truth
-from .dynamic import binding
+from .dynamic import bind, binding
 from .late import late
 from .packages import CURRENT, find_package_or_error, is_symbol, printed, sym
 
@@ -119,6 +121,49 @@ class HandlerExit(BaseException):
         self.token, self.index, self.condition = token, index, condition
 
 
+class Case:
+    """The handlers of a ``handler-case`` that was compiled in place, for one run of it; the token of its exit.
+
+    ``specifiers``: the list of its clauses' types. ``index``: which clause was chosen.
+    """
+
+    __slots__ = ("specifiers", "index")
+
+    def __init__(self, specifiers):
+        self.specifiers = specifiers
+
+    def __iter__(self):
+        index, cell = 0, self.specifiers
+        while cell is not None:
+            yield cell.car, partial(self.choose, index)
+            index, cell = index + 1, cell.cdr
+
+    def choose(self, index, condition):
+        self.index = index
+        raise HandlerExit(self, index, condition)
+
+
+def enter_case(specifiers):
+    """Put the handlers of a ``handler-case`` in force; they are undone by `dynamic.unbind`."""
+    case = Case(specifiers)
+    bind(_handlers, (case, _handlers.value))
+    return case
+
+
+def foreign_case(exception, case):
+    """Offer an exception of foreign code to the ``case`` that it passes, and let it go on."""
+    if not isinstance(exception, types.Condition):
+        _offer(from_python(exception), case, _handlers.value[1])
+    raise exception
+
+
+def caught(exit_, case):
+    """The condition for which ``case`` was left; any other exit goes on."""
+    if exit_.token is not case:
+        raise exit_
+    return exit_.condition
+
+
 def handler_case(clauses, thunk, no_error=None):
     """Call ``thunk``; on a condition of a clause's type unwind, and return what the clause's function returns for it.
 
@@ -146,13 +191,6 @@ def handler_case(clauses, thunk, no_error=None):
 
         return no_error(*all_values(result))
     return clauses[chosen.index][1](chosen.condition)
-
-
-def ignore_errors(thunk):
-    """``ignore-errors``: the values of ``thunk``, or nil and the error."""
-    from .data import MultipleValues
-
-    return handler_case([(types.Error, lambda condition: MultipleValues((None, condition)))], thunk)
 
 
 # --------------------------------------------------------------------------------------------------------------- signalling

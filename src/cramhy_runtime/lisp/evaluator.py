@@ -79,6 +79,9 @@ class Unit:
                 return compile(compiler().flatten(tree), self.filename, "exec")
         except RecursionError:
             pass
+        except SyntaxError as problem:  # "too many statically nested blocks"
+            if "nested" not in str(problem):
+                raise
         return too_deep()
 
     def compile(self, form):

@@ -95,10 +95,6 @@ def handler_case(clauses, thunk, no_error):
     return conditions.handler_case([(clause.car, clause.cdr.car) for clause in clauses or ()], thunk, no_error)
 
 
-def ignore_errors(thunk):
-    return conditions.ignore_errors(thunk)
-
-
 def restart_report(report):
     """The report of a restart: a string, or a function of a stream made into one that gives the text."""
     if report is None or isinstance(report, str):

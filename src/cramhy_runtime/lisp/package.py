@@ -37,7 +37,7 @@ HELPERS = {
     "places_in_source": "source-position",
     "places": "define-modifier define-setf-function define-setf-form define-expander",
     "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
-        handler-bind handler-case ignore-errors restart-report restart-case restart-bind with-simple-restart
+        handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
         signal-with-restarts with-condition-restarts hash-table-iterator
         put-property remove-property next-method-exists""",
     "package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",

@@ -23,6 +23,7 @@ class FunctionScope:
         self.parent = parent
         self.names = parent.names if parent else (names if names is not None else {})
         self.loop_depth = 0
+        self.catching_depth = 0
         self.nonlocals = set()
         self.exits_set = 0  # how many statements that leave a loop for an outer one have been generated
         self.frozen = {}  # variables of the parent that must be captured by value (see Variable.fresh)

@@ -15,6 +15,9 @@ from .destinations import EFFECT, NONE, TRUE, VALUES
 from .loop_shapes import counting, loop_of
 
 
+DEEP = 5
+
+
 class Frame:
     """A Python loop around the code being generated.
 
@@ -136,7 +139,9 @@ class ExitGenerator:
         """The loop itself."""
         tagbody = node.tagbody
         statements = [item for segment in node.segments[loop.first:loop.last + 1] for item in segment]
-        found = counting(statements, tagbody, loop.first, end[1], self.scope) if loop.first == loop.last else None
+        found = None
+        if loop.first == loop.last and len(self.frames) < DEEP:
+            found = counting(statements, tagbody, loop.first, end[1], self.scope)
         frame = Frame(breaks=end, again=(tagbody, loop.first))
         self.frames.append(frame)
         if found is not None:
@@ -161,13 +166,15 @@ class ExitGenerator:
 
         body, _ = self.captured(turn)
         self.frames.pop()
-        self.out.append(self.ticking(body))
+        self.out.append(self.ticking(body, len(self.frames)))
         self.effects += 1
         self.continue_exits(frame)
 
     @staticmethod
-    def ticking(body):
-        """An endless loop whose turns count."""
+    def ticking(body, depth):
+        """An endless loop whose turns count, inside ``depth`` others: Python nests no more than 20 statements."""
+        if depth >= DEEP:
+            return expression(word("while"), TRUE, expression(word("Lcheckpoint")), *body)
         ticks = expression(word("."), word("Lbudget"), word("ticks"))
         refill = expression(word("else"), expression(word("Lrefill")), expression(word("continue")))
         return expression(word("while"), TRUE, expression(word("for"), List([word("Ltick"), ticks]), *(body or [NONE]), refill),
@@ -205,7 +212,7 @@ class ExitGenerator:
                                 self.call("block_value", word(exit_name), self.reference(tagbody.variable)))
             parts = [expression(word("try"), *parts, expression(
                 word("except"), List([word(exit_name), word("LBlockExit")]), target))]
-        loop = self.ticking(parts)
+        loop = self.ticking(parts, len(self.frames))
         if tagbody.escapes:
             end = self.call("end_block", self.reference(tagbody.variable))
             self.emit(word("try"), loop, expression(word("finally"), end))
@@ -225,6 +232,29 @@ class ExitGenerator:
             self.assign(tagbody.counter, node.index)
             self.jump(tagbody)
         return NONE if destination.kind == "value" else None
+
+    def Catching(self, node, destination):
+        return self.by_statements(node, destination, lambda inner: self.catching(node, inner))
+
+    def catching(self, node, destination):
+        """``handler-case``: the handlers are in force while the form runs; the clause runs when they are not any more."""
+        cluster, foreign, caught = word(self.temporary("Lcase")), word(self.temporary("Le")), word(self.temporary("Le"))
+        self.emit(word("setv"), cluster, self.call("enter_case", self.constant(node.types)))
+        guarded, _ = self.captured(lambda: self.gen(node.form, destination))
+        inner = expression(
+            word("try"), *(guarded or [NONE]),
+            expression(word("except"), List([foreign, word("LException")]), self.call("foreign_case", foreign, cluster)),
+            expression(word("finally"), self.call("unbind", 1)))
+        condition = word(node.condition.name)
+        handler = [expression(word("setv"), condition, self.call("caught", caught, cluster))]
+        index = expression(word("."), cluster, word("index"))
+        for number, clause in enumerate(node.clauses):
+            body, _ = self.captured(lambda clause=clause: self.gen(clause, destination))
+            if len(node.clauses) == 1:
+                handler += body
+            else:
+                handler.append(expression(word("when"), expression(word("="), index, number), *(body or [NONE])))
+        self.emit(word("try"), inner, expression(word("except"), List([caught, word("LHandlerExit")]), *handler))
 
     def UnwindProtect(self, node, destination):
         def produce(inner):

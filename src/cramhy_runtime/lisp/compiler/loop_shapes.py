@@ -163,7 +163,7 @@ def _reads(statements, variable):
     return sum(item.__class__ is nodes.LocalVariable and item.variable is variable for item in walk(statements))
 
 
-_CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, nodes.Support, nodes.UnwindProtect)
+_CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, nodes.Support, nodes.UnwindProtect, nodes.Catching)
 
 
 def _quick(statements):

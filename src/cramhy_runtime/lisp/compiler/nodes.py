@@ -218,6 +218,16 @@ class UnwindProtect(Node):
 
 
 @dataclass
+class Catching(Node):
+    """``handler-case``: type specifiers (a Lisp list), the form, a variable for the condition, and a node for each clause."""
+
+    types: object
+    form: Node
+    condition: object
+    clauses: list
+
+
+@dataclass
 class MultipleValueBind(Node):
     variables: list
     values: Node

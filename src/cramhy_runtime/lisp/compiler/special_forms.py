@@ -16,11 +16,12 @@ from ..packages import COMMON_LISP, is_symbol, sym
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
-from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue, Checked, Constant, FunctionReference, Functions, Go, If,
-                    Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom, Support,
-                    TagbodyNode, UnwindProtect)
+from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue, Catching, Checked, Constant, FunctionReference,
+                    Functions, Go, If, Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom,
+                    Support, TagbodyNode, UnwindProtect)
 
 PROGN, FUNCTION, MACROLET = sym("PROGN"), sym("FUNCTION"), sym("MACROLET")
+FUNCALL = sym("FUNCALL")
 
 
 def special(name):
@@ -427,6 +428,27 @@ def _multiple_value_bind(analyzer, form, env):
     if checks:
         body_node = progn([*checks, body_node])
     return _bound(body_node, MultipleValueBind(variables, node, body_node))
+
+
+@special("CRAMHY::CATCHING")
+def _catching(analyzer, form, env):
+    """``(catching types form (variables . body)...)``: what most ``handler-case`` forms are."""
+    types, guarded, *clauses = _parts(analyzer, form, 2)
+    if env.scope.loop_depth + env.scope.catching_depth > 3:  # Python nests no more than 20 statements, but functions at will
+        guarded = lisp_list(FUNCALL, lisp_list(LAMBDA, None, guarded))
+    env.scope.catching_depth += 1
+    node = analyzer.form(guarded, env)
+    env.scope.catching_depth -= 1
+    inner = env.child()
+    symbol = gensym("CONDITION")
+    condition = inner.variables[symbol] = Variable(symbol, env.scope)
+    bodies = []
+    for clause in clauses:
+        bindings = lisp_list(lisp_list(clause.car.car, symbol)) if clause.car is not None else None
+        bodies.append(analyzer.form(Cons(sym("LET"), Cons(bindings, clause.cdr)), inner))
+    catching = Catching(types, node, condition, bodies)
+    catching.single = node.single and all(body.single for body in bodies)
+    return catching
 
 
 @special("MULTIPLE-VALUE-LIST")
