@@ -17,8 +17,6 @@ from __future__ import annotations
 
 import functools
 
-from functools import partial
-
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .data import Symbol, UNBOUND, truth
@@ -93,6 +91,9 @@ def _break_on_signal(condition):
 
 def _offer(condition, cluster, outer):
     # A handler runs with only the handlers outside its own cluster in force (ANSI 9.1.4).
+    if cluster.__class__ is Case:
+        cluster.offer(condition)
+        return
     for specifier, handler in cluster:
         if matches(condition, specifier):
             with binding(_handlers, outer):
@@ -132,15 +133,14 @@ class Case:
     def __init__(self, specifiers):
         self.specifiers = specifiers
 
-    def __iter__(self):
+    def offer(self, condition):
+        """Leave the form if ``condition`` is of the type of a clause."""
         index, cell = 0, self.specifiers
         while cell is not None:
-            yield cell.car, partial(self.choose, index)
+            if matches(condition, cell.car):
+                self.index = index
+                raise HandlerExit(self, index, condition)
             index, cell = index + 1, cell.cdr
-
-    def choose(self, index, condition):
-        self.index = index
-        raise HandlerExit(self, index, condition)
 
 
 def enter_case(specifiers):
@@ -191,6 +191,13 @@ def handler_case(clauses, thunk, no_error=None):
 
         return no_error(*all_values(result))
     return clauses[chosen.index][1](chosen.condition)
+
+
+def ignore_errors(thunk):
+    """``ignore-errors`` for Python rooms: the values of ``thunk``, or nil and the error."""
+    from .data import MultipleValues
+
+    return handler_case([(types.Error, lambda condition: MultipleValues((None, condition)))], thunk)
 
 
 # --------------------------------------------------------------------------------------------------------------- signalling
