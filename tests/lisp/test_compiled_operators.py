@@ -219,3 +219,21 @@ def test_both_operands_are_evaluated_once(session):
 ])
 def test_handler_case_in_place(session, program, wanted):
     assert answer(session, program) == wanted
+
+
+@pytest.mark.parametrize(("program", "wanted"), [
+    # sums that are known to be numbers, of whatever kind
+    ("(funcall (lambda (l) (let ((s 0)) (dolist (x l s) (setq s (+ s (* x x)))))) '(1 1/2 1/2 0.5))", "1.75"),
+    ("(funcall (lambda (l) (let ((s 1/2)) (dolist (x l s) (setq s (+ s x))))) '(1/2))", "1"),
+    ("(funcall (lambda (l) (let ((s 0)) (dolist (x l s) (setq s (- s x))))) '(1 2.5d0 1))", "-4.5d0"),
+    ("(funcall (lambda (l) (let ((s 0)) (dolist (x l s) (setq s (+ s x))))) '(1 t))", "TYPE-ERROR: The value T is not of type NUMBER"),
+    ("(funcall (lambda (l) (let ((s 0)) (dolist (x l s) (setq s (+ x s))))) '(1 nil))", "TYPE-ERROR: The value NIL is not of type NUMBER"),
+    ("(funcall (lambda (l) (loop for x in l sum x into s maximize x into m finally (return (list s m)))) '(1 5/2 2))", "(11/2 5/2)"),
+    ("(let ((s 1)) (dotimes (i 400) (setq s (* s 10))) (handler-case (funcall (lambda (x) (+ s x)) 1.5) (error () :error)))", ":ERROR"),
+    ("(funcall (lambda (a b) (list (- a b) (+ a b) (< a b))) 3 4.0)", "(-1.0 7.0 T)"),
+    ("(funcall (lambda (a b) (list (- a b) (+ a b) (< a b))) 1/2 3/2)", "(-1 2 T)"),
+    ("(funcall (lambda (a b) (flet ((f () (setq a 10))) (list (- a 1) (f) (- a 1) (* a b)))) 1 2)", "(0 10 9 20)"),
+    ("(let ((x 0)) (if (+ x (funcall (lambda () 0))) :true :false))", ":TRUE"),
+])
+def test_sums_of_numbers(session, program, wanted):
+    assert answer(session, program) == wanted

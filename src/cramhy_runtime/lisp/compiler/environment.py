@@ -64,7 +64,7 @@ class Variable:
         self.captured = False
         self.assigned = False
         self.used = self.ignored = self.ignorable = False
-        self.reads = self.writes = 0  # these and the next are found by ``facts.py``
+        self.reads = self.writes = self.operand_uses = 0  # these and the next are found by ``facts.py``
         self.values = []
         self.kind = None
         self.type = None  # the declared type, which assigned values are checked for

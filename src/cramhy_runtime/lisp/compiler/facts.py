@@ -1,9 +1,10 @@
 """What is known about variables before code is made: how often each is read and assigned, and the kind of its values.
 
 A variable that only ever gets integers needs no test before ``+``: the *kind* of a variable is "int", "float" or "boolean" when
-all forms that give it a value are of that kind, and ``ANY`` otherwise. Variables may depend on each other and on themselves
-(``(setq s (+ s j))``), so the kinds are the least solution: all begin as ``NONE_YET`` and are widened until nothing changes.
-Parameters are ``ANY``. "float" is the plain float that stands for a single-float, never a `DoubleFloat`.
+all forms that give it a value are of that kind, "number" when they are numbers of any kinds, and ``ANY`` otherwise. Variables may
+depend on each other and on themselves (``(setq s (+ s j))``), so the kinds are the least solution: all begin as ``NONE_YET`` and
+are widened until nothing changes. Parameters are ``ANY``. "float" is the plain float that stands for a single-float, never a
+`DoubleFloat`.
 """
 
 from __future__ import annotations
@@ -16,8 +17,10 @@ from . import nodes
 from .declared_types import kind_of_type
 
 NONE_YET, ANY = "none yet", None
+NUMBERS = {"int", "float", "number"}
 
 PLUS, MINUS, TIMES, DIVIDE, ADD_ONE, SUBTRACT_ONE = map(sym, "+ - * / 1+ 1-".split())
+TESTED = {sym(name) for name in "+ - * 1+ 1- < > <= >= =".split()}
 _STEPS = {ADD_ONE, SUBTRACT_ONE}
 _OPERATORS = {PLUS, MINUS, TIMES}
 _REST = {sym("MOD"), sym("REM")}
@@ -70,6 +73,10 @@ def study(root):
         elif kind is nodes.SetLocal:
             node.variable.writes += 1
             node.variable.values.append(node.value)
+        elif kind is nodes.Call and node.symbol in TESTED:
+            for argument in node.arguments:
+                if argument.__class__ is nodes.LocalVariable:
+                    argument.variable.operand_uses += 1
         elif kind is nodes.Let:
             for variable, value in node.bindings:
                 if not isinstance(variable, Symbol):
@@ -93,7 +100,9 @@ def join(one, other):
     """The kind of a value that is of the kind ``one`` or ``other``."""
     if one == other or other == NONE_YET:
         return one
-    return other if one == NONE_YET else ANY
+    if one == NONE_YET:
+        return other
+    return "number" if one in NUMBERS and other in NUMBERS else ANY
 
 
 def kind_of(node):
@@ -146,5 +155,5 @@ def _call_kind(node):
     if all(kind in ("int", "float") for kind in kinds):
         if "float" in kinds:
             return "float"
-        return "int" if symbol is not DIVIDE else ANY
-    return ANY
+        return "int" if symbol is not DIVIDE else "number"
+    return "number"  # of what is none these functions make an error

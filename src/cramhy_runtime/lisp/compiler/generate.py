@@ -16,7 +16,7 @@ from . import core, nodes
 from .constants import Constants, float_model
 from .core import List, expression, word
 from .destinations import EFFECT, NONE, TRUE, VALUE, VALUES, Destination
-from .facts import study, walk
+from .facts import NUMBERS, study, walk
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
@@ -38,6 +38,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
         self.scope = None
         self.destinations = {}
         self.jump_codes = {}
+        self.class_names = {}  # names of parameters → names of variables that hold their classes
         self.before = []  # statements that must stand before the definition of the function being generated
 
     # ------------------------------------------------------------------------------------------------------------- output
@@ -417,7 +418,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             return expression(word("is-not"), self.value(node), NONE)
         if isinstance(node, nodes.LocalVariable):
             kind, value = node.variable.kind, self.reference(node.variable)
-            if kind in ("int", "float"):
+            if kind in NUMBERS:
                 return TRUE
             true = expression(word("is-not"), value, NONE)
             return true if kind == "boolean" else expression(word("and"), true, expression(word("is-not"), value, word("False")))

@@ -11,6 +11,7 @@ from ..faces import python_name
 from ..packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
+from .generate_operators import class_of
 from .destinations import NONE, RETURN, TRUE, Destination
 
 
@@ -30,8 +31,15 @@ class FunctionGenerator:
         self.out, self.frames, self.scope = [], [], node.scope
         outer_before, self.before = self.before, []
         parameters = self.parameters(node)
+        outer_classes, self.class_names = self.class_names, {}
+        for variable in node.parameters.required:
+            if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.kind or variable.proven):
+                noted = self.temporary("Lk")
+                self.assign(noted, class_of(word(variable.name)))
+                self.class_names[variable.name] = word(noted)
         before, self.before = self.before, outer_before
         self.gen(node.body, RETURN)
+        self.class_names = outer_classes
         statements = self.out
         scope = node.scope
         self.out, self.frames, self.scope = saved

@@ -47,6 +47,15 @@ def nameable(model):
     return model.__class__ in (Symbol, int, float)
 
 
+def unproven(kinds):
+    """``kinds``; to be a number of any kind helps only where sums are made."""
+    return [None if kind == "number" else kind for kind in kinds]
+
+
+def known_kind(variable):
+    return variable.proven or variable.kind
+
+
 def all_of(classes, wanted):
     """A test that all ``classes`` are ``wanted``."""
     tests = [expression(IS, each, wanted) for each in classes]
@@ -55,6 +64,16 @@ def all_of(classes, wanted):
 
 class OperatorGenerator:
     """The part of the `Generator` that makes expressions of calls of standard functions."""
+
+    def class_of(self, model):
+        """The class of the value of ``model``; that of a parameter that is often an operand was noted on entry."""
+        noted = self.class_names.get(model) if model.__class__ is Symbol else None
+        return class_of(model) if noted is None else noted
+
+    def noted_class(self, model):
+        """(first use, later use) of the class of the value of ``model``."""
+        known = self.class_of(model)
+        return (known, known) if known.__class__ is Symbol else (expression(SETX, CLASSES, known), CLASSES)
 
     def operands(self, arguments):
         """(first uses, later uses) of the values of ``arguments``: an expression that is not simple is named by its first use.
@@ -88,10 +107,10 @@ class OperatorGenerator:
         slow = self.positioned(self.call("checked", later, self.literal(node.type), *place), node)
         wanted = INT if kind == "int" else FLOAT
         if destination.kind == "effect":
-            self.emit(word("when"), expression(IS_NOT, class_of(first), wanted), slow)
+            self.emit(word("when"), expression(IS_NOT, self.class_of(first), wanted), slow)
             self.effects += 1
             return None
-        return self.finish(expression(IF, expression(IS, class_of(first), wanted), later, slow), node, destination)
+        return self.finish(expression(IF, expression(IS, self.class_of(first), wanted), later, slow), node, destination)
 
     def arithmetic(self, node, symbol, arguments):
         """The expression of a sum, difference, product or quotient of two operands."""
@@ -100,6 +119,9 @@ class OperatorGenerator:
             return fused
         kinds = [kind_of(argument) for argument in arguments]
         first, later = self.operands(arguments)
+        if symbol is not DIVIDE and symbol is not TIMES and "number" in kinds and {*kinds} <= {None, "number"}:
+            return self.sum_of_numbers(node, symbol, kinds, first, later)
+        kinds = unproven(kinds)
         slow = self.positioned(expression(ARITHMETIC[symbol], *later), node)
         if symbol is DIVIDE:
             return self.quotient(kinds, first, later, slow)
@@ -124,9 +146,26 @@ class OperatorGenerator:
         if symbol is not TIMES:
             return expression(IF, self.both(shared), quick, slow)
         one, other = shared
+        again = one if other is None and one.__class__ is Symbol else CLASSES
         either = expression(IF, expression(IS, one if other is None else CLASSES, INT), quick,
-                            self.finite(expression(IS, CLASSES, FLOAT), quick, slow))
+                            self.finite(expression(IS, again, FLOAT), quick, slow))
         return either if other is None else expression(IF, expression(IS, one, other), either, slow)
+
+    def sum_of_numbers(self, node, symbol, kinds, first, later):
+        """A sum or difference of which one operand surely is a number: with an integer or a float it needs no other test.
+
+        (A ratio plus an integer is never whole, and contagion to a float or a double is Python's too.)
+        """
+        if kinds[0] == "number" and nameable(first[0]):
+            tested, operands = first[1], later
+        elif kinds[1] == "number":
+            tested, operands = first[0], [later[0], first[1]]
+        else:
+            return self.positioned(expression(ARITHMETIC[symbol], *first), node)
+        noted, again = self.noted_class(tested)
+        test = expression(OR, expression(IS, noted, INT), expression(IS, again, FLOAT))
+        return expression(IF, test, expression(OPERATORS[symbol], *operands),
+                          self.positioned(expression(ARITHMETIC[symbol], *operands), node))
 
     @staticmethod
     def finite(guard, product, slow):
@@ -139,8 +178,7 @@ class OperatorGenerator:
         """The kinds that need no test; an operand that is yet to be evaluated takes part in the test, which evaluates it."""
         return [kind if nameable(model) else None for kind, model in zip(kinds, first)]
 
-    @staticmethod
-    def guard(first, later, kinds, wanted):
+    def guard(self, first, later, kinds, wanted):
         """A test that the operands of unknown kind are of the class ``wanted``; ``None`` when another one cannot be.
 
         Both operands are evaluated in it, whatever the class of the first.
@@ -148,29 +186,29 @@ class OperatorGenerator:
         tests = []
         for use, name, kind in zip(first, later, kinds):
             if kind is None:
-                tests.append(class_of(use))
+                tests.append(self.class_of(use))
             elif (kind == "int") is not (wanted is INT) and name.__class__ is not int:
                 return None
         return expression(IS, *tests, wanted)
 
-    @staticmethod
-    def shared_class(first, later):
+    def shared_class(self, first, later):
         """(the first operand's class, noted in ``Lc`` when all operands have been evaluated; the other's class or ``None``)."""
         names = [index for index, model in enumerate(later) if model.__class__ is Symbol]
         one = first[names[0]]
         if len(names) == 1 or later[names[0]] is later[names[1]]:
-            return expression(SETX, CLASSES, class_of(one)), None
+            return self.noted_class(one)[0], None
         other = first[names[1]]
         if other.__class__ is Symbol:
-            return expression(SETX, CLASSES, class_of(one)), class_of(other)
-        return class_of(one), expression(SETX, CLASSES, class_of(other))
+            return expression(SETX, CLASSES, self.class_of(one)), self.class_of(other)
+        return self.class_of(one), expression(SETX, CLASSES, self.class_of(other))
 
     @staticmethod
     def both(shared):
         """A test that all operands are integers or all are floats."""
         one, other = shared
         if other is None:
-            return expression(OR, expression(IS, one, INT), expression(IS, CLASSES, FLOAT))
+            again = one if one.__class__ is Symbol else CLASSES
+            return expression(OR, expression(IS, one, INT), expression(IS, again, FLOAT))
         return expression(AND, expression(IS, one, other), expression(OR, expression(IS, CLASSES, INT), expression(IS, CLASSES, FLOAT)))
 
     def quotient(self, kinds, first, later, slow):
@@ -222,7 +260,8 @@ class OperatorGenerator:
         parts = [tree(argument) for argument in arguments]
         if None in parts or len(operations) < 2 or not leaves or len(leaves) > 4:
             return None
-        kinds = {variable.kind for variable in leaves}
+        numbers = [self.class_of(name) for variable, name in leaves.items() if known_kind(variable) == "number"]
+        kinds = {*unproven(map(known_kind, leaves))}
         if kinds == {"int"} or not kinds <= {None, "int", "float"} or kinds >= {"int", "float"}:
             return None  # each operation is bare by itself, or none is
 
@@ -235,7 +274,7 @@ class OperatorGenerator:
 
         bare, generic = quick(symbol, parts), slow(symbol, node, parts)
         product = symbol is TIMES
-        unknown = [class_of(name) for variable, name in leaves.items() if variable.kind is None]
+        unknown = [self.class_of(name) for variable, name in leaves.items() if known_kind(variable) in (None, "number")]
         if kinds == {"float"}:
             return self.finite(TRUE, bare, generic) if product else bare
         if kinds >= {"int"}:
@@ -245,7 +284,8 @@ class OperatorGenerator:
             return self.finite(guard, bare, generic) if product else expression(IF, guard, bare, generic)
         if any(operator is TIMES for operator, _ in operations):  # of floats, most likely
             ints = expression(IF, all_of(unknown, INT), bare, generic)
-            floats = all_of(unknown, FLOAT)
+            certain = [each for each in unknown if each not in numbers]
+            floats = all_of(certain or unknown, FLOAT)  # what is a number becomes a float with them
             return self.finite(floats, bare, ints) if product else expression(IF, floats, bare, ints)
         noted = expression(SETX, CLASSES, unknown[0])
         alike = expression(IS, noted, *unknown[1:]) if unknown[1:] else None
@@ -256,7 +296,7 @@ class OperatorGenerator:
 
     def comparison(self, node, symbol, arguments):
         """The Python test of a comparison of two operands."""
-        kinds = [kind_of(argument) for argument in arguments]
+        kinds = unproven([kind_of(argument) for argument in arguments])
         first, later = self.operands(arguments)
         operator = COMPARISONS[symbol]
         if all(kind in ("int", "float") for kind in kinds):
@@ -267,9 +307,9 @@ class OperatorGenerator:
         kinds = self.tested(kinds, first)
         if None in kinds and {*kinds} != {None}:  # one of them is a number
             index = kinds.index(None)
-            noted = expression(SETX, CLASSES, class_of(first[index]))
+            noted, again = self.noted_class(first[index])
             wanted = (INT, FLOAT) if kinds[1 - index] == "int" else (FLOAT, INT)
-            test = expression(OR, expression(IS, noted, wanted[0]), expression(IS, CLASSES, wanted[1]))
+            test = expression(OR, expression(IS, noted, wanted[0]), expression(IS, again, wanted[1]))
         else:
             test = self.both(self.shared_class(first, later))
         return expression(IF, test, expression(operator, *later), slow)
@@ -292,18 +332,19 @@ class OperatorGenerator:
                     "one", later[0])), node), NONE)
                 if later[0].__class__ is not Symbol:
                     return None
-                noted = expression(SETX, CLASSES, class_of(first[0]))
-                test = expression(OR, expression(IS, noted, INT), expression(IS, CLASSES, FLOAT)) if symbol in SIGNS else expression(
-                    IS, class_of(first[0]), INT)
+                noted, again = self.noted_class(first[0])
+                test = expression(OR, expression(IS, noted, INT), expression(IS, again, FLOAT)) if symbol in SIGNS else expression(
+                    IS, self.class_of(first[0]), INT)
                 return expression(IF, test, quick, slow)
             if symbol is CONSP:
-                return expression(IS, class_of(self.value(arguments[0])), word("LCons"))
+                return expression(IS, self.class_of(self.value(arguments[0])), word("LCons"))
             if symbol is ATOM:
-                return expression(IS_NOT, class_of(self.value(arguments[0])), word("LCons"))
+                return expression(IS_NOT, self.class_of(self.value(arguments[0])), word("LCons"))
             if symbol is ENDP:
                 model, name = self.named(arguments[0])
                 slow = expression(IS_NOT, self.positioned(expression(word(self.constants.name("function", symbol)), name), node), NONE)
-                return expression(AND, expression(IS_NOT, class_of(model), word("LCons")), expression(OR, expression(IS, name, NONE), slow))
+                no_cons = expression(IS_NOT, class_of(model), word("LCons"))
+                return expression(AND, no_cons, expression(OR, expression(IS, name, NONE), slow))
         elif symbol in SAME and len(arguments) == 2:
             return self.sameness(arguments)
         return None
@@ -321,7 +362,7 @@ class OperatorGenerator:
                 first, later = self.named(arguments[1 - index])
                 if kind_of(arguments[1 - index]) == "int":
                     return expression(word("="), first, value)
-                return expression(AND, expression(IS, class_of(first), INT), expression(word("="), later, value))
+                return expression(AND, expression(IS, self.class_of(first), INT), expression(word("="), later, value))
             if value is True or value.__class__.__name__ in ("Symbol", "Keyword", "Character"):
                 return expression(IS, self.value(arguments[1 - index]), self.literal(value))
         return None
@@ -343,7 +384,7 @@ class OperatorGenerator:
             if symbol in PARTS:
                 model, name = self.named(arguments[0])
                 slow = self.positioned(expression(word(self.constants.name("function", symbol)), name), node)
-                return expression(IF, expression(IS, class_of(model), word("LCons")), expression(DOT, name, word(PARTS[symbol])), slow)
+                return expression(IF, expression(IS, self.class_of(model), word("LCons")), expression(DOT, name, word(PARTS[symbol])), slow)
             if symbol in KNOWN_PARTS:
                 return expression(DOT, self.value(arguments[0]), word(KNOWN_PARTS[symbol]))
         if symbol is CONS and count == 2:
@@ -362,7 +403,7 @@ class OperatorGenerator:
                     return expression(word("%"), *first)
                 if later[0].__class__ is Symbol:
                     slow = expression(word(self.constants.name("function", symbol)), self.call("one", later[0]), later[1])
-                    return expression(IF, expression(IS, class_of(first[0]), INT), expression(word("%"), *later),
+                    return expression(IF, expression(IS, self.class_of(first[0]), INT), expression(word("%"), *later),
                                       self.positioned(slow, node))
         return None
 
