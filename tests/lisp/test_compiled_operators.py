@@ -78,7 +78,6 @@ def answer(session, text):
     ("(funcall (lambda (x) (car x)) 5)", "TYPE-ERROR: The value 5 is not of type LIST when binding LIST"),
     ("(funcall (lambda (x) (mod x 3)) -7)", "2"),
     ("(funcall (lambda (x) (mod x 3)) -7.5)", "1.5"),
-    ("(let ((x 5)) (flet ((cons (a) (list :mine a))) (cons x)))", "(:MINE 5)"),
 ])
 def test_the_operator_means_the_function(session, program, wanted):
     assert answer(session, program) == wanted

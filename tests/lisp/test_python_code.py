@@ -24,7 +24,7 @@ PROGRAMS = """
 (labels ((f (n &optional (k 2) &key (z 1 zp)) (if (< n 1) (list k z zp) (f (- n 1) (1+ k) :z n)))) (f 3))
 (let ((fs (loop for i below 3 collect (let ((j i)) (lambda () (incf j)))))) (mapcar #'funcall fs))
 (multiple-value-bind (q r) (floor 17 5) (list q r))
-(flet ((when (x) (list x)) (cut (y) y)) (list (funcall #'cut 2)))
+(flet ((raise (x) (list x)) (cut (y) y)) (list (raise 1) (cut 2)))
 (let ((cut 1) (fn 2) (if 3)) (list cut fn if))
 (progv '(*print-base*) '(2) (prin1-to-string 5))
 (flet ((f (&rest r) r)) (apply #'f 1 '(2 3)))
