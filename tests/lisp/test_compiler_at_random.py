@@ -99,7 +99,8 @@ def programs(draw, names=Names(), depth=4):
             step = ("setq", "e", ("+", "e", 1))
             back = ("if", ("<", "e", draw(st.integers(0, 4))), ("go", "again"))
             onward = ("if", expression(), ("funcall", ("lambda", (), ("go", "end"))))
-            parts = (step, expression(), "again", step, expression(), back, onward, expression(), "end")
+            statement = ("progn", expression())  # a bare number would be a tag
+            parts = (step, statement, "again", step, ("progn", expression()), back, onward, ("progn", expression()), "end")
             return ("let", (("e", 0),), ("tagbody", *parts), "e")
 
 

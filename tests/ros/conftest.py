@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime import kernel
+from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp.packages import sym
 
 OUTPUT = sym("*STANDARD-OUTPUT*")
@@ -13,7 +13,7 @@ ERRORS = sym("*ERROR-OUTPUT*")
 def session():
     """A fresh kernel; the output of the test in a stream with the attribute ``text``."""
     kernel.start(clock="virtual")
-    import cramhy_runtime.image  # noqa: F401
+    image.boot()
     from cramhy_runtime.lisp.streams import StringOutputStream
     from cramhy_runtime.ros import node, utilities
 
