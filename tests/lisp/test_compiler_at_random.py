@@ -35,6 +35,9 @@ def programs(draw, names=Names(), depth=4):
     def body(names=names, most=3):
         return [expression(names) for _ in range(draw(st.integers(1, most)))]
 
+    def statements(names=names):  # of a tagbody, where bare numbers and symbols would be tags
+        return [("progn", form) for form in body(names)]
+
     simple = ["number"] + ["variable"] * 3 * bool(names.variables)
     if depth <= 0:
         kind = draw(st.sampled_from(simple))
@@ -65,13 +68,13 @@ def programs(draw, names=Names(), depth=4):
             return ("let*", ((new, expression()), ("d", expression(inner))), *body(inner.plus(variables=("d",))))
         case "dotimes":
             return ("dotimes", (new, draw(st.integers(0, 3)), expression(names.plus(variables=(new,), blocks=("nil",)))),
-                    *body(names.plus(variables=(new,), blocks=("nil",))))
+                    *statements(names.plus(variables=(new,), blocks=("nil",))))
         case "dolist":
-            return ("dolist", (new, ("list", *body())), *body(names.plus(variables=(new,), blocks=("nil",))))
+            return ("dolist", (new, ("list", *body())), *statements(names.plus(variables=(new,), blocks=("nil",))))
         case "do":
             inner = names.plus(variables=("i",), blocks=("nil",))
             counting = ("i", 0, ("setq", "k", ("+", "k", 1)))
-            return ("let", (("k", 0),), ("do", (counting,), ((">=", "k", 2), expression(inner)), *body(inner)), draw(programs(names, 0)))
+            return ("let", (("k", 0),), ("do", (counting,), ((">=", "k", 2), expression(inner)), *statements(inner)), draw(programs(names, 0)))
         case "block":
             name = draw(st.sampled_from("pq"))
             return ("block", name, *body(names.plus(blocks=(name,))))
@@ -99,8 +102,7 @@ def programs(draw, names=Names(), depth=4):
             step = ("setq", "e", ("+", "e", 1))
             back = ("if", ("<", "e", draw(st.integers(0, 4))), ("go", "again"))
             onward = ("if", expression(), ("funcall", ("lambda", (), ("go", "end"))))
-            statement = ("progn", expression())  # a bare number would be a tag
-            parts = (step, statement, "again", step, ("progn", expression()), back, onward, ("progn", expression()), "end")
+            parts = (step, *statements(), "again", step, *statements(), back, onward, *statements(), "end")
             return ("let", (("e", 0),), ("tagbody", *parts), "e")
 
 
