@@ -74,7 +74,8 @@ def programs(draw, names=Names(), depth=4):
         case "do":
             inner = names.plus(variables=("i",), blocks=("nil",))
             counting = ("i", 0, ("setq", "k", ("+", "k", 1)))
-            return ("let", (("k", 0),), ("do", (counting,), ((">=", "k", 2), expression(inner)), *statements(inner)), draw(programs(names, 0)))
+            end = ((">=", "k", 2), expression(inner))
+            return ("let", (("k", 0),), ("do", (counting,), end, *statements(inner)), draw(programs(names, 0)))
         case "block":
             name = draw(st.sampled_from("pq"))
             return ("block", name, *body(names.plus(blocks=(name,))))
