@@ -234,6 +234,11 @@ def test_local_functions_of_one_name_are_no_duplicates(lisp, tmp_path):
     assert lisp.said() == ""
 
 
+def test_the_last_clause_of_case_is_no_duplicate_of_the_key_t(lisp):
+    assert lisp.said("(defun which (x) (case x ((nil) 1) ((t) 2) (t 3)))") == ""
+    assert lisp.said("(defun other (x) (case x ((t) 1) ((t) 2) (otherwise 3)))").startswith("; caught STYLE-WARNING:\n;   Duplicate key T")
+
+
 def test_compile_returns_whether_there_were_warnings(lisp):
     def flags(form):
         return printed(lisp(f"(cdr (multiple-value-list (compile nil '{form})))"))[0]

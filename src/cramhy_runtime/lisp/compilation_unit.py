@@ -264,7 +264,8 @@ def duplicate_keys(operator, clauses):
     """Warn of keys that occur in two clauses of a ``case`` form: the second never applies."""
     seen = {}
     for clause in clauses:
-        keys = clause.car if isinstance(clause.car, Cons) else () if clause.car is None else (clause.car,)
+        bare = clause.car is None or operator == "CASE" and (clause.car is True or clause.car is sym("OTHERWISE"))  # these are no keys
+        keys = clause.car if isinstance(clause.car, Cons) else () if bare else (clause.car,)
         for key in keys:
             known = eql_key(key)
             if known in seen and seen[known] is not clause:
