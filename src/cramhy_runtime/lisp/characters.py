@@ -90,7 +90,7 @@ def name_char(name):
         else:
             try:
                 found = unicodedata.lookup(name.replace("_", " ")) if "_" in name or len(name) > 1 else None
-            except KeyError:
+            except (KeyError, UnicodeEncodeError):  # the latter of half a surrogate pair
                 return None
     return Character(found) if found is not None and len(found) == 1 else None
 

@@ -12,11 +12,12 @@ import re
 from . import tokens
 from .arithmetic import is_real
 from .backquote import COMMA, COMMA_KINDS, Comma
-from .conditions import Error, style_warn
+from .condition_types import condition_for
+from .conditions import Condition, Error, style_warn
 from .data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
 from .dynamic import special
 from .packages import KEYWORD, is_symbol, keyword, sym, symbol_name
-from .reader_errors import fail
+from .reader_errors import fail, place
 from .readtables import READTABLE, call
 from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
 
@@ -278,7 +279,15 @@ def sharp_dot(stream, sub, argument):
         return fail(reader, start, "can't read #. while *READ-EVAL* is NIL", hint="Evaluation while reading has been switched off.")
     from . import evaluator
 
-    return one(evaluator.evaluate(form))
+    try:
+        return one(evaluator.evaluate(form))
+    except RecursionError as problem:
+        condition = condition_for(problem)
+    except Condition as problem:
+        if getattr(problem, "position", None) is not None:
+            raise
+        condition = problem
+    raise place(condition, reader, start)
 
 
 def sharp_plus(stream, sub, argument):
@@ -397,8 +406,8 @@ def _replace_label(root, label):
         elif hasattr(item, "storage"):
             pending.append(item.storage)
             continue
-        elif hasattr(item, "__dict__") and not isinstance(item, type) and not callable(item):
-            attributes = list(vars(item))  # the slots of a structure
+        elif hasattr(type(item), "lisp_structure"):
+            attributes = [slot.attribute for slot in type(item).lisp_structure.slots]
         else:
             continue
         for attribute in attributes:

@@ -7,6 +7,7 @@ loader compiles whole files with `Unit`, whose code can be kept. Top-level ``pro
 
 from __future__ import annotations
 
+from .circular_code import refuse_circular_code
 from .compilation_unit import compilation_unit, current, expanding
 from .compiler.environment import EXECUTE, SITUATIONS
 from .compiler.support import NAMESPACE
@@ -96,6 +97,7 @@ class Unit:
     def evaluate(self, form):
         """Compile and run one form; top-level forms with forms inside go one by one."""
         result = None
+        self.refuse_circle(form)
         with compilation_unit("form") as notes:
             for part in self.toplevel_parts(form):
                 code = self.compile(part)
@@ -104,11 +106,19 @@ class Unit:
                 result = self.run(code)
         return result
 
+    def refuse_circle(self, form):
+        """Signal an error when ``form`` is code that contains itself."""
+        refuse_circular_code(form, lambda part: (self.filename, *self.positions[id(part)][:2]) if id(part) in self.positions else None)
+
     def toplevel_parts(self, form, alone=True):
         """The forms that ``form`` consists of as a top-level form, each after the one before it has been dealt with.
 
         While a part is being dealt with, ``self.alone`` says whether it is the only one.
         """
+        from .macros import expand_fully
+
+        place = self.positions.get(id(form))
+        form = expand_fully(form, self._expand_at_top_level, place and (self.filename, *place[:2]))[0]
         if isinstance(form, Cons) and isinstance(form.car, Symbol):
             head = form.car
             if head is PROGN:
@@ -126,13 +136,13 @@ class Unit:
             if head in (MACROLET, SYMBOL_MACROLET, LOCALLY) and isinstance(form.cdr, Cons):
                 yield from self._scoped_parts(form)
                 return
-            if not compiler().is_special(head):
-                expansion, expanded = self.expand(form)
-                if expanded:
-                    yield from self.toplevel_parts(expansion, alone)
-                    return
         self.alone = alone
         yield form
+
+    def _expand_at_top_level(self, form):
+        if isinstance(form, Cons) and isinstance(form.car, Symbol) and form.car not in _TAKEN_APART and not compiler().is_special(form.car):
+            return self.expand(form)
+        return form, False
 
     def _scoped_parts(self, form):
         """The forms in a top-level ``macrolet``, ``symbol-macrolet`` or ``locally``: each again with what surrounds it."""
@@ -176,6 +186,7 @@ def new_namespace(filename):
 PROGN = sym("PROGN")
 EVAL_WHEN = sym("EVAL-WHEN")
 MACROLET, SYMBOL_MACROLET, LOCALLY, DECLARE = sym("MACROLET"), sym("SYMBOL-MACROLET"), sym("LOCALLY"), sym("DECLARE")
+_TAKEN_APART = (PROGN, EVAL_WHEN, MACROLET, SYMBOL_MACROLET, LOCALLY)
 
 _session = None
 
@@ -227,6 +238,7 @@ def compile_lambda(form, environment=None, text=None):
     text: what knows the file name and the positions of the text that it stands in: an analyzer, or a `Unit`.
     """
     unit = session_unit()
+    unit.refuse_circle(form)
     backend = compiler()
     text = text or unit
     analyzer = backend.Analyzer(text.filename, text.positions)

@@ -158,10 +158,22 @@ def list_arguments(directive, arg):
     if arg is None:
         return ()
     if isinstance(arg, Cons):
-        return list(arg)
+        return _elements(directive, arg)
     from .conditions import type_error
 
     return type_error(arg, "LIST")
+
+
+def _elements(directive, cell):
+    items, slow = [], cell
+    while isinstance(cell, Cons):
+        items.append(cell.car)
+        cell = cell.cdr
+        if len(items) % 2 == 0:
+            slow = slow.cdr
+            if slow is cell and cell is not None:
+                directive.complain("The list of arguments is circular")
+    return items
 
 
 __all__ = [

@@ -11,46 +11,14 @@ from . import print_controls as controls
 from .conditions import Error, handler_bind, type_error
 from .data import Character, Cons, list_from
 from .format import State, UpAndOut, format_on, list_arguments, run
-from .format_parser import ARGUMENT_MARK, REMAINING_MARK, FormatError
+from .format_parameters import NO_CHARACTER, parameters
+from .format_parser import FormatError
 from .packages import find_package
 from .pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab
 from .print_controls import PRINT_BASE, PRINT_RADIX, bound
 from .print_names import character_name
 from .printer import output_object, prin1, prin1_to_string, princ_to_string, write
 from .streams import OutputStream, StringOutputStream
-
-
-def parameters(directive, state, *defaults):
-    """The values of the directive's parameters; those not given or nil have their default."""
-    given = directive.params
-    if not given:
-        return defaults
-    if len(given) > len(defaults):
-        directive.complain(f"Too many parameters, expected no more than {len(defaults)}", given[len(defaults)][0])
-    values = list(defaults)
-    for index, (offset, value) in enumerate(given):
-        if value is ARGUMENT_MARK:
-            value = state.next(directive, offset)
-            if isinstance(value, Character):
-                value = value.char
-        elif value is REMAINING_MARK:
-            value = state.remaining
-        if value is not None:
-            values[index] = value if directive.char in "[^" else _checked(value, defaults[index])
-    return values
-
-
-NO_CHARACTER = ""
-"""The default of a parameter that is a character and may be missing."""
-
-
-def _checked(value, default):
-    """``value`` if it is of the kind of the parameter with this default: a character, or an integer."""
-    if default.__class__ is str:
-        return value if value.__class__ is str and len(value) == 1 else type_error(value, "CHARACTER")
-    if value.__class__ is int:
-        return value
-    return type_error(Character(value) if value.__class__ is str and len(value) == 1 else value, "INTEGER")
 
 
 # ---------------------------------------------------------------------------------------------------------- any objects
@@ -456,7 +424,10 @@ def _loop(directive, state, once, limit):
                     if up.colon:
                         raise
             else:
+                before = state.position
                 once(state)
+                if state.position == before and limit is None and not state.exhausted:
+                    directive.complain("The iteration takes no arguments, so it would never end")
             if at_least_once and state.exhausted:
                 break
     except UpAndOut as up:

@@ -124,6 +124,7 @@ def load_text(text, filename, stored=False, show=None):
             continue
         try:
             values = ()
+            unit.refuse_circle(form)
             for part in unit.toplevel_parts(form):
                 code = _compile(unit, part)
                 if not unit.stored:

@@ -16,6 +16,7 @@ from .backquote import QUOTE, Comma
 from .conditions import CompileError, Condition, error
 from .data import Character, Cons, Symbol, list_from, one
 from .functions import function_of
+from .late import late
 from .macro_shapes import SHAPES
 from .packages import COMMON_LISP, find_package_or_error, intern, is_symbol, keyword, sym
 
@@ -200,9 +201,22 @@ def mentions(form, symbols):
 
 def macroexpand(form, environment=None):
     """``form`` expanded until its head is no macro any more, and whether anything was expanded."""
-    expanded = False
-    while True:
-        form, more = macroexpand_1(form, environment)
+    return expand_fully(form, lambda form: macroexpand_1(form, environment))
+
+
+MOST_EXPANSIONS = 10_000
+
+
+def expand_fully(form, expand, position=None):
+    """``form`` expanded by ``expand`` (see `macroexpand_1`) as often as possible, and whether anything was expanded.
+
+    position: where the form stands, for the error when that does not end.
+    """
+    for count in range(MOST_EXPANSIONS):
+        form, more = expand(form)
         if not more:
-            return form, expanded
-        expanded = True
+            return form, count > 0
+    head = form.car if isinstance(form, Cons) else form
+    return error(CompileError(f"The expansion of {late.prin1_to_string(head)} does not end: after {MOST_EXPANSIONS} expansions there is "
+                              "still a macro call. A macro must not expand into a call of itself without making it smaller.",
+                              position=position))

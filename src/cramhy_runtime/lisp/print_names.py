@@ -25,7 +25,7 @@ from .print_controls import (
     UPCASE,
 )
 from .readtables import READTABLE
-from .tokens import downcase, invert, upcase
+from .tokens import CASES, downcase, invert, looks_numeric, upcase
 
 # ------------------------------------------------------------------------------------------------------------- integers
 
@@ -179,7 +179,7 @@ def _next_state(state, character, bits, base):
         if what.__class__ is int:
             matches = bits & what
         else:
-            matches = _is_digit(character, base) and (what == "digit" or bits & _UPPER)
+            matches = _is_digit(character, base) and bits & (_NUMBER | _UPPER if what == "digit" else _UPPER)
         if matches:
             return successor, may_end
     return None, 0
@@ -208,13 +208,22 @@ def token(name):
     base, case = PRINT_BASE.value, READTABLE.value.case.name
     text = _quoted.get((name, base, case))
     if text is None:
-        if needs_bars(name, base, case):
-            text = "|" + name.replace("\\", "\\\\").replace("|", "\\|") + "|"
+        if needs_bars(name, base, case) or looks_numeric(name, base):  # SBCL's automaton misses 1E5 in base 2
+            text = _between_bars(name)
         else:
             text = ""
         if len(_quoted) < 100_000:
             _quoted[name, base, case] = text
-    return text or in_print_case(name)
+    if text:
+        return text
+    shown = in_print_case(name)
+    if not name.isascii() and CASES[case](shown) != name:  # a letter whose other case is not one letter, as in STRASSE
+        return _between_bars(name)
+    return shown
+
+
+def _between_bars(name):
+    return "|" + name.replace("\\", "\\\\").replace("|", "\\|") + "|"
 
 
 def in_print_case(name):

@@ -13,6 +13,7 @@ from . import conditions
 from .condition_types import EndOfFile, ReaderError, ReaderPackageError, SimpleStyleWarning, shown
 from .conditions import restart_case
 from .data import Symbol
+from .dynamic import binding
 from .package_errors import PackageLockedError, locked, violated
 from .packages import find_package, find_package_or_error, near_names, package_names, sym
 
@@ -21,6 +22,10 @@ class SimpleReaderError(ReaderError):
     """A text that breaks the syntax of Common Lisp."""
 
     lisp_name = "SB-INT::SIMPLE-READER-ERROR"
+
+    def report(self):
+        with binding(sym("*PRINT-CIRCLE*"), True):  # what is shown may have been labelled, and contain itself
+            return super().report()
 
 
 class ImpossibleNumber(ReaderError):

@@ -265,7 +265,9 @@ def _print_comma(comma, stream):
         output_object(COMMA, stream)
         stream.write(" :EXPR ")
         output_object(comma.form, stream)
-        stream.write(f" :KIND {COMMA_KINDS.index(comma.kind)})")
+        stream.write(" :KIND ")
+        output_object(COMMA_KINDS.index(comma.kind), stream)
+        stream.write(")")
         return
     stream.write(comma.kind)
     if comma.kind == "," and is_symbol(comma.form) and symbol_text(comma.form, escaping())[:1] in "@.":

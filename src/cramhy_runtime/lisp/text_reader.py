@@ -53,6 +53,7 @@ class Reader(InputStream):
         self.offset = 0
         self.positions = FormPlaces(self.place)
         self.strict = strict
+        self.stray_closes = 0
         self.quiet = False
         self.backquotes = 0
         self.labels = {}
@@ -183,6 +184,8 @@ class Reader(InputStream):
     def _next(self, base):
         frames = self._frames
         while True:
+            if len(frames) > MOST_NESTED:
+                return fail(self, self.offset, "The text is nested too deeply to be read.", hint=f"{MOST_NESTED} levels are the most.")
             text, table = self.text, READTABLE.value
             match = table.scanner.match(text, self.offset)
             start, end = match.span(1)
@@ -216,7 +219,8 @@ class Reader(InputStream):
                 if handler is read_close:
                     if len(frames) > base and frames[-1][0] is not None:
                         found = self._closed_list(frames.pop(), end)
-                    elif not frames and not self.strict:
+                    elif not frames and not self.strict and self.stray_closes < MOST_STRAY_CLOSES:
+                        self.stray_closes += 1
                         reader_errors.unmatched_close(self, end)
                         continue
                     else:
@@ -522,6 +526,9 @@ read_backquote = _prefix_reader("read_backquote", "A template: see ``backquote.p
 read_comma = _prefix_reader("read_comma", "``,x``, ``,@x``, ``,.x``: a place to be filled in a template.")
 
 
+MOST_NESTED = 100_000
+MOST_STRAY_CLOSES = 20
+"""So many unmatched ``)`` of a text are warnings; then something else is wrong with it, and the next is an error."""
 _COMMAS = {",": "comma", ",@": "comma-at", ",.": "comma-dot"}
 _PREFIXES = {read_quote: (QUOTE, "'"), read_backquote: (QUASIQUOTE, "`"), read_comma: (Comma, ",")}
 

@@ -100,10 +100,10 @@ def rational(token, base):
     return whole if match[2] is None else ratio(whole, integer(match[2], base))
 
 
-def looks_numeric(token):
-    """Whether ``token`` has the syntax of a number."""
+def looks_numeric(token, base=None):
+    """Whether ``token`` has the syntax of a number in ``base``, by default ``*read-base*``."""
     try:
-        return number(token) is not None
+        return number(token, base) is not None
     except NumberError:
         return True
 
@@ -143,7 +143,7 @@ def _other_case(character, convert):
 
 def invert(text):
     """Readtable case :invert: a name all of whose letters have one case gets the other."""
-    letters = [character for character in text if character.upper() != character.lower()]
+    letters = [character for character in text if _other_case(character, str.upper) != _other_case(character, str.lower)]
     if all(character.isupper() for character in letters):
         return downcase(text)
     if all(character.islower() for character in letters):
