@@ -12,7 +12,7 @@ from .conditions import Error, handler_bind, type_error
 from .data import Character, Cons, list_from
 from .format import State, UpAndOut, format_on, list_arguments, run
 from .format_parameters import NO_CHARACTER, parameters
-from .format_parser import FormatError
+from .format_parser import ARGUMENT_MARK, REMAINING_MARK, FormatError
 from .packages import find_package
 from .pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab
 from .print_controls import PRINT_BASE, PRINT_RADIX, bound
