@@ -23,6 +23,7 @@ from cramhy_runtime.lisp.streams import StringInputStream, StringOutputStream
 from cramhy_runtime.repl.session import Session, condition_of
 
 FOLDER = Path(__file__).parent / "symbols"
+USAGE = Path(__file__).parents[3] / "shared" / "reference" / "common-lisp-usage.tsv"
 ANSWERS = ("=>", "!! ", "|")
 PROGRAM_ERROR = "!! PROGRAM-ERROR"
 SBCL_PROGRAM_ERRORS = ("!! ARG-COUNT-ERROR", "!! SIMPLE-PROGRAM-ERROR", "!! COMPILED-PROGRAM-ERROR", "!! INTERPRETED-PROGRAM-ERROR",
@@ -114,3 +115,8 @@ def test_the_symbol_answers_as_in_sbcl(session, questions, request):
     with TemporaryDirectory() as folder, binding(PACKAGE, package, DEFAULTS, lisp_path(Path(folder))):
         for form, wanted in questions:
             assert answer(session, form, folder) == [recorded(line) for line in wanted], form
+
+@pytest.mark.skipif(not USAGE.exists(), reason="the counted usage lies beside the project")
+def test_every_symbol_that_cram_code_uses_has_a_section():
+    used = {line.split("\t")[0] for line in USAGE.read_text().splitlines()[1:]}
+    assert used - {section.id for section in SECTIONS} == set()
