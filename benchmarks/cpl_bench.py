@@ -20,7 +20,7 @@ from cramhy_runtime import process_modules as pm  # noqa: E402
 from cramhy_runtime.cpl import fluent_operators  # noqa: E402
 from cramhy_runtime.lisp.data import lisp_list  # noqa: E402
 from cramhy_runtime.lisp.packages import intern, keyword, sym  # noqa: E402
-from cramhy_runtime.lisp.printer import prin1_to_string  # noqa: E402
+from cramhy_runtime.lisp.printer.printer import prin1_to_string  # noqa: E402
 from cramhy_runtime.prolog.facts import define_fact_group  # noqa: E402
 
 image.boot()

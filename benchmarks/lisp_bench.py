@@ -23,7 +23,7 @@ from pathlib import Path
 from plan_text import plan_text
 
 from cramhy_runtime.lisp.data import Cons
-from cramhy_runtime.lisp.loader import load_file
+from cramhy_runtime.lisp.systems.loader import load_file
 from cramhy_runtime.repl.session import Session
 
 PROGRAMS = {

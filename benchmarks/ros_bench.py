@@ -29,7 +29,7 @@ def ticks(seconds):
 
 
 def rows(backend):
-    from cramhy_runtime.lisp import streams
+    from cramhy_runtime.lisp.streams import streams
     from cramhy_runtime.ros import message_building, node, services, topics
     from cramhy_runtime.turtlesim.node import start_turtlesim
 

@@ -23,7 +23,7 @@ def session():
     """A session in virtual time, without the turtle."""
     from cramhy_runtime import kernel
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-    from cramhy_runtime.lisp.print_controls import PACKAGE
+    from cramhy_runtime.lisp.printer.print_controls import PACKAGE
     from cramhy_runtime.repl.session import Session
 
     made = Session(time="virtual", turtlesim=False)

@@ -77,7 +77,7 @@ class Typist:
         self.further = further
 
     def line(self, prompt):
-        from cramhy_runtime.lisp import streams
+        from cramhy_runtime.lisp.streams import streams
 
         if not self.lines:
             return self.further.line(prompt) if self.further is not None else None

@@ -4,7 +4,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (require cramhy.operators [defoperator])
 (import cramhy.operators *
-        cramhy_runtime.lisp.compilation-unit [duplicate-keys mention-type])
+        cramhy_runtime.lisp.evaluation.compilation_unit [duplicate-keys mention-type])
 
 (setv package "COMMON-LISP")
 
@@ -231,7 +231,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (do-loop 'let* 'setq bindings end body))
 
 (defoperator loop [#* forms]
-  (import cramhy_runtime.lisp.loop [expand])
+  (import cramhy_runtime.lisp.loop.loop [expand])
   (expand (list-from forms)))
 
 (defoperator loop-finish []
@@ -263,7 +263,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(nth ~n (multiple-value-list ~form)))
 
 (defoperator destructuring-bind [lambda-list form #* body]
-  (import cramhy_runtime.lisp.lambda-lists [destructure])
+  (import cramhy_runtime.lisp.evaluation.lambda_lists [destructure])
   `(let* ~(lfor #(variable value) (destructure lambda-list form "DESTRUCTURING-BIND") [variable value]) ~@body))
 
 ;; ---------------------------------------------------------------------------------------------------------- definitions
@@ -292,13 +292,13 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%define-function (quote ~name) (%named-lambda ~name ~lambda-list ~@declarations ~@forms) ~documentation (quote ~lambda-list)))
 
 (defoperator defmacro [name lambda-list #* body]
-  (import cramhy_runtime.lisp.definitions [macro-function-form])
+  (import cramhy_runtime.lisp.evaluation.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
   `(%define-macro (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator define-compiler-macro [name lambda-list #* body]
   "Its function rewrites the calls that are compiled from now on."
-  (import cramhy_runtime.lisp.definitions [macro-function-form])
+  (import cramhy_runtime.lisp.evaluation.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body) "DEFINE-COMPILER-MACRO"))
   `(%define-compiler-macro (quote ~name) ~function))
 
@@ -315,7 +315,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defn %note-special [name]
   "The forms after a definition see the variable as special even before the definition has run."
-  (import cramhy_runtime.lisp.definitions [note-special])
+  (import cramhy_runtime.lisp.evaluation.definitions [note-special])
   (note-special name))
 
 (defoperator defconstant [name value [documentation None]]
@@ -328,7 +328,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%declaim ~@(lfor specifier specifiers `(quote ~specifier))))
 
 (defoperator deftype [name lambda-list #* body]
-  (import cramhy_runtime.lisp.definitions [type-function-form])
+  (import cramhy_runtime.lisp.evaluation.definitions [type-function-form])
   (setv #(function documentation) (type-function-form name lambda-list (list-from body)))
   `(%define-type (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
@@ -346,7 +346,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-package-iterator [spec #* body]
   (setv #(name packages #* kinds) spec)
-  (import cramhy_runtime.lisp.package-definition [check-kinds])
+  (import cramhy_runtime.lisp.symbols.package_definition [check-kinds])
   (check-kinds kinds)
   (setv iterator (gensym "ITERATOR"))
   `(let [[~iterator (%package-iterator ~packages (quote ~kinds))]]

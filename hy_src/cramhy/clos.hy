@@ -2,7 +2,7 @@
 
 (require cramhy.operators [defoperator])
 (import cramhy.operators *)
-(import cramhy_runtime.lisp.macros [mentions])
+(import cramhy_runtime.lisp.evaluation.macros [mentions])
 
 (setv package "COMMON-LISP")
 
@@ -200,7 +200,7 @@
   #((get options "ARGUMENTS") (get options "GENERIC-FUNCTION") documentation forms))
 
 (defn long-combination [name lambda-list groups #* body]
-  (import cramhy_runtime.lisp.lambda-lists [variables-of])
+  (import cramhy_runtime.lisp.evaluation.lambda_lists [variables-of])
   (setv parts (lfor group (elements groups) (group-parts group)) options (gensym "OPTIONS"))
   (setv #(arguments generic documentation forms) (combination-options body))
   `(%define-long-combination (quote ~name) (quote ~(list-from (lfor part parts (get part 1))))
@@ -244,7 +244,7 @@
   (if (not rest)
       `(quote ~name)
       (do
-        (import cramhy_runtime.lisp.structures [boa-lambda-list])
+        (import cramhy_runtime.lisp.objects.structures [boa-lambda-list])
         (setv initforms (dfor slot slots :if (or (not (listp slot)) (listp slot.cdr))
                           (if (listp slot) slot.car slot) (if (listp slot) slot.cdr.car None)))
         (setv #(lambda-list variables) (boa-lambda-list (get rest 0) initforms))

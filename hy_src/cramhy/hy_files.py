@@ -10,12 +10,12 @@ from __future__ import annotations
 from hy import models, read
 from hy.reader import HyReader
 
-from cramhy_runtime.lisp import evaluator
+from cramhy_runtime.lisp.evaluation import evaluator
 from cramhy_runtime.lisp.compiler.core import hy_model
 from cramhy_runtime.lisp.data import Cons, list_from
-from cramhy_runtime.lisp.macros import from_hy
+from cramhy_runtime.lisp.evaluation.macros import from_hy
 from cramhy_runtime.lisp.packages import find_package_or_error, intern
-from cramhy_runtime.lisp.reader import Reader
+from cramhy_runtime.lisp.reader.reader import Reader
 
 
 class Form(models.Object):

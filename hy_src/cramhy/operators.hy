@@ -4,10 +4,10 @@ An operator gets the forms of its call as they were read, and returns a form mad
 are those of Common Lisp or else of the Lisp package named by the file's `package`; `%name` belongs to CRAMHY, where the
 runtime's helpers are, and `pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable."
 
-(import cramhy_runtime.lisp.macros [define-operator malformed]
+(import cramhy_runtime.lisp.evaluation.macros [define-operator malformed]
         cramhy_runtime.lisp.data [Cons Symbol :as LispSymbol list-from lisp-list]
         cramhy_runtime.lisp.conditions [error program-error]
-        cramhy_runtime.lisp.lambda-lists [gensym]
+        cramhy_runtime.lisp.evaluation.lambda_lists [gensym]
         cramhy_runtime.lisp.packages [sym is-symbol symbol-name])
 
 (defmacro defoperator [name parameters #* body]

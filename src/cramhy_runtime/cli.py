@@ -91,7 +91,7 @@ def _repl(options):
 
 
 def _eval(options):
-    from cramhy_runtime.lisp import streams
+    from cramhy_runtime.lisp.streams import streams
     from cramhy_runtime.lisp.conditions import Condition
     from cramhy_runtime.repl import json_lines
     from cramhy_runtime.repl.console import report
@@ -133,7 +133,7 @@ def _not_here(what):
 
 def _test(options):
     """Run the tests of a system, an ``.asd``, ``.lisp`` or ``.hy`` file, or of all test files below a folder."""
-    from cramhy_runtime.lisp import unit_tests
+    from cramhy_runtime.lisp.systems import unit_tests
     from cramhy_runtime.lisp.conditions import Condition
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import Interruption, condition_of, handle_interrupts

@@ -26,7 +26,9 @@ def boot():
         return
     _booted = True
     from cramhy_runtime import kernel
-    from cramhy_runtime.lisp import asdf, evaluator, importer, package, packages, places_in_source, ros_load, systems, uiop, unit_tests
+    from cramhy_runtime.lisp import package, packages
+    from cramhy_runtime.lisp.evaluation import evaluator, places_in_source
+    from cramhy_runtime.lisp.systems import asdf, importer, ros_load, systems, uiop, unit_tests
     from cramhy_runtime.lisp.faces import define_face
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 
@@ -55,7 +57,7 @@ def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, 
 
     kernel.start(clock=clock, backend=backend, seed=seed, time_limit=time_limit)
     boot()
-    from cramhy_runtime.lisp.random_state import seed_random
+    from cramhy_runtime.lisp.numbers.random_state import seed_random
     from cramhy_runtime.turtlesim.node import start_with_first_node
 
     seed_random(seed)

@@ -24,7 +24,7 @@ class _SystemsOnDemand(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
         if path is not None or "." in name or name.startswith("_") or "cramhy_runtime.image" in sys.modules:
             return None
-        from cramhy_runtime.lisp import systems
+        from cramhy_runtime.lisp.systems import systems
 
         if systems.find_asd(name.replace("_", "-")) is None:
             return None
@@ -72,7 +72,7 @@ def pytest_collect_file(file_path, parent):
     if file_path.suffix not in (".lisp", ".hy", ".asd"):
         return None
     if not parent.session.isinitpath(file_path):
-        from cramhy_runtime.lisp import unit_tests
+        from cramhy_runtime.lisp.systems import unit_tests
 
         if not unit_tests.looks_like_tests(file_path):
             return None
@@ -84,7 +84,7 @@ class LispFile(pytest.File):
 
     def collect(self):
         from cramhy_runtime import image, kernel
-        from cramhy_runtime.lisp import unit_tests
+        from cramhy_runtime.lisp.systems import unit_tests
         from cramhy_runtime.lisp.conditions import Condition
 
         image.fresh_start()
@@ -106,7 +106,7 @@ class LispItem(pytest.Item):
 
     def runtest(self):
         from cramhy_runtime import image, kernel
-        from cramhy_runtime.lisp import unit_tests
+        from cramhy_runtime.lisp.systems import unit_tests
 
         unit_tests.limit = self.config.getoption("--lisp-limit")
         image.fresh_start()
@@ -138,7 +138,7 @@ class ChecksFailed(Exception):
 
 
 def _shown(failure):
-    from cramhy_runtime.lisp.places_in_source import describe, excerpt
+    from cramhy_runtime.lisp.evaluation.places_in_source import describe, excerpt
 
     place = [f"  at {describe(failure.place)}", excerpt(failure.place)] if failure.place else []
     return os.linesep.join([failure.text, *place])
@@ -146,7 +146,7 @@ def _shown(failure):
 
 def _explained(problem):
     """What, where and why, as at the REPL; a Python error of the plugin itself keeps its Python text."""
-    from cramhy_runtime.lisp.advice import explanation
+    from cramhy_runtime.lisp.tools.advice import explanation
     from cramhy_runtime.repl.session import condition_of
 
     return explanation(condition_of(problem))

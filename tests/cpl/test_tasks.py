@@ -374,7 +374,7 @@ def test_wrong_use_of_tasks_says_what_is_wrong(call, text):
 
 
 def test_making_a_task_from_lisp_starts_it():
-    from cramhy_runtime.lisp.classes import find_class_or_error, make_instance
+    from cramhy_runtime.lisp.objects.classes import find_class_or_error, make_instance
     from cramhy_runtime.lisp.packages import keyword, sym
 
     def made(*more):

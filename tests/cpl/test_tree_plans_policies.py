@@ -11,7 +11,7 @@ from cramhy_runtime.cpl.tasks import CREATED, SUCCEEDED
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import Cons, lisp_list, list_from, python_list
 from cramhy_runtime.lisp.packages import intern, keyword, sym
-from cramhy_runtime.lisp.printer import princ_to_string
+from cramhy_runtime.lisp.printer.printer import princ_to_string
 
 
 def user(name):

@@ -8,7 +8,7 @@ from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import keyword, sym
-from cramhy_runtime.lisp.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
 
 from .support import lisp, make, python, user
 

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from cramhy_runtime import cli
-from cramhy_runtime.lisp import systems, unit_tests
+from cramhy_runtime.lisp.systems import systems, unit_tests
 
 FILES = {
     "proj.asd": """(defsystem "proj"

@@ -8,12 +8,16 @@ compiler, so these tests fail only for what printing does.
 import json
 from pathlib import Path
 
-from cramhy_runtime.lisp import array_making, faces, format, pprint_dispatch, pretty, printer, stream_functions
+from cramhy_runtime.lisp import faces
+from cramhy_runtime.lisp.collections import array_making
+from cramhy_runtime.lisp.format import format
+from cramhy_runtime.lisp.printer import pprint_dispatch, pretty, printer
+from cramhy_runtime.lisp.streams import stream_functions
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import Character, Cons, Keyword, Symbol, lisp_list, one, python_list
 from cramhy_runtime.lisp.packages import find_package, sym
-from cramhy_runtime.lisp.print_controls import bound
-from cramhy_runtime.lisp.reader import read_from_string
+from cramhy_runtime.lisp.printer.print_controls import bound
+from cramhy_runtime.lisp.reader.reader import read_from_string
 
 FOLDER = Path(__file__).parent / "printing"
 FUNCTIONS = {

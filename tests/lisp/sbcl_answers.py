@@ -14,11 +14,12 @@ from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions, faces
 from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, all_values, list_from, one, truth
 from cramhy_runtime.lisp.packages import find_package
-from cramhy_runtime.lisp.printer import prin1_to_string
-from cramhy_runtime.lisp.reader import read_from_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.reader.reader import read_from_string
 
-MODULES = """functions equality lists list_search sequences sequence_mapping sequence_search sequence_change sequence_sort strings
-characters arrays array_making hash_tables""".split()
+MODULES = """evaluation.functions equality collections.lists collections.list_search collections.sequences
+    collections.sequence_mapping collections.sequence_search collections.sequence_change collections.sequence_sort
+    collections.strings collections.characters collections.arrays collections.array_making collections.hash_tables""".split()
 FOLDER = Path(__file__).parent / "sbcl"
 
 

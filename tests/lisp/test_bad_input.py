@@ -10,7 +10,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import all_values
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session, condition_of
 
 MOST_SECONDS = 20  # on a busy machine; alone each takes less than two

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import characters
+from cramhy_runtime.lisp.collections import characters
 from cramhy_runtime.lisp.data import Character
 
 any_character = st.characters().map(Character)

@@ -4,7 +4,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session, condition_of
 
 

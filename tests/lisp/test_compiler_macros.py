@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
 DEFINITIONS = """
 (defun sq (x) (list :fn x))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import streams
+from cramhy_runtime.lisp.streams import streams
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 from cramhy_runtime.repl import json_lines
@@ -37,7 +37,7 @@ def lisp(monkeypatch, tmp_path):
 
 
 def printed(values):
-    from cramhy_runtime.lisp.printer import prin1_to_string
+    from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
     return [prin1_to_string(value) for value in values]
 

@@ -8,7 +8,7 @@ from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.conditions import Condition, PythonError, SimpleError
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
 
 @pytest.fixture

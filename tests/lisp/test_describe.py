@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.streams import ERROR_OUTPUT, STANDARD_OUTPUT, StringOutputStream
+from cramhy_runtime.lisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, StringOutputStream
 
 DEFINITIONS = """
 (defun fib (n &optional (k 2) &rest r &key (z 3) w) "Fibonacci.

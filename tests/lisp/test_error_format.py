@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.advice import explanation
+from cramhy_runtime.lisp.tools.advice import explanation
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.repl.session import condition_of, signalled_here
 

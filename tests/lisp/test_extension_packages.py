@@ -21,7 +21,7 @@ import pytest
     ("(= (random 1000 (sb-ext:seed-random-state 7)) (random 1000 (sb-ext:seed-random-state 7)))", "T"),
 ])
 def test_what_the_names_do(session, form, value):
-    from cramhy_runtime.lisp.printer import prin1_to_string
+    from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
     result, = session.evaluate_text(form, "test")
     assert prin1_to_string(result) == value

@@ -9,7 +9,7 @@ from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import equality
-from cramhy_runtime.lisp import hash_tables as h
+from cramhy_runtime.lisp.collections import hash_tables as h
 from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
 from cramhy_runtime.lisp.packages import keyword, sym
 

@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions, list_search, lists
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.collections import list_search, lists
 from cramhy_runtime.lisp.data import Cons, MultipleValues, lisp_list, list_from, python_list
 from cramhy_runtime.lisp.packages import intern, keyword
 

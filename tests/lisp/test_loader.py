@@ -8,10 +8,11 @@ import sys
 
 import pytest
 
-from cramhy_runtime.lisp import evaluator, loader
+from cramhy_runtime.lisp.evaluation import evaluator
+from cramhy_runtime.lisp.systems import loader
 from cramhy_runtime.lisp.conditions import Condition, FileError
 from cramhy_runtime.lisp.packages import find_package, make_package, sym
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
 
 @pytest.fixture
@@ -117,7 +118,7 @@ LITERALS = r"""
 
 
 def test_every_kind_of_literal_comes_back_from_a_kept_file(folder, compiled):
-    from cramhy_runtime.lisp.reader import Reader
+    from cramhy_runtime.lisp.reader.reader import Reader
 
     find_package("OTHER-PACKAGE") or make_package("OTHER-PACKAGE", [])
     reader, end, forms = Reader(LITERALS, filename="literals"), object(), []
@@ -208,7 +209,7 @@ def test_the_package_is_the_same_after_loading(folder, session):
     ("(list 1 2)\n ; why\n  nowhere\n(list 2)", (3, 3)),
 ])
 def test_an_error_says_where_in_the_file_it_arose(folder, text, place, session):
-    from cramhy_runtime.lisp.places_in_source import exception_position
+    from cramhy_runtime.lisp.evaluation.places_in_source import exception_position
 
     path = write(folder, text)
     with pytest.raises(Condition) as caught:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.lisp import systems
+from cramhy_runtime.lisp.systems import systems
 
 SYSTEMS = Path(__file__).parent / "systems"
 RECORDED = SYSTEMS / "kitchen-courier" / "transcript.txt"

@@ -4,11 +4,11 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import pprint_dispatch, printing_support
+from cramhy_runtime.lisp.printer import pprint_dispatch, printing_support
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, lisp_list
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, sym
-from cramhy_runtime.lisp.pretty import logical_block, pprint_indent, pprint_newline
-from cramhy_runtime.lisp.print_controls import (
+from cramhy_runtime.lisp.printer.pretty import logical_block, pprint_indent, pprint_newline
+from cramhy_runtime.lisp.printer.print_controls import (
     PACKAGE,
     PRINT_LENGTH,
     PRINT_LEVEL,
@@ -17,9 +17,9 @@ from cramhy_runtime.lisp.print_controls import (
     PRINT_RIGHT_MARGIN,
     bound,
 )
-from cramhy_runtime.lisp.printer import define_printer, output_object, prin1, prin1_to_string, print_unreadable, write
-from cramhy_runtime.lisp.reader import read_from_string
-from cramhy_runtime.lisp.streams import StringOutputStream
+from cramhy_runtime.lisp.printer.printer import define_printer, output_object, prin1, prin1_to_string, print_unreadable, write
+from cramhy_runtime.lisp.reader.reader import read_from_string
+from cramhy_runtime.lisp.streams.streams import StringOutputStream
 
 
 @pytest.fixture(autouse=True)

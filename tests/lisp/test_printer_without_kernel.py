@@ -2,8 +2,8 @@
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.format import format_to_string
-from cramhy_runtime.lisp.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.lisp.format.format import format_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
 
 
 def test_printing_needs_no_kernel():

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime.lisp.conditions import Condition, PythonError
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 

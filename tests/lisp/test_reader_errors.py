@@ -6,8 +6,8 @@ from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import find_package, make_package, sym
-from cramhy_runtime.lisp.reader import Reader, read_from_string
-from cramhy_runtime.lisp.reader_errors import UnmatchedClose
+from cramhy_runtime.lisp.reader.reader import Reader, read_from_string
+from cramhy_runtime.lisp.reader.reader_errors import UnmatchedClose
 
 
 @pytest.fixture(autouse=True)

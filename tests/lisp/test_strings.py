@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions, strings
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.collections import strings
 from cramhy_runtime.lisp.data import Character, LispString, lisp_list
 from cramhy_runtime.lisp.packages import intern, keyword
 

@@ -6,7 +6,7 @@ import itertools
 
 import pytest
 
-from cramhy_runtime.lisp import systems
+from cramhy_runtime.lisp.systems import systems
 from cramhy_runtime.lisp.conditions import CompileError, Condition, Error, FileError
 from cramhy_runtime.lisp.packages import sym
 

@@ -7,8 +7,8 @@ import re
 import pytest
 
 from cramhy_runtime.lisp.conditions import CompileError, Condition
-from cramhy_runtime.lisp.printer import prin1_to_string
-from cramhy_runtime.lisp.streams import ERROR_OUTPUT, STANDARD_OUTPUT, TRACE_OUTPUT, StringOutputStream
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, TRACE_OUTPUT, StringOutputStream
 
 DEFINITIONS = """
 (defun fib (n) (if (< n 2) n (+ (fib (- n 1)) (fib (- n 2)))))

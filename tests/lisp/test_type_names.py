@@ -12,7 +12,7 @@ ALL_STRINGS_ARE_OF_CHARACTERS = {(name, "(VECTOR CHARACTER)") for name in ("STRI
 
 
 def answers(session):
-    from cramhy_runtime.lisp.streams import STANDARD_OUTPUT, StringOutputStream
+    from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
 
     output = StringOutputStream()
     STANDARD_OUTPUT.value, before = output, STANDARD_OUTPUT.value

@@ -9,8 +9,8 @@ for name in cl_names.NAMES.split():
         COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
 
 import cramhy_runtime.prolog.package  # noqa: E402, F401  after the names of Common Lisp are there
-from cramhy_runtime.lisp.printer import prin1_to_string  # noqa: E402
-from cramhy_runtime.lisp.reader import read_from_string  # noqa: E402
+from cramhy_runtime.lisp.printer.printer import prin1_to_string  # noqa: E402
+from cramhy_runtime.lisp.reader.reader import read_from_string  # noqa: E402
 from cramhy_runtime.prolog import facts, query  # noqa: E402
 from cramhy_runtime.prolog.lazy_lists import force_ll  # noqa: E402
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.printer import prin1_to_string
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
 
 @pytest.fixture

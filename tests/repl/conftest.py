@@ -21,7 +21,7 @@ class Script:
         self.lines = text.splitlines()
 
     def line(self, prompt):
-        from cramhy_runtime.lisp import streams
+        from cramhy_runtime.lisp.streams import streams
 
         if not self.lines:
             return None
@@ -34,7 +34,7 @@ class Script:
 @pytest.fixture
 def type_in(capsys):
     """``type_in(lines)``: what the console shows, the typed lines included. It begins in CRAM-USER, without the turtle."""
-    from cramhy_runtime.lisp import streams
+    from cramhy_runtime.lisp.streams import streams
     from cramhy_runtime.repl.console import Console
     from cramhy_runtime.repl.session import Session
 

@@ -14,7 +14,7 @@ def session():
     """A fresh kernel; the output of the test in a stream with the attribute ``text``."""
     kernel.start(clock="virtual")
     image.boot()
-    from cramhy_runtime.lisp.streams import StringOutputStream
+    from cramhy_runtime.lisp.streams.streams import StringOutputStream
     from cramhy_runtime.ros import node, utilities
 
     saved = OUTPUT.value, ERRORS.value

@@ -65,13 +65,13 @@ POSE_STAMPED = """[GEOMETRY_MSGS-MSG:POSESTAMPED
 
 
 def prin1(obj):
-    from cramhy_runtime.lisp.printer import prin1_to_string
+    from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
     return prin1_to_string(obj)
 
 
 def princ(obj):
-    from cramhy_runtime.lisp.printer import princ_to_string
+    from cramhy_runtime.lisp.printer.printer import princ_to_string
 
     return princ_to_string(obj)
 

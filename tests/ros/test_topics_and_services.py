@@ -179,7 +179,7 @@ class TestSubscribing:
 
 class TestServices:
     def test_the_simulators_services(self, simulator):
-        from cramhy_runtime.lisp.printer import prin1_to_string
+        from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
         response = services.call_service("/turtle1/set_pen", SET_PEN, sym(":R"), 300, sym(":WIDTH"), 4)
         assert prin1_to_string(response) == "[TURTLESIM-SRV:SETPEN-RESPONSE]"

@@ -17,12 +17,12 @@ from weakref import ref
 
 from cramhy_runtime import kernel
 
-from ..lisp import functions
-from ..lisp.classes import find_class_or_error, make_instance
 from ..lisp.conditions import SimpleTypeError, error
 from ..lisp.data import MultipleValues, Symbol, truth
 from ..lisp.equality import eql
-from ..lisp.generic import generic
+from ..lisp.evaluation import functions
+from ..lisp.objects.classes import find_class_or_error, make_instance
+from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
 from .hooks import on_make_fluent_hook
 from .symbols import sym

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ..lisp.data import Symbol, list_from, truth
-from ..lisp.describing import describe_facts, describe_object
-from ..lisp.pretty import logical_block, pprint_newline
-from ..lisp.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable, write
+from ..lisp.printer.pretty import logical_block, pprint_newline
+from ..lisp.printer.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable, write
+from ..lisp.tools.describing import describe_facts, describe_object
 from .fluents import Fluent, ValueFluent
 from .symbols import sym
 from .tasks import Task, ToplevelTask

@@ -20,8 +20,8 @@ from cramhy_runtime import kernel
 from ..lisp import condition_types as types
 from ..lisp.conditions import error, from_python, type_error
 from ..lisp.data import NO_VALUES, Symbol, list_from, truth
+from ..lisp.evaluation.places_in_source import locate
 from ..lisp.packages import keyword
-from ..lisp.places_in_source import locate
 from .failure_types import PlanFailure, envelope
 from .fluent_operators import fl_and, fl_funcall
 from .fluents import ValueFluent, function_of

@@ -32,7 +32,7 @@ def wait_for(fluent, *, timeout=None, **ignored):
     me = kernel.current()
 
     def why():
-        from ..lisp.printer import prin1_to_string
+        from ..lisp.printer.printer import prin1_to_string
 
         return f"the fluent {prin1_to_string(fluent)}"
 

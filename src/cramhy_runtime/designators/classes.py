@@ -15,7 +15,7 @@ import weakref
 from ..lisp.condition_types import SimpleError, SimpleWarning
 from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
-from ..lisp.generic import generic
+from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
 from ..prolog.utilities import current_timestamp
 from .symbols import DESIG_PROPS

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from ..lisp.conditions import error, handler_case, type_error
 from ..lisp.data import list_from
-from ..lisp.generic import generic
 from ..lisp.hooks import Hook
+from ..lisp.objects.generic import generic
 from ..prolog.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError
 

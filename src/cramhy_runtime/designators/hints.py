@@ -8,7 +8,7 @@ reading of the clauses, not a trace of the proof, and computed only when somebod
 from __future__ import annotations
 
 from ..lisp.data import Cons, Symbol
-from ..lisp.printer import princ_to_string
+from ..lisp.printer.printer import princ_to_string
 from ..prolog.database import functors
 from ..prolog.patterns import is_var
 from .classes import ActionDesignator, MotionDesignator, ObjectDesignator, desig_prop_value

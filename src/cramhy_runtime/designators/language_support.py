@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..cpl.fluents import ValueFluent
 from ..cpl.tree import with_task_tree_node
 from ..lisp.data import lisp_list, one
-from ..lisp.functions import function_of
+from ..lisp.evaluation.functions import function_of
 from ..lisp.hooks import Hook
 from .classes import make_designator
 from .equating import with_equate_callback

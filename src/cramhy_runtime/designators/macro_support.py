@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..lisp.classes import find_class_or_error
 from ..lisp.faces import define_face
+from ..lisp.objects.classes import find_class_or_error
 from ..lisp.packages import keyword
 from . import classes, language_support, locations, properties_package
 

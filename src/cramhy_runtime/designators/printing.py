@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ..lisp.classes import class_name
 from ..lisp.conditions import type_error
 from ..lisp.data import UNBOUND, Cons, Symbol
-from ..lisp.describing import describe_facts, describe_object
 from ..lisp.dynamic import special
+from ..lisp.objects.classes import class_name
 from ..lisp.packages import symbol_name
-from ..lisp.print_controls import PACKAGE, PRINT_ESCAPE
-from ..lisp.printer import define_printer, print_unreadable, write
+from ..lisp.printer.print_controls import PACKAGE, PRINT_ESCAPE
+from ..lisp.printer.printer import define_printer, print_unreadable, write
+from ..lisp.tools.describing import describe_facts, describe_object
 from .classes import Designator, type_keyword
 from .symbols import sym
 

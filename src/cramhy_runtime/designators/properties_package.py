@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..lisp.data import python_list
-from ..lisp.package_definition import define_package
 from ..lisp.packages import symbol_name
+from ..lisp.symbols.package_definition import define_package
 from .symbols import DESIG_PROPS
 
 

@@ -15,7 +15,7 @@ from ..lisp import equality
 from ..lisp.conditions import error
 from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol
 from ..lisp.dynamic import special
-from ..lisp.generic import generic
+from ..lisp.objects.generic import generic
 from ..prolog.lazy_lists import from_iterator, lazy_car, lazy_cdr
 from ..prolog.patterns import is_var
 from ..prolog.query import ask

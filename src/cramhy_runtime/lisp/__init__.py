@@ -1,7 +1,8 @@
-"""Common Lisp: data, reader, compiler to Hy, conditions, printer, CLOS.
+"""Common Lisp, in one folder for each part of the standard.
 
-The parts, in the order in which a form passes them: ``text_reader`` and its neighbours read it; ``macros`` and ``compiler`` make
-Hy of it, ``hy_backend`` lets Hy make Python; ``evaluator``, ``loader`` and ``systems`` run it. ``data``, ``packages``,
-``conditions`` and ``dynamic`` are the ground of all. The functions of the standard are in modules by chapter (``lists``,
-``sequences``, ``arithmetic``, ``classes`` …); ``package`` says which symbol names which of them.
+On the ground: data, packages, special variables, conditions, equality, and the table that makes the package COMMON-LISP. Above it
+`reader`, `compiler`, `evaluation` (macros, definitions, places), `objects` (CLOS and structures), `types`, `numbers`,
+`collections` (lists, arrays, strings, sequences, hash tables), `loop`, `format`, `printer`, `streams`, `files`, `symbols`;
+`systems` loads programs, `tools` answers at the prompt, `python` joins the two languages. What a lower part needs of a higher one
+goes through `late`.
 """

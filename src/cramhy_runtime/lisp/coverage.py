@@ -8,18 +8,20 @@ from __future__ import annotations
 
 from collections import Counter
 
-from . import classes, documentation, types
-from .ansi_lambda_lists import lambda_lists
 from .compiler.analyze import SPECIAL_FORMS
 from .compiler.scrutiny import QUALITIES, STANDARD_DECLARATIONS
 from .data import UNBOUND, Symbol, UndefinedFunction
-from .forms import SPECIAL_OPERATORS
-from .generic import GenericFunction
-from .lambda_lists import KEYWORDS
-from .macros import ensure_loaded
-from .method_combination import known_combination
+from .evaluation.ansi_lambda_lists import lambda_lists
+from .evaluation.forms import SPECIAL_OPERATORS
+from .evaluation.lambda_lists import KEYWORDS
+from .evaluation.macros import ensure_loaded
+from .objects import classes
+from .objects.generic import GenericFunction
+from .objects.method_combination import known_combination
 from .packages import COMMON_LISP, is_symbol
 from .standard_names import ABSENT, INSIDE
+from .tools import documentation
+from .types import types
 
 HEAD = """# The symbols of Common Lisp
 

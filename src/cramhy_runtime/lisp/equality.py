@@ -16,10 +16,10 @@ from math import copysign
 from pathlib import PurePath
 from zlib import crc32
 
+from .collections.vectors import LispArray, is_bit_vector
 from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
+from .files.pathname_objects import Pathname
 from .late import late
-from .pathname_objects import Pathname
-from .vectors import LispArray, is_bit_vector
 
 LISP_NAMES = "eq eql equal equalp sxhash"
 

@@ -7,41 +7,48 @@ from __future__ import annotations
 
 import importlib
 
-from . import cl_names, extension_packages, python_packages
+from . import cl_names
 from .faces import define_face, lispify
 from .packages import COMMON_LISP, sym
+from .python import python_packages
+from .symbols import extension_packages
 
-MODULES = tuple("""equality functions lists list_search sequences sequence_change sequence_mapping sequence_search sequence_sort
-    strings characters hash_tables arrays array_making arithmetic rounding irrational bits random_state numbers types classes
-    class_definition slots protocol generic structures streams stream_functions file_streams pathnames wild_pathnames
-    logical_pathnames files file_stream_functions universal_time environment program_files printer pretty pprint_dispatch
-    format reader tokens readtables reader_functions symbols package_functions declarations control forms documentation describing
-    inspecting apropos disassembling tracing""".split())
+MODULES = tuple("""equality evaluation.functions collections.lists collections.list_search collections.sequences
+    collections.sequence_change collections.sequence_mapping collections.sequence_search collections.sequence_sort
+    collections.strings collections.characters collections.hash_tables collections.arrays collections.array_making
+    numbers.arithmetic numbers.rounding numbers.irrational numbers.bits numbers.random_state numbers.numbers
+    types.types objects.classes objects.class_definition objects.slots objects.protocol objects.generic
+    objects.structures streams.streams streams.stream_functions streams.file_streams files.pathnames
+    files.wild_pathnames files.logical_pathnames files.files streams.file_stream_functions
+    evaluation.universal_time evaluation.environment files.program_files printer.printer printer.pretty
+    printer.pprint_dispatch format.format reader.reader reader.tokens reader.readtables reader.reader_functions
+    symbols.symbols symbols.package_functions evaluation.declarations evaluation.control evaluation.forms
+    tools.documentation tools.describing tools.inspecting tools.apropos tools.disassembling tools.tracing""".split())
 """The modules that define functions of Common Lisp; later ones win where two define a name."""
 
 HELPERS = {
-    "class_definition": "slot-spec define-class define-condition",
-    "generic": "define-generic define-method",
-    "method_combination": "define-short-combination define-long-combination",
-    "structures": "structure-slot define-structure unsupplied",
-    "types": "define-type",
-    "printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
+    "objects.class_definition": "slot-spec define-class define-condition",
+    "objects.generic": "define-generic define-method",
+    "objects.method_combination": "define-short-combination define-long-combination",
+    "objects.structures": "structure-slot define-structure unsupplied",
+    "types.types": "define-type",
+    "printer.printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
         make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
-    "file_streams": "with-open-file with-open-stream",
-    "assertions": "assertion-failed assertion-prompt",
-    "forms": "define-compiler-macro",
-    "declarations": "declaim",
-    "compilation_unit": "with-compilation-unit",
-    "definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
-    "loop_support": "car-of-cons cdr-of-cons end-of-list collect collect-append collect-nconc loop-vector table-entries loop-symbols",
-    "places_in_source": "source-position",
-    "places": "define-modifier define-setf-function define-setf-form define-expander",
-    "expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
+    "streams.file_streams": "with-open-file with-open-stream",
+    "evaluation.assertions": "assertion-failed assertion-prompt",
+    "evaluation.forms": "define-compiler-macro",
+    "evaluation.declarations": "declaim",
+    "evaluation.compilation_unit": "with-compilation-unit",
+    "evaluation.definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
+    "loop.loop_support": "car-of-cons cdr-of-cons end-of-list collect collect-append collect-nconc loop-vector table-entries loop-symbols",
+    "evaluation.places_in_source": "source-position",
+    "evaluation.places": "define-modifier define-setf-function define-setf-form define-expander",
+    "evaluation.expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
         handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
         signal-with-restarts with-condition-restarts hash-table-iterator
         put-property remove-property next-method-exists""",
-    "package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",
-    "tracing": "trace untrace time step",
+    "symbols.package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",
+    "tools.tracing": "trace untrace time step",
 }
 
 
@@ -57,7 +64,7 @@ def fill():
             sym(constant).constant = True
         for lisp_name, setter in getattr(module, "SETTERS", {}).items():
             sym(lisp_name).setf_function = lispify(setter)
-    for name in ("clos_printing", "file_printers"):  # teach the printer about classes, pathnames, streams
+    for name in ("objects.clos_printing", "printer.file_printers"):  # teach the printer about classes, pathnames, streams
         importlib.import_module(f"{__package__}.{name}")
     for name, names in HELPERS.items():
         define_face("CRAMHY", functions={importlib.import_module(f"{__package__}.{name}"): names})

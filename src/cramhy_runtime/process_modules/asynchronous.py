@@ -17,7 +17,7 @@ from ..cpl.tasks import current_task, pause
 from ..cpl.waiting import wait_for, whenever
 from ..lisp.conditions import error
 from ..lisp.data import Cons
-from ..lisp.generic import generic
+from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
 from .modules import (
     OFFLINE,

@@ -14,7 +14,7 @@ from ..designators.classes import ActionDesignator, DesignatorError, MotionDesig
 from ..designators.resolution import reference
 from ..lisp.conditions import handler_case, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list
-from ..lisp.generic import generic
+from ..lisp.objects.generic import generic
 from ..lisp.packages import find_package, keyword
 from ..prolog.query import holds
 from .matching import execute_by, running_matches

@@ -26,14 +26,14 @@ from ..cpl.tasks import EVAPORATED, Task, current_task, pause
 from ..cpl.tasks import FAILED as TASK_FAILED
 from ..cpl.waiting import wait_for
 from ..designators.equating import current_desig
-from ..lisp.class_definition import define_class
-from ..lisp.classes import class_name, find_class_or_error, make_instance
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import DEBUGGER_HOOK, Error, error, handler_bind, invoke_debugger, restart_case, warn
 from ..lisp.data import Symbol, all_values, lisp_list, list_from, python_list, truth, values
 from ..lisp.dynamic import binding
-from ..lisp.generic import generic
 from ..lisp.hooks import Hook
+from ..lisp.objects.class_definition import define_class
+from ..lisp.objects.classes import class_name, find_class_or_error, make_instance
+from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
 from .registry import ProcessModuleNotRunning, ProcessModuleRunning, is_defined, module_called, register_process_module, running, unknown
 from .symbols import sym

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..lisp.data import list_from
-from ..lisp.describing import describe_facts, describe_object
-from ..lisp.printer import define_printer, print_unreadable
+from ..lisp.printer.printer import define_printer, print_unreadable
+from ..lisp.tools.describing import describe_facts, describe_object
 from .modules import AbstractProcessModule, ProcessModule
 
 

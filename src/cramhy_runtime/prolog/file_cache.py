@@ -47,7 +47,7 @@ def file_value(file, compute):
 
 def execute_string(string, *, filename=None, cleanup=True):
     """``cut:execute-string``: evaluate the forms in a string; T."""
-    from cramhy_runtime.lisp.loader import load_text
+    from cramhy_runtime.lisp.systems.loader import load_text
 
     load_text(str(string), filename and str(filename) or "<string>")
     return True

@@ -14,10 +14,10 @@ from cramhy_runtime import kernel
 from cramhy_runtime.lisp.conditions import error
 from cramhy_runtime.lisp.data import UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, one, truth
 from cramhy_runtime.lisp.dynamic import binding, special
-from cramhy_runtime.lisp.functions import function_of
+from cramhy_runtime.lisp.evaluation.functions import function_of
 from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer import address, define_printer, output_object, print_unreadable, write
-from cramhy_runtime.lisp.standard_printers import print_slots
+from cramhy_runtime.lisp.printer.printer import address, define_printer, output_object, print_unreadable, write
+from cramhy_runtime.lisp.printer.standard_printers import print_slots
 
 from .symbols import sym
 

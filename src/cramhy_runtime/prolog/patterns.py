@@ -12,7 +12,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp import equality
 from cramhy_runtime.lisp.conditions import error, warn
 from cramhy_runtime.lisp.data import Cons, Keyword, LispString, MultipleValues, Symbol, list_from, one, truth
-from cramhy_runtime.lisp.functions import function_of
+from cramhy_runtime.lisp.evaluation.functions import function_of
 
 from .lazy_lists import LazyTail, lazy_cdr
 from .symbols import CUT

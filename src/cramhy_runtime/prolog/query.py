@@ -15,7 +15,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.conditions import type_error
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
 
-from cramhy_runtime.lisp.functions import function_of
+from cramhy_runtime.lisp.evaluation.functions import function_of
 from cramhy_runtime.lisp.hooks import Hook
 
 from . import (

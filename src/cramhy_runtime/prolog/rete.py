@@ -12,10 +12,10 @@ from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn
 from cramhy_runtime.lisp.data import Cons, list_from, python_list
 from cramhy_runtime.lisp.dynamic import binding, special
 from cramhy_runtime.lisp.equality import eql, eql_key
-from cramhy_runtime.lisp.functions import function_of
+from cramhy_runtime.lisp.evaluation.functions import function_of
 from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer import define_printer
-from cramhy_runtime.lisp.standard_printers import print_slots
+from cramhy_runtime.lisp.printer.printer import define_printer
+from cramhy_runtime.lisp.printer.standard_printers import print_slots
 
 from .lazy_lists import from_iterator
 from .natives import predicate

@@ -13,7 +13,7 @@ from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, warn
 from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from, one, python_list, truth
 from cramhy_runtime.lisp.equality import eql
-from cramhy_runtime.lisp.functions import function_of, identity
+from cramhy_runtime.lisp.evaluation.functions import function_of, identity
 
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 import traceback
 
-from cramhy_runtime.lisp.places_in_source import describe, frame_position, is_user_file
+from cramhy_runtime.lisp.evaluation.places_in_source import describe, frame_position, is_user_file
 
 KINDS = ("none", "lisp", "python")
 _kind = "none"

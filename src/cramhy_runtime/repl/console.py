@@ -12,8 +12,9 @@ import select
 import sys
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions, streams
-from cramhy_runtime.lisp.advice import explanation
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.streams import streams
+from cramhy_runtime.lisp.tools.advice import explanation
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
 
@@ -24,7 +25,7 @@ from .session import Interruption, condition_of, handle_interrupts, signalled_he
 
 def condition_type(condition):
     """The name of the class of ``condition`` as the debugger shows it."""
-    from cramhy_runtime.lisp.classes import class_name
+    from cramhy_runtime.lisp.objects.classes import class_name
 
     name = class_name(type(condition))
     return symbol_name(name) if symbol_package(name) in (COMMON_LISP, None) else printed(name)
@@ -116,7 +117,7 @@ class Console:
 
     def read_text(self, prompt):
         """Lines until they make whole forms; ``None`` at the end of input. Ctrl-C forgets a form that is being typed."""
-        from cramhy_runtime.lisp.reader import incomplete
+        from cramhy_runtime.lisp.reader.reader import incomplete
 
         lines = []
         while True:
@@ -167,7 +168,7 @@ class Console:
 
     def show(self, values):
         """Print values, each on a line of its own."""
-        from cramhy_runtime.lisp.printer import prin1_to_string
+        from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
         output = streams.CONSOLE_OUTPUT
         output.fresh_line()

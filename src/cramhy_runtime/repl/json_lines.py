@@ -11,11 +11,13 @@ from __future__ import annotations
 import json
 import sys
 
-from cramhy_runtime.lisp import compilation_unit, conditions, streams
-from cramhy_runtime.lisp.advice import hint_for, report_text
-from cramhy_runtime.lisp.classes import class_name
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.evaluation import compilation_unit
+from cramhy_runtime.lisp.streams import streams
+from cramhy_runtime.lisp.tools.advice import hint_for, report_text
+from cramhy_runtime.lisp.objects.classes import class_name
 from cramhy_runtime.lisp.packages import COMMON_LISP, symbol_name, symbol_package
-from cramhy_runtime.lisp.places_in_source import describe
+from cramhy_runtime.lisp.evaluation.places_in_source import describe
 
 from . import backtrace
 from .session import Interruption, condition_of, signalled_here
@@ -76,7 +78,7 @@ def _evaluate(session, text):
         completed, values = session.with_abort(lambda: session.evaluate_text(text))
         if not completed:
             return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
-        from cramhy_runtime.lisp.printer import prin1_to_string
+        from cramhy_runtime.lisp.printer.printer import prin1_to_string
 
         printed = [prin1_to_string(value) for value in values]
     except Interruption:

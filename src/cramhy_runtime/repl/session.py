@@ -16,15 +16,17 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp import asdf, conditions, evaluator, systems, unit_tests
-from cramhy_runtime.lisp.compilation_unit import signalling_position
+from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.evaluation import evaluator
+from cramhy_runtime.lisp.systems import asdf, systems, unit_tests
+from cramhy_runtime.lisp.evaluation.compilation_unit import signalling_position
 from cramhy_runtime.lisp.conditions import Condition, from_python
 from cramhy_runtime.lisp.data import all_values, list_from
 from cramhy_runtime.lisp.faces import define_face
-from cramhy_runtime.lisp.namestrings import parse_native
+from cramhy_runtime.lisp.files.namestrings import parse_native
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
-from cramhy_runtime.lisp.pathnames import DEFAULTS
-from cramhy_runtime.lisp.places_in_source import locate
+from cramhy_runtime.lisp.files.pathnames import DEFAULTS
+from cramhy_runtime.lisp.evaluation.places_in_source import locate
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
@@ -97,7 +99,7 @@ class Session:
             kernel.interrupt_over()
 
     def _load(self, system):
-        from cramhy_runtime.lisp import loader
+        from cramhy_runtime.lisp.systems import loader
 
         if system.endswith((".lisp", ".hy")):
             loader.load_file(system)
@@ -140,7 +142,7 @@ class Session:
 
     def forms(self, text, name=None):
         """The forms of a text typed at the prompt, each with the reader that knows its places."""
-        from cramhy_runtime.lisp.reader import Reader
+        from cramhy_runtime.lisp.reader.reader import Reader
 
         self.texts += 1
         name = name or f"<repl {self.texts}>"

@@ -107,7 +107,7 @@ def _roscore(arguments):
 
 
 def _roscd(arguments):
-    from cramhy_runtime.lisp import systems
+    from cramhy_runtime.lisp.systems import systems
 
     if not arguments:
         here = Path.cwd()

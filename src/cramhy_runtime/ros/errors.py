@@ -10,8 +10,8 @@ from __future__ import annotations
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, Error, SimpleError
 from ..lisp.faces import define_face
-from ..lisp.format import format_to_string
-from ..lisp.printer import princ_to_string
+from ..lisp.format.format import format_to_string
+from ..lisp.printer.printer import princ_to_string
 
 for _package in ("ROSLISP", "ROSLISP-UTILITIES"):
     define_face(_package)  # their tables are in package.py; modules that only need some symbol find the packages here

@@ -10,9 +10,9 @@ from __future__ import annotations
 from ..lisp import conditions
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, LispString, Symbol, lisp_list, list_from
-from ..lisp.format import format_to_string
+from ..lisp.format.format import format_to_string
 from ..lisp.packages import intern, string_designator, sym, symbol_name
-from ..lisp.printer import princ_to_string
+from ..lisp.printer.printer import princ_to_string
 from . import graph, messages
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16

@@ -8,13 +8,13 @@ last to the first, so of two values for one field the first one counts (roslisp.
 from __future__ import annotations
 
 from ..lisp import conditions
-from ..lisp.classes import make_instance
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, Symbol, list_from, python_list
-from ..lisp.generic_errors import no_applicable_method
+from ..lisp.objects.classes import make_instance
+from ..lisp.objects.generic_errors import no_applicable_method
+from ..lisp.objects.slots import MissingSlot
 from ..lisp.packages import COMMON_LISP, sym, symbol_name
-from ..lisp.printer import princ_to_string
-from ..lisp.slots import MissingSlot
+from ..lisp.printer.printer import princ_to_string
 from . import messages
 from .messages import RosMessage, lisp_attribute
 

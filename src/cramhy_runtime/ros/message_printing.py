@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from ..lisp.data import list_from
 from ..lisp.packages import sym
-from ..lisp.pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
-from ..lisp.pretty import logical_block, pprint_indent, pprint_newline
-from ..lisp.print_controls import PRINT_PRETTY
-from ..lisp.printer import define_printer, output_object, print_unreadable
-from ..lisp.standard_printers import print_slots
-from ..lisp.streams import output_stream
+from ..lisp.printer.pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
+from ..lisp.printer.pretty import logical_block, pprint_indent, pprint_newline
+from ..lisp.printer.print_controls import PRINT_PRETTY
+from ..lisp.printer.printer import define_printer, output_object, print_unreadable
+from ..lisp.printer.standard_printers import print_slots
+from ..lisp.streams.streams import output_stream
 from .message_building import ros_message_to_list
 from .messages import RosMessage, ServiceType
 from .node import Uri

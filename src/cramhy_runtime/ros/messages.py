@@ -11,10 +11,10 @@ from __future__ import annotations
 from inspect import Parameter, Signature
 
 from ..lisp import conditions
-from ..lisp.classes import find_class_or_error
 from ..lisp.condition_types import CaseFailure, SimpleError
 from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
-from ..lisp.generic_errors import no_applicable_method
+from ..lisp.objects.classes import find_class_or_error
+from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import Package, find_package, intern, register, string_designator, sym
 from . import definition_text
 

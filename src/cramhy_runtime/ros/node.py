@@ -15,7 +15,7 @@ from ..lisp.condition_types import SimpleError
 from ..lisp.data import LispString, python_list
 from ..lisp.dynamic import special
 from ..lisp.packages import sym
-from ..lisp.printer import princ_to_string
+from ..lisp.printer.printer import princ_to_string
 from . import graph, logging, messages, names, parameters
 from .errors import ros_error
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 from operator import attrgetter
 
 from ..lisp import conditions
-from ..lisp.classes import register_class
 from ..lisp.faces import define_face
-from ..lisp.generic_errors import no_applicable_method_error
-from ..lisp.printer import define_printer
+from ..lisp.objects.classes import register_class
+from ..lisp.objects.generic_errors import no_applicable_method_error
+from ..lisp.printer.printer import define_printer
 from . import (
     definition_text,
     graph,

@@ -13,9 +13,9 @@ from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import Error, SimpleError, SimpleTypeError, shown
 from ..lisp.data import LispString, Symbol
-from ..lisp.generic_errors import no_applicable_method
+from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import sym, symbol_name
-from ..lisp.printer import princ_to_string
+from ..lisp.printer.printer import princ_to_string
 from . import messages, wire
 from .errors import ServiceCallError, ServiceError, ros_error, rpc_error
 from .message_building import get_field, instance

@@ -14,8 +14,8 @@ from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, Error, SimpleError, SimpleTypeError, formatted, shown
 from ..lisp.data import NO_VALUES, LispString, Symbol
-from ..lisp.format import format_to_string
-from ..lisp.generic_errors import no_applicable_method, no_primary_method
+from ..lisp.format.format import format_to_string
+from ..lisp.objects.generic_errors import no_applicable_method, no_primary_method
 from . import wire
 from .errors import ros_error
 from .messages import RosMessage, topic_class

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 
 from ..lisp import conditions
-from ..lisp.arithmetic import is_real, single
 from ..lisp.condition_types import SimpleError
 from ..lisp.data import Cons, DoubleFloat, LispString, Symbol
-from ..lisp.generic_errors import no_applicable_method
+from ..lisp.numbers.arithmetic import is_real, single
+from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import intern
-from ..lisp.printer import prin1_to_string
+from ..lisp.printer.printer import prin1_to_string
 from . import messages
 from .definition_text import INTEGERS
 

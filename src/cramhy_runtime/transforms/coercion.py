@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cramhy_runtime.lisp.arithmetic import single
+from cramhy_runtime.lisp.numbers.arithmetic import single
 from cramhy_runtime.lisp.conditions import SimpleTypeError, error, type_error
 from cramhy_runtime.lisp.data import DoubleFloat
-from cramhy_runtime.lisp.generic_errors import no_applicable_method
-from cramhy_runtime.lisp.vectors import LispArray
+from cramhy_runtime.lisp.objects.generic_errors import no_applicable_method
+from cramhy_runtime.lisp.collections.vectors import LispArray
 
 
 def real(value, context=""):

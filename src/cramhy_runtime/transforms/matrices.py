@@ -6,7 +6,7 @@ import math
 
 from cramhy_runtime.lisp.conditions import error, type_error
 from cramhy_runtime.lisp.data import DoubleFloat
-from cramhy_runtime.lisp.vectors import LispArray
+from cramhy_runtime.lisp.collections.vectors import LispArray
 
 from .coercion import instance, real
 from .poses import Pose, Transform, make_transform, pose_to_transform

@@ -5,8 +5,8 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import DoubleFloat, truth
 from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.print_controls import PRINT_ESCAPE
-from cramhy_runtime.lisp.printer import define_printer, prin1_to_string, write
+from cramhy_runtime.lisp.printer.print_controls import PRINT_ESCAPE
+from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, write
 
 from . import matrices, poses, quaternions, vectors
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.arithmetic import is_real, single
+from cramhy_runtime.lisp.numbers.arithmetic import is_real, single
 from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, error, type_error
 from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from
 from cramhy_runtime.lisp.packages import keyword

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.arithmetic import is_real
+from cramhy_runtime.lisp.numbers.arithmetic import is_real
 from cramhy_runtime.lisp.conditions import DivisionByZero, error, type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import DoubleFloat
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..lisp import conditions
 from ..lisp.faces import define_face
 from ..lisp.packages import string_designator
-from ..lisp.streams import STANDARD_OUTPUT
+from ..lisp.streams.streams import STANDARD_OUTPUT
 from ..ros import graph
 from .node import running_simulator, start_turtlesim
 from .teleop import KEYS, NAMED_KEYS, Teleop

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import struct
 
-from ..lisp.arithmetic import single
+from ..lisp.numbers.arithmetic import single
 from .canvas import METRE, SIZE
 
 _five_singles = struct.Struct("<5f")

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from ..conditions import CompileError, SimpleProgramError, error
 from ..data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
-from ..compilation_unit import expanding
+from ..evaluation.compilation_unit import expanding
+from ..evaluation.lambda_lists import parse
+from ..evaluation.macros import ensure_loaded, macroexpand_1
 from ..faces import python_name
-from ..form_places import FormPlaces
-from ..lambda_lists import parse
-from ..macros import ensure_loaded, macroexpand_1
-from ..methods import Shape
+from ..objects.methods import Shape
 from ..packages import is_symbol, sym
+from ..reader.form_places import FormPlaces
 from . import nodes
 from .declared_types import declared_types, kind_of_type
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable

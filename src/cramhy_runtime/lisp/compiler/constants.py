@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..backquote import Comma
-from ..complex_numbers import parts
 from ..data import Character, Cons, DoubleFloat, Symbol
+from ..numbers.complex_numbers import parts
+from ..reader.backquote import Comma
 from .core import List, expression, word
 
 

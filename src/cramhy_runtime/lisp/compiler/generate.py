@@ -10,7 +10,7 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 from __future__ import annotations
 
 from ..data import Symbol, UndefinedFunction
-from ..format_templates import SMALL, template
+from ..format.format_templates import SMALL, template
 from ..packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model

@@ -8,8 +8,8 @@ several lists end with the shortest. What has another shape (a lambda list with 
 from __future__ import annotations
 
 from ..data import Cons, Symbol, lisp_list, list_from
-from ..lambda_lists import gensym
-from ..loop_support import CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_NCONC, END_OF_LIST
+from ..evaluation.lambda_lists import gensym
+from ..loop.loop_support import CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_NCONC, END_OF_LIST
 from ..packages import sym
 
 MAPCAR, MAPC, MAPCAN = map(sym, "MAPCAR MAPC MAPCAN".split())

@@ -8,16 +8,16 @@ Texts are SBCL's.
 
 from __future__ import annotations
 
-from .. import compilation_unit
-from ..conditions import SimpleStyleWarning, SimpleWarning, error
 from ..condition_types import shown_with
-from ..compilation_unit import Mention
+from ..conditions import SimpleStyleWarning, SimpleWarning, error
 from ..data import Cons, Keyword, Symbol
-from ..declaration_names import EXTENSIONS, is_declared, is_extension
-from ..function_shapes import wrong_call
+from ..evaluation import compilation_unit
+from ..evaluation.compilation_unit import Mention
+from ..evaluation.declaration_names import EXTENSIONS, is_declared, is_extension
+from ..evaluation.function_shapes import wrong_call
 from ..packages import COMMON_LISP, sym
 from ..standard_names import missing
-from ..types import is_known_type
+from ..types.types import is_known_type
 from .environment import Variable
 
 CRAMHY = sym("CRAMHY::X").package

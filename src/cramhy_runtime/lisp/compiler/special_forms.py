@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from ..conditions import Condition
 from ..data import Cons, Symbol, lisp_list, list_from, truth
-from ..lambda_lists import gensym
-from ..methods import Shape
+from ..evaluation.lambda_lists import gensym
 from ..late import late
-from ..package_errors import locked
+from ..objects.methods import Shape
 from ..packages import COMMON_LISP, is_symbol, sym
+from ..symbols.package_errors import locked
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable

@@ -13,19 +13,19 @@ from types import FunctionType
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import TICKS, budget
 
-from .. import arithmetic
-from ..backquote import Comma
 from ..conditions import (HandlerExit, SimpleControlError, caught, enter_case, error, foreign_case, program_error,
                           unbound_variable)
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
 from ..dynamic import Bindings, bind, unbind
-from ..format_templates import decimal, prin1_atom, princ_atom
-from ..functions import function_of
-from ..generic import FirstOfTwo, UnaryGeneric
-from ..irrational import complex_
+from ..evaluation.functions import function_of
+from ..format.format_templates import decimal, prin1_atom, princ_atom
 from ..late import late
+from ..numbers import arithmetic
+from ..numbers.irrational import complex_
+from ..objects.generic import FirstOfTwo, UnaryGeneric
 from ..packages import intern, keyword, printed, sym
+from ..reader.backquote import Comma
 from .declared_types import checked
 
 

@@ -1,0 +1,1 @@
+"""Lists, arrays, strings, sequences and hash tables (ANSI chapters 13 to 18)."""

@@ -1,0 +1,97 @@
+"""Functions about functions, forms and the environment (ANSI chapters 3, 5, 9, 25)."""
+
+from __future__ import annotations
+
+from .. import conditions
+from ..conditions import type_error
+from ..data import UNBOUND, Cons, list_from, one
+from ..packages import is_symbol
+from ..symbols.symbols import invalid_name
+from .evaluator import evaluate
+from .functions import functionp
+
+LISP_NAMES = """eval compiled-function-p fdefinition get-setf-expansion
+error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
+abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
+simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
+arithmetic-error-operation arithmetic-error-operands print-not-readable-object stream-error-stream file-error-pathname"""
+
+
+compiled_function_p = functionp
+eval_ = evaluate
+
+
+def fdefinition(name):
+    from ..compiler.support import fdefinition as definition
+    from ..compiler.support import setf_function
+
+    if not isinstance(name, Cons) and not is_symbol(name):
+        return error(invalid_name(name))
+    return setf_function(name.cdr.car) if isinstance(name, Cons) else definition(name)
+
+
+def get_setf_expansion(place, environment=None):
+    from .places import get_setf_expansion as expansion
+
+    return expansion(place, environment)
+
+
+error, signal, warn, cerror, break_ = conditions.error, conditions.signal, conditions.warn, conditions.cerror, conditions.break_
+invoke_debugger = conditions.invoke_debugger
+
+
+def compute_restarts(condition=None):
+    return list_from(conditions.compute_restarts(condition))
+
+
+find_restart, invoke_restart = conditions.find_restart, conditions.invoke_restart
+invoke_restart_interactively = conditions.invoke_restart_interactively
+abort, continue_, muffle_warning = conditions.abort, conditions.continue_, conditions.muffle_warning
+use_value, store_value = conditions.use_value, conditions.store_value
+
+
+def restart_name(restart):
+    return restart.name
+
+
+def make_condition(kind, *arguments):
+    return conditions.make_condition(kind, arguments)
+
+
+def _reader(attribute, kind="Condition"):
+    def reader(condition):
+        if not isinstance(condition, conditions.Condition):
+            return type_error(condition, "CONDITION")
+        value = getattr(condition, attribute, UNBOUND)
+        return type_error(condition, getattr(conditions, kind).lisp_name) if value is UNBOUND else value
+
+    return reader
+
+
+simple_condition_format_control = _reader("format_control", "SimpleCondition")
+type_error_datum = _reader("datum", "TypeError_")
+
+
+def type_error_expected_type(condition):
+    """The type specifier. The runtime names types by their printed form, which is read here."""
+    expected = condition.expected_type
+    if not isinstance(expected, str):
+        return expected
+    from ..dynamic import binding
+    from .evaluator import PACKAGE
+    from ..packages import COMMON_LISP
+    from ..reader.reader import read_from_string
+
+    with binding(PACKAGE, COMMON_LISP):
+        return one(read_from_string(expected))
+
+
+print_not_readable_object = _reader("object", "PrintNotReadable")
+cell_error_name, unbound_slot_instance = _reader("name"), _reader("instance")
+arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _reader("operands")
+stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
+
+
+def simple_condition_format_arguments(condition):
+    arguments = condition.format_arguments
+    return list_from(arguments) if isinstance(arguments, tuple) else arguments

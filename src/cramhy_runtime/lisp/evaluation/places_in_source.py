@@ -1,0 +1,103 @@
+"""Where in the user's text something happens: from Python frames back to file, line and column.
+
+Compiled code carries the places of its forms, because Hy models do and Python's code objects keep them. So an error knows the
+innermost frame of a ``.lisp`` or ``.hy`` file or of a REPL line, and shows that line; frames of the runtime are not shown.
+"""
+
+from __future__ import annotations
+
+import linecache
+import sys
+from pathlib import Path
+
+from ..data import list_from
+
+_LIBRARIES = str(Path(__file__).parents[2] / "libraries")
+
+
+def is_user_file(filename):
+    """Whether code of this file name was written by the user: Lisp, Hy, or typed at the REPL."""
+    return filename.endswith((".lisp", ".hy", ".asd")) and "hy_src" not in filename and not filename.startswith(_LIBRARIES) \
+        or filename.startswith("<repl")
+
+
+def frame_position(frame, lasti=None):
+    """(file, line, column) of what ``frame`` is executing; the column may be ``None``."""
+    code = frame.f_code
+    lasti = frame.f_lasti if lasti is None else lasti
+    line, column = frame.f_lineno, None
+    for index, position in enumerate(code.co_positions()):
+        if index == lasti // 2:
+            line, _, column, _ = position
+            break
+    return code.co_filename, line, column
+
+
+def user_position(frame=None):
+    """The place of the innermost user frame at or above ``frame`` (default: the caller), or ``None``."""
+    frame = frame or sys._getframe(1)
+    while frame is not None:
+        if is_user_file(frame.f_code.co_filename):
+            return frame_position(frame)
+        frame = frame.f_back
+    return None
+
+
+def exception_position(exception):
+    """The place of the innermost user frame that ``exception`` passed, or ``None``."""
+    found, traceback = None, exception.__traceback__
+    while traceback is not None:
+        if is_user_file(traceback.tb_frame.f_code.co_filename):
+            found = traceback
+        traceback = traceback.tb_next
+    return found and frame_position(found.tb_frame, found.tb_lasti)
+
+
+def locate(condition, exception):
+    """Note on ``condition`` the innermost place of the user's text that ``exception`` passed, if no better one is known."""
+    if getattr(condition, "position", None) is None:
+        position = exception_position(exception)
+        if position is not None:
+            condition.position = position
+
+
+def source_position():
+    """``cramhy::source-position``: the place of the innermost user frame as a list (file line column), or ``nil``."""
+    return list_from(user_position(sys._getframe(1)) or ())
+
+
+def describe(position):
+    """``file:line:column`` in the user's spelling."""
+    if position is None:
+        return None
+    filename, line, *column = position
+    shown = _relative(filename)
+    return ":".join([shown, str(line), *(str(part) for part in column if part is not None)])
+
+
+def _relative(filename):
+    import os
+
+    if filename.startswith("<"):
+        return filename
+    relative = os.path.relpath(filename)
+    return filename if relative.startswith("..") else relative
+
+
+def excerpt(position):
+    """The line of ``position`` with a caret under the column, two lines; empty when there is no such line."""
+    if position is None:
+        return ""
+    filename, line, *rest = position
+    text = linecache.getline(filename, line).rstrip("\n")
+    if not text.strip():
+        return ""
+    column = rest[0] if rest else None
+    if column is None or not 0 < column <= len(text) + 1:
+        return f"  {text}"
+    return f"  {text}\n  {' ' * (column - 1)}^"
+
+
+def describe_frame(frame):
+    """For the kernel's reports: the place in the user's text that ``frame`` stands in."""
+    return describe(user_position(frame)) if frame is not None else None

@@ -1,0 +1,1 @@
+"""Pathnames and files (ANSI chapters 19 and 20)."""

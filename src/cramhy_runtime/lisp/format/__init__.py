@@ -1,0 +1,1 @@
+"""``format``: its control strings and their directives (ANSI 22.3)."""

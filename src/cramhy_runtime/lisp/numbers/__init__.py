@@ -1,0 +1,1 @@
+"""Numbers (ANSI chapter 12)."""

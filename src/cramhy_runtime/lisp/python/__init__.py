@@ -1,0 +1,1 @@
+"""Python from Lisp, and Lisp from Python."""

@@ -1,0 +1,1 @@
+"""The reader: text in, forms out (ANSI chapters 2 and 23)."""

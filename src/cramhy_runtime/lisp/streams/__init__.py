@@ -1,0 +1,1 @@
+"""Streams (ANSI chapter 21)."""

@@ -1,0 +1,1 @@
+"""Files and systems of programs: loading, ASDF, and Lisp packages as Python modules."""

@@ -1,0 +1,197 @@
+"""Loading files of Lisp: read a form, compile it, run it, go on with the next.
+
+``.lisp`` files are read by our reader from the first character on; in ``.hy`` files the line ``(require cramhy *)`` says that
+what follows ``(in-package ...)`` is the same language, so they are loaded in the same way (run by ``hy`` itself, the macro
+``in-package`` takes the reader over: see ``hy_src/cramhy/__init__.hy``).
+
+What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written, in the user's cache folder).
+A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system, and
+cramhy itself. So an unchanged system loads without compiling, and without importing Hy.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import linecache
+import marshal
+import os
+import sys
+from pathlib import Path
+
+from ..conditions import CompileError, Condition, FileError, error
+from ..data import Cons, all_values
+from ..dynamic import binding
+from ..evaluation.compilation_unit import compilation_unit
+from ..evaluation.evaluator import PACKAGE, Unit, new_namespace
+from ..evaluation.places_in_source import locate as locate_by_traceback
+from ..files.files import lisp_path
+from ..packages import sym, symbol_name
+from ..reader.readtables import READTABLE
+
+LOAD_PATHNAME, LOAD_TRUENAME = sym("*LOAD-PATHNAME*"), sym("*LOAD-TRUENAME*")
+for _variable in (LOAD_PATHNAME, LOAD_TRUENAME):
+    _variable.value, _variable.special = None, True
+
+_stamp = None
+
+
+def stamp():
+    """A fingerprint of cramhy itself: kept files made by another version are not used."""
+    global _stamp
+    if _stamp is None:
+        digest = hashlib.sha256(sys.version.encode())
+        here = Path(__file__).parents[1]
+        folders = [here, *(entry for room in (here, here.parent / "libraries") for entry in room.iterdir() if entry.is_dir())]
+        language = importlib.util.find_spec("cramhy")
+        if language and language.submodule_search_locations:
+            folders += map(Path, language.submodule_search_locations)
+        for folder in folders:
+            for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
+                if entry.name.endswith((".py", ".hy", ".lisp")):
+                    status = entry.stat()
+                    digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode())
+        _stamp = digest.hexdigest()
+    return _stamp
+
+
+def kept_path(path):
+    """Where the compiled form of ``path`` is kept: beside it if possible."""
+    folder = path.parent / "__pycache__"
+    name = f"{path.name}.{sys.implementation.cache_tag}.cramhy"
+    if os.access(folder if folder.exists() else path.parent, os.W_OK):
+        return folder / name
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cramhy"
+    return cache / f"{hashlib.sha256(str(path).encode()).hexdigest()[:16]}-{name}"
+
+
+def decoded(path, encoding=None):
+    """The text of a source file, UTF-8 if nothing else is said. What cannot be read is a file-error."""
+    try:
+        data = path.read_bytes()
+        return data.decode(encoding or "utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except OSError as problem:
+        return error(FileError(lisp_path(path), "Cannot load ~A: ~A.", str(path), problem.strerror))
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        return error(FileError(lisp_path(path), "Cannot load ~A: it is no UTF-8 text (line ~D, byte ~D of the file). Save it as UTF-8.",
+                               str(path), line, problem.start))
+
+
+def load_file(path, chain="", finished=None, show=None, encoding=None):
+    """Load a ``.lisp`` or ``.hy`` file; ``*package*`` and ``*readtable*`` are the same afterwards as before.
+
+    path: the file. chain: fingerprint of what was loaded before it and may define macros that it uses. finished: called with
+    the package that is current at the end of the file. show: called with the values of each form. encoding: UTF-8 if not given.
+    Returns the fingerprint of this file with its chain. A missing file is a file-error, a broken one an error with its place.
+    """
+    path = Path(path).absolute()
+    text = decoded(path, encoding)
+    fingerprint = hashlib.sha256(f"{stamp()}{chain}{path}".encode() + text.encode()).hexdigest()
+    with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path),
+                  LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
+        codes = _kept(path, fingerprint) if show is None else None
+        if codes is not None:
+            namespace = new_namespace(str(path))
+            for code in codes:
+                exec(code, namespace)
+        else:
+            with compilation_unit("file"):
+                codes = load_text(text, str(path), stored=True, show=show)
+            if codes is not None:
+                _keep(path, fingerprint, codes)
+        if finished is not None:
+            finished(PACKAGE.value)
+    return fingerprint
+
+
+def load_text(text, filename, stored=False, show=None):
+    """Load the forms of ``text``; with ``stored`` return their code objects, or ``None`` if they cannot be kept.
+
+    show: called with the values of each form.
+    """
+    from ..reader.reader import Reader
+
+    reader = Reader(text, filename=filename)
+    unit = Unit(filename, reader.positions, stored=stored)
+    linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
+    end, codes = object(), []
+    while True:
+        form = reader.read(eof_error=False, eof_value=end)
+        if form is end:
+            return codes
+        if _is_hy_requirement(form):
+            continue
+        try:
+            values = ()
+            unit.refuse_circle(form)
+            for part in unit.toplevel_parts(form):
+                code = _compile(unit, part)
+                if not unit.stored:
+                    codes = None
+                if codes is not None:
+                    codes.append(code)
+                values = all_values(unit.run(code))
+            if show is not None:
+                show(values)
+        except Condition as problem:
+            locate(problem, filename, reader.positions.get(id(form)))
+            raise
+
+
+def _compile(unit, form):
+    from ..compiler.constants import NotStorable
+
+    try:
+        return unit.compile(form)
+    except NotStorable:
+        # an object that code cannot rebuild: run this file from now on without keeping it
+        unit.stored = False
+        unit.constants = type(unit.constants)("KK")
+        return unit.compile(form)
+
+
+def locate(problem, filename, position):
+    """Give a condition the innermost place that it passed, or else that of the top-level form it left."""
+    locate_by_traceback(problem, problem)
+    if getattr(problem, "position", None) is None and position is not None:
+        try:
+            problem.position = (filename, *position[:2])
+        except AttributeError:
+            pass
+
+
+def _is_hy_requirement(form):
+    """Whether ``form`` is ``(require cramhy *)`` or another line that only Hy itself needs."""
+    return isinstance(form, Cons) and symbol_name(form.car) == "REQUIRE" and isinstance(form.cdr, Cons) \
+        and symbol_name(form.cdr.car).startswith("CRAMHY") if isinstance(form, Cons) and hasattr(form.car, "name") else False
+
+
+def _kept(path, fingerprint):
+    try:
+        data = kept_path(path).read_bytes()
+        kept, codes = marshal.loads(data)
+    except (OSError, ValueError, EOFError, TypeError):
+        return None
+    return codes if kept == fingerprint else None
+
+
+def _keep(path, fingerprint, codes):
+    if sys.dont_write_bytecode:
+        return
+    target = kept_path(path)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        temporary = target.with_suffix(f".{os.getpid()}")
+        temporary.write_bytes(marshal.dumps((fingerprint, codes)))
+        temporary.replace(target)
+    except OSError:
+        pass  # a folder that cannot be written only means compiling again next time
+
+
+def folder_of_load():
+    """The folder of the file being loaded, else the working directory."""
+    return Path(LOAD_TRUENAME.value).parent if LOAD_TRUENAME.value is not None else Path.cwd()
+
+
+__all__ = ["CompileError", "load_file", "load_text", "locate"]

@@ -1,0 +1,64 @@
+"""``ros-load``: how a user of ROS loads a system (roslisp.md section 12); and ``load`` and ``require``."""
+
+from __future__ import annotations
+
+import os
+
+from ..conditions import error
+from ..data import Cons, list_from, truth
+from ..dynamic import binding
+from ..evaluation.environment import MODULES, provide
+from ..faces import define_face
+from ..files.program_files import load
+from ..packages import string_designator, sym
+from . import systems
+
+
+def load_system(package, system=None, force=None):
+    """``(ros-load:load-system "ros_package" :system)``: load a system of a ROS package; returns T.
+
+    Without ``system`` the name of the package is the name of the system.
+    """
+    name = string_designator(package)
+    wanted = string_designator(package if system is None else system).lower()
+    with binding(sym("ROS-LOAD-MANIFEST::*CURRENT-ROS-PACKAGE*"), name):
+        systems.load_system(wanted, truth(force))
+    return True
+
+
+def ros_package_path(package):
+    """The folder of a ROS package, as a string."""
+    folder = systems.find_package_folder(string_designator(package))
+    if folder is None:
+        return error("rospack find ~A returned 1 with stderr '[rospack] Error: package '~A' not found'", package, package)
+    return str(folder) + "/"
+
+
+def ros_home():
+    return os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
+
+
+def require(module, pathnames=None):
+    """``require``: load the module of that name unless ``*modules*`` says that it is there; the names of what was loaded.
+
+    pathnames: the file or files of it; without, it is the system of that name. ASDF itself and SBCL's own modules always are there.
+    """
+    name = string_designator(module)
+    before = list(MODULES.value or ())
+    if name in before or name.lower() in ("asdf", "uiop") or name.lower().startswith("sb-"):
+        return None
+    if pathnames is None:
+        systems.load_system(name.lower())
+        provide(name)
+    for path in pathnames if isinstance(pathnames, Cons) else [pathnames] if pathnames is not None else ():
+        load(path)
+    return list_from([each for each in MODULES.value or () if each not in before])
+
+
+def define_faces():
+    """Make the package ROS-LOAD-MANIFEST (ROS-LOAD)."""
+    define_face("ROS-LOAD-MANIFEST", nicknames=["ROS-LOAD"], functions={"load-system": load_system, "ros-package-path": ros_package_path,
+                                                                        "ros-home": ros_home},
+                variables={"*CURRENT-ROS-PACKAGE*": None})
+    define_face("COMMON-LISP", functions={"require": require})
+

@@ -1,0 +1,115 @@
+"""What a condition is shown as, and what to try: a hint for a condition, written for a student (law 7).
+
+A condition may bring its own (``hint``). For names that mean nothing here the near ones are looked up: a variable whose stars
+were forgotten, a function of another package, a typing mistake.
+"""
+
+from __future__ import annotations
+
+from ..condition_types import Condition
+from ..conditions import types
+from ..data import Symbol, UNBOUND, UndefinedFunction
+from ..dynamic import binding
+from ..evaluation.places_in_source import describe, excerpt
+from ..packages import all_packages, near_names, sym, symbol_name
+from ..printer import pprint_dispatch
+from ..printer.print_controls import PACKAGE
+from ..printer.printer import princ_to_string
+
+COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
+SHOWN_PLACES = 3
+"""So many further places of the same thing are named."""
+
+
+def report_text(condition):
+    """The text of ``condition``, with messages and other long objects in their short form, as SBCL's debugger shows them."""
+    with binding(pprint_dispatch.PRINT_PPRINT_DISPATCH, pprint_dispatch.INITIAL):
+        if type(condition).report is Condition.report:  # without a :report, a method of print-object may tell what happened
+            try:
+                return princ_to_string(condition)
+            except Exception:
+                pass  # a broken method must not hide the condition
+        return str(condition)
+
+
+def explanation(condition):
+    """What, where, why and what to try: the lines that describe ``condition``."""
+    lines = [f"  {line}" for line in report_text(condition).splitlines() or [""]]
+    position = getattr(condition, "position", None)
+    if position:
+        lines.append(f"  at {describe(position)}")
+    shown = getattr(condition, "excerpt", None) or excerpt(position)
+    if shown.strip(" ^\n"):
+        lines += [f"  {line}" for line in shown.splitlines()]
+    also = getattr(condition, "also", None)
+    if also:
+        more = len(also) - SHOWN_PLACES
+        lines.append(f"  also at {', '.join(map(describe, also[:SHOWN_PLACES]))}{f' and {more} more' if more > 0 else ''}")
+    lines += _expansion(condition, position)
+    hint = hint_for(condition)
+    if hint:
+        lines.append(f"  {hint}")
+    return "\n".join(lines)
+
+
+def _expansion(condition, position):
+    """The macro call in whose expansion the condition arose, when that is not its own place."""
+    unit = COMPILATION_UNIT.value
+    entry = getattr(condition, "expanding", None) or (unit.expansions[-1] if unit is not None and unit.expansions else None)
+    place = entry and entry[1]
+    if not place or not position or tuple(place[:2]) == tuple(position[:2]):
+        return []
+    return [f"  in the expansion of the macro call at {describe(place)}", *(f"  {line}" for line in excerpt(place).splitlines())]
+
+
+def hint_for(condition):
+    """One sentence of advice, or ``None``."""
+    own = getattr(condition, "hint", None)
+    if own:
+        return own
+    name = getattr(condition, "name", None)
+    undefined = getattr(condition, "undefined", None)
+    if isinstance(name, Symbol):
+        if undefined == "variable" or isinstance(condition, types.UnboundVariable):
+            return _variable(name)
+        if undefined == "function" or isinstance(condition, types.UndefinedFunction):
+            return _function(name)
+    if isinstance(condition, types.PackageDoesNotExist):
+        near = near_names(str(symbol_name(condition.package) if isinstance(condition.package, Symbol) else condition.package),
+                          [name for package in all_packages() for name in package.names])
+        return f"Did you mean {' or '.join(near)}?" if near else "Is the system that defines it loaded?"
+    return None
+
+
+def _visible(test):
+    package = PACKAGE.value
+    for source in [package.internal, package.external, *(other.external for other in package.use)]:
+        for name, symbol in source.items():
+            if isinstance(symbol, Symbol) and test(symbol):
+                yield name
+
+
+def _variable(symbol):
+    starred = f"*{symbol.name}*"
+    variables = set(_visible(lambda other: other.value is not UNBOUND and other.special))
+    if starred in variables:
+        return f"There is a variable {starred}, with stars."
+    near = near_names(symbol.name, variables)
+    if near:
+        return f"Did you mean {' or '.join(near)}?"
+    if symbol.name.startswith("?"):
+        return f"A variable in a designator must be bound around it: (let (({symbol.name.lower()} ...)) ...)."
+    return None
+
+
+def _function(symbol):
+    def defined(other):
+        return not isinstance(other.function, UndefinedFunction) or other.macro is not None
+
+    for package in all_packages():
+        other = package.external.get(symbol.name)
+        if isinstance(other, Symbol) and other is not symbol and defined(other):
+            nickname = min(package.names, key=len).lower()
+            return f"There is {nickname}:{symbol.name.lower()} in another package."
+    near = near_names(symbol.name, set(_visible(defined)))
+    return f"Did you mean {' or '.join(near)}?" if near else None

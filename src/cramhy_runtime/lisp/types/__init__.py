@@ -1,0 +1,1 @@
+"""Type specifiers (ANSI chapter 4)."""
