@@ -119,5 +119,8 @@ def test_every_name_is_defined(values):
 
 def test_the_library_is_loaded_when_its_package_is_named(values):
     assert values("(package-name (find-package :alexandria))") == '"ALEXANDRIA"'
-    values("(defpackage :my-plans (:use :cl) (:import-from :alexandria #:curry))")
-    assert values("(funcall (my-plans::curry #'+ 1) 2)") == "3"
+    values("(defpackage :plans-with-curry (:use :cl) (:import-from :alexandria #:curry))")
+    try:
+        assert values("(funcall (plans-with-curry::curry #'+ 1) 2)") == "3"
+    finally:
+        values("(delete-package :plans-with-curry)")
