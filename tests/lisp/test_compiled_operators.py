@@ -236,3 +236,17 @@ def test_handler_case_in_place(session, program, wanted):
 ])
 def test_sums_of_numbers(session, program, wanted):
     assert answer(session, program) == wanted
+
+
+@pytest.mark.parametrize(("calls", "wanted"), [
+    ("(keyed :a 1 :b 2) (keyed :a 3 :b 4)", "((1 2) (3 4))"),
+    ("(keyed :b 1 :a 2) (keyed :b 3 :a 4) (keyed :b 5)", "((2 1) (4 3) (:NO 5))"),
+    ("(keyed :b 1) (keyed :b 2) (keyed)", "((:NO 1) (:NO 2) (:NO :NO))"),
+    ("(keyed :a 1 :b 2 :a 3) (keyed :a 4 :b 5 :a 6)", "((1 2) (4 5))"),
+    ("(keyed :a 1 :b 2) (keyed :a 1 :b)", "SIMPLE-PROGRAM-ERROR: odd number of &KEY arguments"),
+    ("(keyed :a 1 :b 2) (keyed :a 1 (list 1) 2)", "SIMPLE-PROGRAM-ERROR: unknown &KEY argument: (1) (the function takes :A, :B)"),
+    ("(keyed :a 1 :c 2 :allow-other-keys t) (keyed :a 1 :c 2 :allow-other-keys nil)",
+     "SIMPLE-PROGRAM-ERROR: unknown &KEY argument: :C (the function takes :A, :B)"),
+])
+def test_keywords_are_sorted_the_second_time_as_the_first(session, calls, wanted):
+    assert answer(session, f"(progn (defun keyed (&key (a :no) (b :no)) (list a b)) (list {calls}))") == wanted

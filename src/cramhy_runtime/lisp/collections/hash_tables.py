@@ -205,7 +205,15 @@ def gethash(key, table, default=None):
 
 def set_gethash(value, key, table, default=None):
     """``(setf gethash)``; ``default`` is accepted and not used, as in the standard."""
-    need_table(table).put(key, value)
+    if table.__class__ is not HashTable or table.weakness is not None:
+        need_table(table).put(key, value)
+        return value
+    hash_key, entries = table.hash_key(key), table.entries
+    entry = entries.get(hash_key)
+    if entry is None:
+        entries[hash_key] = [key, value]
+    else:
+        entry[1] = value
     return value
 
 

@@ -32,7 +32,7 @@ class Constants:
         self.count = 0
 
     def name(self, kind, obj):
-        """The global name for ``obj``; kind is "object", or "function" for the global function of the symbol ``obj``."""
+        """The global name for ``obj``; kind is "object", or for the symbol ``obj`` "function" or "setf_function"."""
         key = (kind, id(obj))
         found = self.names.get(key)
         if found is None:
@@ -45,7 +45,7 @@ class Constants:
     def take_objects(self):
         """name → object for the entries made since the last call."""
         fresh, self.fresh = self.fresh, []
-        return {name: obj.function if kind == "function" else obj for name, kind, obj in fresh}
+        return {name: obj if kind == "object" else getattr(obj, kind) for name, kind, obj in fresh}
 
     def take_forms(self):
         """Statements (core forms) that make the entries made since the last call."""
@@ -56,8 +56,8 @@ class Constants:
             if is_circular(obj):
                 raise NotStorable(obj)
             value = self.builder(obj, top=True)
-            if kind == "function":
-                value = expression(word("."), value, word("function"))
+            if kind != "object":
+                value = expression(word("."), value, word(kind))
             self.make(name, value)
         self.fresh = []
         return self.statements

@@ -23,6 +23,8 @@ from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS,
 
 
 COLLECT, FORMAT = sym("CRAMHY::COLLECT"), sym("FORMAT")
+KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
+"""Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
 """Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
 
@@ -353,8 +355,11 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             slow = self.positioned(expression(self.call("setf_function", symbol), new, target), node)
             self.emit(word("if"), quick, expression(word("setv"), expression(word("."), target, word(attribute)), new), slow)
             return None
-        model = expression(self.call("setf_function", self.constant(node.symbol)), *arguments)
-        return self.finish(self.positioned(model, node), node, destination)
+        if node.symbol in KNOWN_SETTERS:
+            setter = word(self.constants.name("setf_function", node.symbol))
+        else:
+            setter = self.call("setf_function", self.constant(node.symbol))
+        return self.finish(self.positioned(expression(setter, *arguments), node), node, destination)
 
     def CallSpread(self, node, destination):
         arguments = self.arguments([node.function])

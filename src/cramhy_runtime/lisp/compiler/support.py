@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import zip_longest
+from operator import itemgetter
 from types import FunctionType
 
 from cramhy_runtime import kernel
@@ -214,6 +215,10 @@ def spread(value, count):
     return value + (None,) * (count - len(value))
 
 
+KEPT_GETTERS = 32
+"""For how many sequences of keywords a function with &key keeps a getter."""
+
+
 def key_parser(table, allow_others):
     """The function that sorts the &key arguments of a call; made once for each function with &key.
 
@@ -221,12 +226,21 @@ def key_parser(table, allow_others):
     and the keyword arguments of a Python caller, and gives the values in the order of ``table``; of equal keys the first counts.
     """
     slots = {key: index for index, (key, _) in enumerate(table)}
-    missing = [value for _, value in table]
+    missing = tuple(value for _, value in table)
     slot_of = slots.get
     allow = keyword("ALLOW-OTHER-KEYS")
+    getters: dict = {}
+    getter_for = getters.get
 
     def parse(rest, python):
-        values = missing.copy()
+        if not python and not len(rest) & 1:
+            try:
+                getter = getter_for(rest[::2])
+            except TypeError:  # something that is no keyword and has no hash
+                getter = None
+            if getter is not None:
+                return getter(rest + missing)
+        values = list(missing)
         for name, value in python.items():
             rest = (*rest, keyword(name.upper().replace("_", "-")), value)
         unknown = None
@@ -246,6 +260,9 @@ def key_parser(table, allow_others):
             if not truth(allowed):
                 known = ", ".join(repr(key) for key, _ in table) or "none"
                 return program_error(f"unknown &KEY argument: ~S (the function takes {known})", rest[unknown])
+        keys = rest[::2]
+        if len(slots) > 1 and len(getters) < KEPT_GETTERS and all(key in slots for key in keys):
+            getters[keys] = itemgetter(*(2 * keys.index(key) + 1 if key in keys else len(rest) + index for key, index in slots.items()))
         return values
 
     return parse
