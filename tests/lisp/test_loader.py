@@ -275,6 +275,23 @@ def test_load_time_value_is_computed_once_for_each_load(folder):
         assert value("*ONE-BOX*") == "T"
 
 
+def test_each_load_time_value_of_a_text_has_a_place_of_its_own(folder):
+    """All of them were one variable: a scanner of cl-ppcre matched what a later function of the file looked for."""
+    path = write(folder, """(defun first-box () (load-time-value (list 1)))
+                            (defun other-boxes () (flet ((inner () (load-time-value (list 3)))) (list (load-time-value (list 2)) (inner))))
+                            (defun last-box () (load-time-value (list 4)))
+                            (defparameter *boxes* (list (first-box) (other-boxes) (last-box)))""")
+    for _ in range(2):
+        loader.load_file(path)
+        assert value("*BOXES*") == "((1) ((2) (3)) (4))"
+
+
+def test_load_time_values_of_the_repl_are_apart(session):
+    session.evaluate_text("(defun loaded-box () (load-time-value (list 1)))")
+    session.evaluate_text("(defun other-loaded-box () (load-time-value (list 2)))")
+    assert session.evaluate_text("(equal (list (loaded-box) (other-loaded-box)) '((1) (2)))") == [True]
+
+
 def test_a_kept_file_runs_in_a_process_that_compiles_nothing(tmp_path):
     """What expansions call is there without the macros: LOOP's collecting was not."""
     path = write(tmp_path, """(defparameter *got*

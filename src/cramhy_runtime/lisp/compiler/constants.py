@@ -42,6 +42,11 @@ class Constants:
             self.fresh.append((found, kind, obj))
         return found
 
+    def own_name(self, base):
+        """A global name that nothing else in the text has."""
+        self.count += 1
+        return f"{base}_{self.prefix}{self.count}"
+
     def take_objects(self):
         """name → object for the entries made since the last call."""
         fresh, self.fresh = self.fresh, []

@@ -390,7 +390,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
 
     def LoadTimeValue(self, node, destination):
         if not hasattr(node, "name"):
-            node.name = self.temporary("Lloaded")
+            node.name = self.constants.own_name("Lloaded")  # a global: functions of other forms have theirs beside it
             self.hoisted.append((node.name, node.node))
         return self.finish(word(node.name), node, destination, pure=True)
 
