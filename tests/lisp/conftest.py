@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.lisp.data import Symbol
+from cramhy_runtime.lisp.data import UNBOUND, Symbol
 from cramhy_runtime.lisp.packages import COMMON_LISP, COMMON_LISP_USER
 
 _KEPT = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data")
@@ -12,7 +12,8 @@ _KEPT = ("value", "function", "macro", "setf_function", "plist", "special", "con
 def user_package_of_its_own():
     before = dict(COMMON_LISP_USER.internal)
     contents = {symbol: [getattr(symbol, name) for name in _KEPT] for symbol in before.values() if isinstance(symbol, Symbol)}
-    variables = {symbol: symbol.value for name, symbol in COMMON_LISP.external.items() if name.startswith("*") and name.endswith("*")}
+    variables = {symbol: symbol.value for name, symbol in COMMON_LISP.external.items()
+                 if name.startswith("*") and name.endswith("*") and symbol.value is not UNBOUND}  # some get a value on a later import
     yield
     for symbol, value in variables.items():
         symbol.value = value
