@@ -49,7 +49,7 @@ def test_a_string_stream_gives_its_text_once():
 
 def test_output_can_go_to_a_string_with_a_fill_pointer():
     target = LispString("abc", fill_pointer=1, adjustable=True)
-    assert functions.call_with_output_to_string(lambda stream: stream.write("xy"), target) is None
+    StringOutputStream(target).write("xy")
     assert str(target) == "axy"
 
 

@@ -12,8 +12,9 @@ import re
 from cramhy_runtime import kernel
 
 from .data import UNBOUND, Cons
+from .dynamic import binding
 from .late import late
-from .packages import Package, is_symbol, printed, symbol_name
+from .packages import Package, all_packages, find_package, is_symbol, printed, sym, symbol_name
 
 __all__ = []
 
@@ -38,9 +39,6 @@ def shown(obj):
 
 def shown_with(obj, package):
     """``obj`` as ``prin1`` prints it while ``package`` is current."""
-    from .dynamic import binding
-    from .packages import find_package, sym
-
     with binding(sym("*PACKAGE*"), find_package(package)):
         return shown(obj)
 
@@ -372,8 +370,6 @@ class CaseFailure(TypeError_):
     lisp_name = "SB-KERNEL::CASE-FAILURE"
 
     def __init__(self, datum=None, operator="ECASE", possibilities=None, **slots):
-        from .packages import sym
-
         super().__init__(datum, Cons(sym("OR" if operator.endswith("TYPECASE") else "MEMBER"), possibilities), **slots)
         self.operator, self.possibilities = operator, possibilities
 
@@ -395,7 +391,7 @@ class CompileError(SimpleCondition, ProgramError):
 
 @public
 class PythonError(Error):
-    """An exception of Python code that is not a condition; ``exception`` is the original. See ``python_exceptions.py``."""
+    """An exception of Python code that is not a condition; ``exception`` is the original. See ``python/python_exceptions.py``."""
 
     lisp_name = "CRAMHY::PYTHON-ERROR"
     initargs = {"EXCEPTION": "exception"}
@@ -499,8 +495,6 @@ def _called(name):
     """(how the user calls it, function) for Python's qualified name of a function."""
     import gc
     from types import FunctionType
-
-    from .packages import all_packages
 
     if "<locals>" not in name:
         for package in all_packages():

@@ -19,7 +19,7 @@ import functools
 
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
-from .data import Symbol, UNBOUND, truth
+from .data import MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
 from .dynamic import bind, binding
 from .late import late
 from .packages import CURRENT, find_package_or_error, is_symbol, printed, sym
@@ -86,7 +86,7 @@ def _break_on_signal(condition):
     restart_case([(sym("CRAMHY::RESET"), reassign, "Set *BREAK-ON-SIGNALS* to NIL and continue."),
                   (sym("CRAMHY::REASSIGN"), reassign, lambda: (
         "Return from BREAK and assign a new value to *BREAK-ON-SIGNALS*." if breaking
-        else "Assign a new value to *BREAK-ON-SIGNALS* and continue with signal handling."), _ask_value)], stop)
+        else "Assign a new value to *BREAK-ON-SIGNALS* and continue with signal handling."), ask_value)], stop)
 
 
 def _offer(condition, cluster, outer):
@@ -187,16 +187,12 @@ def handler_case(clauses, thunk, no_error=None):
     else:
         if no_error is None:
             return result
-        from .data import all_values
-
         return no_error(*all_values(result))
     return clauses[chosen.index][1](chosen.condition)
 
 
 def ignore_errors(thunk):
     """``ignore-errors`` for Python rooms: the values of ``thunk``, or nil and the error."""
-    from .data import MultipleValues
-
     return handler_case([(types.Error, lambda condition: MultipleValues((None, condition)))], thunk)
 
 
@@ -368,8 +364,6 @@ def restart_case(clauses, thunk):
 
 def with_simple_restart(name, report, thunk):
     """``with-simple-restart``: the values of ``thunk``, or nil and T when the restart ``name`` was invoked."""
-    from .data import MultipleValues
-
     return restart_case([(name, lambda: MultipleValues((None, True)), report)], thunk)
 
 
@@ -484,14 +478,13 @@ def unbound_variable(symbol):
         return value
 
     return restart_case([(sym("CONTINUE"), again, lambda: f"Retry using {types.shown(symbol)}."),
-                         (sym("USE-VALUE"), lambda value: value, "Use specified value.", _ask_value),
-                         (sym("STORE-VALUE"), store, "Set specified value and use it.", _ask_value)],
+                         (sym("USE-VALUE"), lambda value: value, "Use specified value.", ask_value),
+                         (sym("STORE-VALUE"), store, "Set specified value and use it.", ask_value)],
                         lambda: error(types.UnboundVariable(symbol)))
 
 
 def undefined_function(symbol, arguments, keywords):
     """Signal that ``symbol`` has no function; the restarts of SBCL decide what the call returns."""
-    from .data import UndefinedFunction
 
     def again():
         function = symbol.function if isinstance(symbol, Symbol) else UndefinedFunction(symbol)
@@ -501,19 +494,14 @@ def undefined_function(symbol, arguments, keywords):
         return (function.function if isinstance(function, Symbol) else function)(*arguments, **keywords)
 
     return restart_case([(sym("CONTINUE"), again, lambda: f"Retry calling {types.shown(symbol)}."),
-                         (sym("USE-VALUE"), use, "Call specified function.", _ask_value),
-                         (sym("RETURN-VALUE"), lambda *values: _values(values), "Return specified values.", _ask_value),
-                         (sym("RETURN-NOTHING"), lambda: _values(()), "Return zero values.")],
+                         (sym("USE-VALUE"), use, "Call specified function.", ask_value),
+                         (sym("RETURN-VALUE"), values, "Return specified values.", ask_value),
+                         (sym("RETURN-NOTHING"), values, "Return zero values.")],
                         lambda: error(types.UndefinedFunction(symbol)))
 
 
-def _values(items):
-    from .data import values
-
-    return values(*items)
-
-
-def _ask_value():
+def ask_value():
+    """The arguments of a restart that wants one value: what the user types."""
     return (late.ask_for_form("Enter a form to be evaluated: "),)
 
 
@@ -526,7 +514,7 @@ def package_does_not_exist(name):
     current = CURRENT.value
     restarts = [(sym("CONTINUE"), lambda: current, lambda: f"Use the current package, {current.name}."),
                 (sym("RETRY"), lambda: find_package_or_error(name), "Retry finding the package."),
-                (sym("USE-VALUE"), find_package_or_error, "Specify a different package", _ask_value)]
+                (sym("USE-VALUE"), find_package_or_error, "Specify a different package", ask_value)]
     return restart_case(restarts, lambda: error(types.PackageDoesNotExist(name)))
 
 

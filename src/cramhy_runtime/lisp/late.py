@@ -1,4 +1,4 @@
-"""What the ground of this room needs from what stands on it: one seam instead of imports in twenty functions.
+"""What the ground of the Lisp room needs from what stands on it: one seam instead of imports in twenty functions.
 
 Symbols, packages, conditions and streams are the ground: everything imports them. But a condition prints itself with the printer,
 an undefined function signals a condition, and ``warn`` writes to a stream; these stand higher. And some things are knots by nature:

@@ -1,4 +1,4 @@
-"""Hash tables: Python dictionaries under the keys of ``equality.py``.
+"""Hash tables: Python dictionaries under the keys of ``lisp/equality.py``.
 
 An entry is found by the hash key of its key under the table's test, and keeps the key itself, as the program sees it. Entries
 stay in the order in which they were first stored, so that two runs of a program see the same order (SBCL's is the same as long

@@ -1,7 +1,7 @@
 """Operators: arithmetic, comparison, and the small functions on lists that become Python expressions.
 
 Where the kinds of the operands are known (``facts.py``) a Python operator stands alone. Where they are not, the operator stands
-behind a test of their classes, and the generic function of ``arithmetic.py`` behind it in turn: ratios, doubles, errors and
+behind a test of their classes, and the generic function of ``numbers/arithmetic.py`` behind it in turn: ratios, doubles, errors and
 several values are its business. Numbers stay what they are in Lisp: ``t`` is none although Python's ``True`` is, a quotient of
 integers is a ratio, and a product of floats that became infinite is an error, unless it is only a term of a sum.
 """

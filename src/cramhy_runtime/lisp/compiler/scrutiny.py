@@ -1,7 +1,7 @@
 """What the compiler notices while it reads a program: unused and ignored variables, unknown names and declarations.
 
 Nothing here changes the code that is made. An `Analyzer` calls these methods where it binds variables, meets names and reads
-declarations; what they find goes to the compilation unit (see ``compilation_unit.py``), with the place of the very symbol.
+declarations; what they find goes to the compilation unit (see ``evaluation/compilation_unit.py``), with the place of the very symbol.
 Variables and calls that only the expansion of a built-in macro contains are not the user's business, so they are left out.
 Texts are SBCL's.
 """

@@ -22,6 +22,8 @@ from ..dynamic import bind, binding, special, unbind
 from ..equality import eql_key
 from ..packages import COMMON_LISP, sym
 from ..printer.print_controls import PACKAGE
+from ..streams.streams import ERROR_OUTPUT, output_stream
+from ..tools.advice import explanation
 from ..types.types import is_known_type
 from .ansi_lambda_lists import standard_shape
 from .function_shapes import shape_of, wrong_call
@@ -276,9 +278,6 @@ def duplicate_keys(operator, clauses):
 
 def show_warnings(conditions):
     """Print warnings of the compiler to ``*error-output*``: as comments, with the place in the text."""
-    from ..tools.advice import explanation
-    from ..streams.streams import ERROR_OUTPUT, output_stream
-
     stream = output_stream(ERROR_OUTPUT.value)
     for condition in conditions:
         kind = "STYLE-WARNING" if isinstance(condition, SimpleStyleWarning) else "WARNING"

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from .. import conditions
+from ..compiler import support
 from ..conditions import type_error
 from ..data import UNBOUND, Cons, list_from, one
-from ..packages import is_symbol
+from ..dynamic import binding
+from ..packages import COMMON_LISP, is_symbol
+from ..reader.reader import read_from_string
 from ..symbols.symbols import invalid_name
-from .evaluator import evaluate
+from . import places
+from .evaluator import PACKAGE, evaluate
 from .functions import functionp
 
 LISP_NAMES = """eval compiled-function-p fdefinition get-setf-expansion
@@ -19,21 +23,13 @@ arithmetic-error-operation arithmetic-error-operands print-not-readable-object s
 
 compiled_function_p = functionp
 eval_ = evaluate
+get_setf_expansion = places.get_setf_expansion
 
 
 def fdefinition(name):
-    from ..compiler.support import fdefinition as definition
-    from ..compiler.support import setf_function
-
     if not isinstance(name, Cons) and not is_symbol(name):
         return error(invalid_name(name))
-    return setf_function(name.cdr.car) if isinstance(name, Cons) else definition(name)
-
-
-def get_setf_expansion(place, environment=None):
-    from .places import get_setf_expansion as expansion
-
-    return expansion(place, environment)
+    return support.setf_function(name.cdr.car) if isinstance(name, Cons) else support.fdefinition(name)
 
 
 error, signal, warn, cerror, break_ = conditions.error, conditions.signal, conditions.warn, conditions.cerror, conditions.break_
@@ -77,11 +73,6 @@ def type_error_expected_type(condition):
     expected = condition.expected_type
     if not isinstance(expected, str):
         return expected
-    from ..dynamic import binding
-    from .evaluator import PACKAGE
-    from ..packages import COMMON_LISP
-    from ..reader.reader import read_from_string
-
     with binding(PACKAGE, COMMON_LISP):
         return one(read_from_string(expected))
 

@@ -14,6 +14,7 @@ import sys
 from ..conditions import error, type_error
 from ..data import NO_VALUES, Character, LispString, list_from
 from ..packages import is_symbol, string_designator, sym
+from ..streams.file_streams import open_
 from ..streams.streams import CONSOLE_OUTPUT, STANDARD_INPUT, STANDARD_OUTPUT, BroadcastStream, EchoStream, standard_output
 
 LISP_NAMES = """lisp-implementation-type lisp-implementation-version machine-type machine-instance machine-version software-type
@@ -112,8 +113,6 @@ def dribble(pathname=None, *, if_exists=":APPEND"):
 
     Errors: to end what was not begun, and a file that cannot be written.
     """
-    from ..streams.file_streams import open_
-
     if pathname is not None:
         if_exists = sym(if_exists) if isinstance(if_exists, str) else if_exists
         file = open_(pathname, direction=sym(":OUTPUT"), if_exists=if_exists, if_does_not_exist=sym(":CREATE"))

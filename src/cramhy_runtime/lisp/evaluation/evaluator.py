@@ -17,6 +17,7 @@ from ..reader.form_places import FormPlaces
 from .circular_code import refuse_circular_code
 from .compilation_unit import compilation_unit, current, expanding
 from .lambda_lists import destructure, gensym
+from .macros import expand_fully, macroexpand_1
 
 PACKAGE = sym("*PACKAGE*")
 PACKAGE.special = True
@@ -115,8 +116,6 @@ class Unit:
 
         While a part is being dealt with, ``self.alone`` says whether it is the only one.
         """
-        from .macros import expand_fully
-
         place = self.positions.get(id(form))
         form = expand_fully(form, self._expand_at_top_level, place and (self.filename, *place[:2]))[0]
         if isinstance(form, Cons) and isinstance(form.car, Symbol):
@@ -164,8 +163,6 @@ class Unit:
                 yield scoped
 
     def expand(self, form):
-        from .macros import macroexpand_1
-
         place = (self.filename, *self.positions[id(form)][:2]) if id(form) in self.positions else None
         with expanding(current(), form, place):
             expansion, expanded = macroexpand_1(form)

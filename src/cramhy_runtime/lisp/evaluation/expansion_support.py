@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from .. import conditions
 from ..collections.hash_tables import need_table
+from ..compiler.support import function_of
 from ..conditions import CaseFailure, SimpleProgramError, SimpleTypeError, error, program_error
 from ..data import Cons, MultipleValues, list_from, truth
 from ..packages import is_symbol, keyword, sym, symbol_name
+from ..streams.streams import StringOutputStream
 from ..types.type_names import simplified_type
 from .compilation_unit import expansion_place
 
@@ -86,8 +88,6 @@ def check_type_failed(value, place, kind, name):
 
 
 def handler_bind(clauses, thunk):
-    from ..compiler.support import function_of
-
     return conditions.handler_bind([(clause.car, function_of(clause.cdr.car)) for clause in clauses or ()], thunk)
 
 
@@ -101,8 +101,6 @@ def restart_report(report):
         return report
 
     def text():
-        from ..streams.streams import StringOutputStream
-
         stream = StringOutputStream()
         report(stream)
         return stream.text() if hasattr(stream, "text") else stream.get_text()

@@ -15,6 +15,7 @@ from ..data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, 
 from ..packages import is_symbol, sym
 from ..symbols.package_errors import check_symbol
 from .definitions import data
+from .evaluator import macro_lambda
 from .lambda_lists import destructure, gensym, parse, support
 from .macros import macroexpand_1, malformed
 
@@ -308,8 +309,6 @@ def define_setf_form(name, count, function, documentation=None):
 
 @macro("DEFINE-SETF-EXPANDER")
 def _define_setf_expander(form, environment):
-    from .evaluator import macro_lambda
-
     name, lambda_list, *body = list(form.cdr)
     function, documentation = macro_lambda(name, lambda_list, list_from(body))
     return lisp_list(support("DEFINE-EXPANDER"), lisp_list(sym("QUOTE"), name), function, documentation)

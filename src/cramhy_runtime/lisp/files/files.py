@@ -168,7 +168,7 @@ def ensure_directories_exist(designator, *, verbose=None, mode=0o777):
         folder = "/" if folder == "//" else folder
     for each in reversed(missing):
         if verbose is not None:
-            _say(f"creating directory: {each}")
+            say(f"creating directory: {each}")
         try:
             os.mkdir(each, mode)
         except FileExistsError:
@@ -178,7 +178,8 @@ def ensure_directories_exist(designator, *, verbose=None, mode=0o777):
     return MultipleValues((designator, boolean(missing)))
 
 
-def _say(line):
+def say(line):
+    """Print ``line`` to ``*standard-output*`` as a line of its own."""
     output = standard_output()
     output.fresh_line()
     output.write(line + "\n")

@@ -2,7 +2,7 @@
 
 ``compile-file`` writes a file of code, of type ``fasl`` as in SBCL, which ``load`` runs without looking at the source again.
 Macros, types, constants and packages of the file take effect while it is compiled; its functions and variables when it is loaded.
-One needs it seldom: ``load`` keeps what it compiled in ``__pycache__`` anyway (see ``loader.py``).
+One needs it seldom: ``load`` keeps what it compiled in ``__pycache__`` anyway (see ``systems/loader.py``).
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from ..reader.reader import Reader
 from ..reader.readtables import READTABLE
 from ..streams.external_formats import external_format as format_named
 from ..streams.file_streams import FileStream
-from ..streams.streams import ERROR_OUTPUT, Stream, output_stream, standard_output
+from ..streams.streams import ERROR_OUTPUT, Stream, output_stream
 from ..systems.loader import LOAD_PATHNAME, LOAD_TRUENAME, decoded, folder_of_load, load_file, load_text, locate, stamp
-from .files import lisp_path, path_of, reason, truename
+from .files import lisp_path, path_of, reason, say, truename
 from .namestrings import native_namestring, parse_native
 from .pathname_objects import NEWEST, Pathname
 from .pathnames import merge_pathnames, pathname
@@ -43,12 +43,6 @@ TYPES = ("lisp", "hy", "fasl")
 
 def _flag(value, variable):
     return variable.value if value is UNSUPPLIED else value
-
-
-def _say(text):
-    output = standard_output()
-    output.fresh_line()
-    output.write(text + "\n")
 
 
 # --------------------------------------------------------------------------------------------------------------- loading
@@ -74,7 +68,7 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
     if os.path.isdir(found):
         return error(SimpleFileError(pathname(designator), "Can't LOAD a directory: ~S.", pathname(designator)))
     if _flag(verbose, LOAD_VERBOSE) is not None:
-        _say(f";; loading {prin1_to_string(lisp_path(found))}")
+        say(f";; loading {prin1_to_string(lisp_path(found))}")
     if _is_compiled(found):
         _load_compiled(found)
     else:
@@ -92,7 +86,7 @@ def _file_to_load(designator):
 
 
 def _show_values(values):
-    _say(";; " + ", ".join(prin1_to_string(value) for value in values))
+    say(";; " + ", ".join(prin1_to_string(value) for value in values))
 
 
 def _load_stream(stream, show):
@@ -157,7 +151,7 @@ def compile_file(input_file, *, output_file=None, verbose=UNSUPPLIED, print=UNSU
     target = path_of(compile_file_pathname(pathname(input_file), output_file=output_file))
     talks = _flag(verbose, COMPILE_VERBOSE) is not None
     if talks:
-        _say(f"; compiling file {prin1_to_string(str(path))}:")
+        say(f"; compiling file {prin1_to_string(str(path))}:")
     work = _Compilation(text, str(path), _flag(print, COMPILE_PRINT) is not None)
     name = lisp_path(path)
     with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, COMPILE_FILE_PATHNAME, merge_pathnames(name),
@@ -167,7 +161,7 @@ def compile_file(input_file, *, output_file=None, verbose=UNSUPPLIED, print=UNSU
         return MultipleValues((None, True, True))
     _write(target, (stamp(), str(path), codes))
     if talks:
-        _say(f"; wrote {target}")
+        say(f"; wrote {target}")
     return MultipleValues((lisp_path(os.path.realpath(target)), boolean(work.warned), boolean(work.failed)))
 
 
@@ -223,7 +217,7 @@ class _Compilation:
             if form is end:
                 return codes
             if self.shows:
-                _say(f"; processing {prin1_to_string(form)}")
+                say(f"; processing {prin1_to_string(form)}")
             try:
                 codes += [code for part, now, later in self.parts(form, False) for code in self._dealt_with(part, now, later)]
             except Error as problem:

@@ -8,7 +8,9 @@ argument is next. What each directive does is in ``format_directives.py`` and th
 
 from __future__ import annotations
 
-from ..data import Cons, LispString, MultipleValues, Symbol, list_from
+from ..conditions import type_error
+from ..data import Cons, LispString, MultipleValues, Symbol, list_from, one, python_list
+from ..printer.print_names import character_name
 from ..streams.streams import STANDARD_OUTPUT, OutputStream, StringOutputStream, output_stream
 from .format_parser import Directive, FormatError, parse
 from .format_templates import filled, template
@@ -67,8 +69,6 @@ def run(nodes, state):
         if node.__class__ is str:
             state.stream.write(node)
         elif node.handler is None:
-            from ..printer.print_names import character_name
-
             node.complain(f"Unknown format directive (character: {character_name(node.char)})")
         else:
             node.handler(node, state)
@@ -84,8 +84,6 @@ def format_on(stream, control, args, state=None):
         if callable(control):
             return _call_formatter(stream, control, args, state)
         if not isinstance(control, LispString):
-            from ..conditions import type_error
-
             return type_error(control, "(OR STRING FUNCTION)")
         control = str(control)
     if state is None:
@@ -99,8 +97,6 @@ def format_on(stream, control, args, state=None):
 
 
 def _call_formatter(stream, function, args, state):
-    from ..data import one, python_list
-
     left = one(function(stream, *(args if state is None else state.args[state.position :])))
     if state is not None:
         state.position = len(state.args) - len(python_list(left))
@@ -159,8 +155,6 @@ def list_arguments(directive, arg):
         return ()
     if isinstance(arg, Cons):
         return _elements(directive, arg)
-    from ..conditions import type_error
-
     return type_error(arg, "LIST")
 
 

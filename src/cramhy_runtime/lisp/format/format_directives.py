@@ -7,7 +7,7 @@ leaves open.
 from __future__ import annotations
 
 from ..conditions import Error, handler_bind, type_error
-from ..data import Character, Cons, list_from
+from ..data import Character, Cons, list_from, truth
 from ..packages import find_package
 from ..printer import print_controls as controls
 from ..printer.pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab
@@ -363,14 +363,14 @@ def _choose(directive, state):
             directive.complain("Can only specify one section")
         parameters(directive, state)
         before = state.position
-        if _true(state.next(directive)):
+        if truth(state.next(directive)):
             state.position = before
             run(clauses[0], state)
     elif directive.colon:
         if len(clauses) != 2:
             directive.complain("Must specify exactly two sections")
         parameters(directive, state)
-        run(clauses[1 if _true(state.next(directive)) else 0], state)
+        run(clauses[1 if truth(state.next(directive)) else 0], state)
     else:
         (index,) = parameters(directive, state, None)
         if index is None:
@@ -383,10 +383,6 @@ def _choose(directive, state):
             run(clauses[index], state)
         elif default:
             run(clauses[-1], state)
-
-
-def _true(value):
-    return value is not None and value is not False
 
 
 def _iterate(directive, state):

@@ -6,6 +6,8 @@ that collects is linear; the list under construction hangs behind a header cell.
 
 from __future__ import annotations
 
+from ..collections.arrays import vectorp
+from ..collections.hash_tables import maphash
 from ..collections.lists import not_a_list
 from ..conditions import type_error
 from ..data import Cons, list_from
@@ -61,15 +63,11 @@ def collect_nconc(tail, items):
 
 def loop_vector(vector):
     """``vector``, which must be one."""
-    from ..collections.arrays import vectorp
-
     return vector if vectorp(vector) else type_error(vector, "VECTOR")
 
 
 def table_entries(table):
     """The pairs (key . value) of a hash table as they are now: the loop may change and remove what it visits."""
-    from ..collections.hash_tables import maphash
-
     pairs = []
     maphash(lambda key, value: pairs.append(Cons(key, value)), table)
     return list_from(pairs)

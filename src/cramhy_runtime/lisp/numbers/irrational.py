@@ -393,4 +393,4 @@ def _limits():
 
 
 CONSTANTS = {"PI": PI, "MOST-POSITIVE-FIXNUM": 2 ** 62 - 1, "MOST-NEGATIVE-FIXNUM": -(2 ** 62), **_limits()}
-"""The constants of this room, by Lisp name."""
+"""The constants among the numbers, by Lisp name."""

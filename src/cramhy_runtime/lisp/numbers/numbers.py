@@ -1,4 +1,4 @@
-"""Numbers: the table of this room. Arithmetic, rounding, irrational functions, bits and random numbers have a module each."""
+"""Numbers: the table of this folder. Arithmetic, rounding, irrational functions, bits and random numbers have a module each."""
 
 from __future__ import annotations
 

@@ -152,12 +152,13 @@ def class_of(object_):
     for candidate in lisp_mro(cls):
         if isinstance(candidate, BuiltInClass):
             return CLASSES["FUNCTION"] if candidate is CLASSES["COMPILED-FUNCTION"] else candidate  # the former is a mere type
-        if candidate is not object and _own_name(candidate):
+        if candidate is not object and has_own_name(candidate):
             return CLASSES.get(vars(candidate).get("lisp_name"), candidate)  # a class of the runtime may stand for one of the system's
     return object
 
 
-def _own_name(cls):
+def has_own_name(cls):
+    """Whether Lisp has a name for the class ``cls`` itself, which a plain class of Python has not."""
     return "lisp_symbol" in vars(cls) or "lisp_name" in vars(cls)
 
 
@@ -242,7 +243,7 @@ def metaclass_of(cls):
     metaclass = vars(cls).get("lisp_metaclass")
     if metaclass is not None:
         return metaclass
-    return StandardClass if issubclass(cls, StandardObject) or _own_name(cls) else type(cls)
+    return StandardClass if issubclass(cls, StandardObject) or has_own_name(cls) else type(cls)
 
 
 def set_class_name(new, cls):

@@ -9,7 +9,7 @@ from ..data import Cons, lisp_list, list_from
 from ..packages import is_symbol, sym
 from ..printer.print_names import symbol_with_prefix
 from ..printer.printer import define_printer, output_object, print_unreadable
-from .classes import class_name, metaclass_of
+from .classes import class_name, has_own_name, metaclass_of
 from .generic import GenericFunction
 from .generic_errors import ShownAsGeneric
 from .method_combination import Combination
@@ -28,7 +28,7 @@ def name_text(name):
 def print_class(cls, stream):
     """``#<STANDARD-CLASS TUT::TURTLE>``; a Python class without a Lisp name prints as Python shows it."""
     kind = metaclass_of(cls)
-    if cls not in (object, type) and not _is_lisp(cls):
+    if cls not in (object, type) and not has_own_name(cls):
         return print_unreadable(cls, stream, "PYTHON " + repr(cls))
 
     def contents():
@@ -36,10 +36,6 @@ def print_class(cls, stream):
         stream.write(" " + symbol_with_prefix(class_name(cls)))
 
     return print_unreadable(cls, stream, body=contents)
-
-
-def _is_lisp(cls):
-    return "lisp_symbol" in vars(cls) or "lisp_name" in vars(cls)
 
 
 def print_generic_function(function, stream):

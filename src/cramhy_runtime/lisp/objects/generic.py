@@ -20,7 +20,7 @@ import weakref
 from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
 from ..data import Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
-from ..faces import python_name
+from ..faces import lispify, python_name
 from ..late import late
 from ..packages import is_symbol, keyword, sym, symbol_name
 from ..symbols.package_errors import check_symbol
@@ -211,8 +211,6 @@ class GenericFunction(FunctionObject):
 
         def define(function):
             qualifiers = () if qualifier is None else (keyword(qualifier.upper()),)
-            from ..faces import lispify
-
             add_method(self, qualifiers, classes, lispify(function), uses_next=uses_next, lambda_list=self.lambda_list,
                        user=False)
             return function

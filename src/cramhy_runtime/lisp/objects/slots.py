@@ -11,7 +11,7 @@ from __future__ import annotations
 from operator import attrgetter
 
 from ..condition_types import formatted, shown
-from ..conditions import CellError, Condition, SimpleError, UnboundSlot, error, restart_case, type_error
+from ..conditions import CellError, Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
 from ..data import UNBOUND, Symbol, boolean, list_from, one, truth
 from ..late import late
 from ..packages import sym
@@ -165,15 +165,9 @@ def unbound_slot_error(cls, obj, name):
     def store(value):
         return set_slot_value(value, obj, name)
 
-    return restart_case([(sym("USE-VALUE"), lambda value: value, "Return a value as the slot-value.", _ask),
-                         (sym("STORE-VALUE"), store, "Store and return a value as the slot-value.", _ask)],
+    return restart_case([(sym("USE-VALUE"), lambda value: value, "Return a value as the slot-value.", ask_value),
+                         (sym("STORE-VALUE"), store, "Store and return a value as the slot-value.", ask_value)],
                         lambda: error(UnboundSlot(name, obj)))
-
-
-def _ask():
-    from ..streams.streams import ask_for_form
-
-    return (ask_for_form("Enter a form to be evaluated: "),)
 
 
 # ------------------------------------------------------------------------------------------------ instances of changed classes

@@ -1,6 +1,6 @@
 """Arrays as text: ``#(1 2)``, ``#2A((1 2) (3 4))``, ``#*101``.
 
-Vectors are Python lists or the classes of ``vectors.py``. Source: ANSI 22.1.3.7 and 22.1.3.8; layout as in SBCL.
+Vectors are Python lists or the classes of ``collections/vectors.py``. Source: ANSI 22.1.3.7 and 22.1.3.8; layout as in SBCL.
 """
 
 from __future__ import annotations

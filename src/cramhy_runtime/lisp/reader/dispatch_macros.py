@@ -9,12 +9,16 @@ from __future__ import annotations
 import os
 import re
 
+from ..collections.characters import name_char
+from ..collections.vectors import bit_vector
 from ..condition_types import condition_for
 from ..conditions import Condition, Error, style_warn
 from ..data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
 from ..dynamic import special
+from ..evaluation import evaluator
 from ..numbers.arithmetic import is_real
-from ..packages import KEYWORD, is_symbol, keyword, sym, symbol_name
+from ..objects.structures import structure_named
+from ..packages import KEYWORD, is_symbol, keyword, near_names, sym, symbol_name
 from . import tokens
 from .backquote import COMMA, COMMA_KINDS, Comma
 from .reader_errors import fail, place
@@ -102,8 +106,6 @@ def _constituents(reader):
 
 
 def _named_character(name):
-    from ..collections.characters import name_char
-
     found = name_char(name)
     if found is not None:
         return found
@@ -114,8 +116,6 @@ def _named_character(name):
 
 
 def _character_hint(name):
-    from ..packages import near_names
-
     near = near_names(name.title(), ["Space", "Newline", "Tab", "Return", "Page", "Backspace", "Rubout", "Linefeed", "Nul"], 1)
     if near:
         return f"Did you mean #\\{near[0]}?"
@@ -156,8 +156,6 @@ def _proper(lst):
 
 def sharp_star(stream, sub, argument):
     """``#*101``: a bit vector."""
-    from ..collections.vectors import bit_vector
-
     reader = as_reader(stream)
     start = _start(reader)
     digits = _constituents(reader)
@@ -277,8 +275,6 @@ def sharp_dot(stream, sub, argument):
         return None
     if not truth(READ_EVAL.value):
         return fail(reader, start, "can't read #. while *READ-EVAL* is NIL", hint="Evaluation while reading has been switched off.")
-    from ..evaluation import evaluator
-
     try:
         return one(evaluator.evaluate(form))
     except RecursionError as problem:
@@ -467,8 +463,6 @@ def sharp_s(stream, sub, argument):
         return fail(reader, start, "Odd number of arguments following #S: ~S", body, hint="Each slot name needs a value.")
     if items[0] is COMMA and len(items) == 5 and items[4] in (0, 1, 2):
         return Comma(COMMA_KINDS[items[4]], items[2])
-    from ..objects.structures import structure_named
-
     structure = structure_named(items[0])
     if structure is None:
         return fail(reader, start, "~S is not a defined structure type.", items[0])

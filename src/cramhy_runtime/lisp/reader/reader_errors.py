@@ -11,7 +11,7 @@ import bisect
 
 from .. import conditions
 from ..condition_types import EndOfFile, ReaderError, ReaderPackageError, SimpleStyleWarning, shown
-from ..conditions import restart_case
+from ..conditions import ask_value, restart_case
 from ..data import Symbol
 from ..dynamic import binding
 from ..packages import find_package, find_package_or_error, near_names, package_names, sym
@@ -168,16 +168,10 @@ def no_package(reader, offset, package_name, name):
     return restart_case([(sym("CONTINUE"), lambda: current.intern(name), f"Use the current package, {current.name}."),
                          (sym("RETRY"), again, "Retry finding the package."),
                          (sym("USE-VALUE"), lambda other: find_package_or_error(other).intern(name),
-                          "Specify a different package", _ask),
+                          "Specify a different package", ask_value),
                          (sym("UNINTERN"), lambda: Symbol(name), "Read the symbol as uninterned."),
-                         (sym("SYMBOL"), lambda symbol: symbol, "Specify a symbol to return", _ask)],
+                         (sym("SYMBOL"), lambda symbol: symbol, "Specify a symbol to return", ask_value)],
                         lambda: fail(reader, offset, "Package ~A does not exist.", package_name, hint=hint, kind=ReaderPackageError))
-
-
-def _ask():
-    from ..streams.streams import ask_for_form
-
-    return (ask_for_form("Enter a form to be evaluated: "),)
 
 
 def no_external(reader, offset, package, name, found):

@@ -5,6 +5,7 @@ After an object at top level one white-space character is consumed as well, unle
 
 from __future__ import annotations
 
+from ..conditions import type_error
 from ..data import Character, LispString, MultipleValues, list_from, truth
 from .dispatch_macros import FEATURES, READ_EVAL
 from .readtables import READTABLE
@@ -21,8 +22,6 @@ class StringReader(Reader):
 def read_from_string(string, eof_error_p=True, eof_value=None, *, start=0, end=None, preserve_whitespace=None):
     """``cl:read-from-string``: the object at ``start`` and the index behind it (two values)."""
     if not isinstance(string, (str, LispString)):
-        from ..conditions import type_error
-
         return type_error(string, "STRING")
     text = str(string)
     start, end = bounds(text, start, end)
@@ -65,8 +64,6 @@ def read_from_stream(stream=None, eof_error=True, eof_value=None):
 def read_delimited_list(char, stream=None, recursive_p=None):
     """``cl:read-delimited-list``: the objects up to the character ``char``, as a list."""
     if not isinstance(char, Character):
-        from ..conditions import type_error
-
         return type_error(char, "CHARACTER")
     reader = as_reader(stream)
     try:

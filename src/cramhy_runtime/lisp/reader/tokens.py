@@ -3,7 +3,7 @@
 Source: ANSI 2.3. A token is a number when it has the syntax of one in the current radix; otherwise, unless it consists of dots
 only, it names a symbol. Floats without an exponent marker, or with ``e``, have the format that
 ``*read-default-float-format*`` says; ``d`` and ``l`` make doubles, ``f`` and ``s`` singles, which keep the digits of their
-literal (see ``data.py``) but not a magnitude that a single-float cannot have.
+literal (see ``lisp/data.py``) but not a magnitude that a single-float cannot have.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from __future__ import annotations
 from ..collections.sequence_types import bounds, elements, part
 from ..conditions import EndOfFile, error, type_error
 from ..data import Character, Cons, LispString, MultipleValues, Symbol, boolean, list_from
+from ..format.format import format_
 from ..packages import sym
 from . import streams
 from .streams import (
@@ -281,15 +282,6 @@ def make_synonym_stream(symbol):
 synonym_stream_symbol = _part(SynonymStream, "symbol", "SYNONYM-STREAM")
 
 
-def call_with_output_to_string(function, target=None):
-    """What ``with-output-to-string`` becomes: call ``function(stream)``; the text written, or, when it went to
-    ``target`` (a string with a fill pointer), the values of the call.
-    """
-    stream = StringOutputStream(target)
-    result = function(stream)
-    return stream.text() if target is None else result
-
-
 # --------------------------------------------------------------------------------------------------- asking and closing
 
 
@@ -329,8 +321,6 @@ def stream_element_type(stream):
 
 
 def _ask(control, args, question):
-    from ..format.format import format_
-
     query = streams.QUERY_IO.value
     query.fresh_line()
     if control is not None:

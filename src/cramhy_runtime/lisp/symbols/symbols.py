@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .. import packages
 from ..collections.sequence_types import is_string
+from ..compiler.support import fdefinition, value_of
 from ..conditions import SimpleTypeError, error, type_error
 from ..data import Cons, Keyword, Symbol, UNBOUND, UndefinedFunction, truth
 from ..evaluation.definitions import traced_like
@@ -36,8 +37,6 @@ def symbol_package(symbol):
 
 
 def symbol_value(symbol):
-    from ..compiler.support import value_of
-
     return value_of(symbol) if isinstance(_symbol(symbol), Symbol) else symbol
 
 
@@ -56,8 +55,6 @@ def set_(symbol, value):
 
 
 def symbol_function(symbol):
-    from ..compiler.support import fdefinition
-
     return fdefinition(_symbol(symbol))
 
 
@@ -78,7 +75,7 @@ def invalid_name(name):
 
 
 def fboundp(name):
-    from ..compiler.analyze import SPECIAL_FORMS
+    from ..compiler.analyze import SPECIAL_FORMS  # a program that was compiled before starts without the compiler
 
     if isinstance(name, Cons):
         return name.cdr.car.setf_function if isinstance(name.cdr.car, Symbol) else None

@@ -2,7 +2,7 @@
 
 ``.lisp`` files are read by our reader from the first character on; in ``.hy`` files the line ``(require cramhy *)`` says that
 what follows ``(in-package ...)`` is the same language, so they are loaded in the same way (run by ``hy`` itself, the macro
-``in-package`` takes the reader over: see ``hy_src/cramhy/__init__.hy``).
+``in-package`` takes the reader over: see ``hy_src/cramhy/language.hy``).
 
 What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written, in the user's cache folder).
 A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system, and

@@ -20,6 +20,7 @@ from ..dynamic import binding
 from ..evaluation.evaluator import evaluate
 from ..objects.generic import GenericFunction
 from ..packages import find_package_or_error, sym
+from ..printer.print_names import symbol_with_prefix
 from ..printer.printer import prin1_to_string
 from ..streams.streams import TRACE_OUTPUT, output_stream
 
@@ -101,8 +102,6 @@ def _cell(name):
 
 
 def _qualified(name):
-    from ..printer.print_names import symbol_with_prefix
-
     return symbol_with_prefix(name) if isinstance(name, Symbol) else prin1_to_string(name)
 
 

@@ -1,6 +1,6 @@
 """``coerce``: an object as one of another type.
 
-Sequences become other sequences (``sequence_types.py``), reals become floats or complex numbers, strings and symbols of one
+Sequences become other sequences (``collections/sequence_types.py``), reals become floats or complex numbers, strings and symbols of one
 character become characters, symbols and lambda expressions become functions. A single-float that becomes a double brings the 24
 bits that it has: ``(coerce 0.1 'double-float)`` is 0.10000000149011612d0. Source: ANSI COERCE; texts are SBCL's.
 """
