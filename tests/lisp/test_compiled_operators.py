@@ -250,3 +250,23 @@ def test_sums_of_numbers(session, program, wanted):
 ])
 def test_keywords_are_sorted_the_second_time_as_the_first(session, calls, wanted):
     assert answer(session, f"(progn (defun keyed (&key (a :no) (b :no)) (list a b)) (list {calls}))") == wanted
+
+
+@pytest.mark.parametrize(("program", "wanted"), [
+    ("(multiple-value-list (gethash :k h))", "(1 T)"),
+    ("(multiple-value-list (gethash :none h 7))", "(7 NIL)"),
+    ("(multiple-value-list (progn (gethash :none h)))", "(NIL NIL)"),
+    ("(list (gethash :k h) (gethash :none h) (gethash :none h 7))", "(1 NIL 7)"),
+    ("(let ((n 0)) (gethash (incf n) h (incf n)) n)", "2"),
+    ("(progn (incf (gethash :k h)) (incf (gethash :new h 10) 2) (list (gethash :k h) (gethash :new h)))", "(2 12)"),
+    ("(list (if (gethash :k h) 1 2) (if (gethash :none h) 1 2) (not (gethash :none h)) (+ 1 (gethash :k h)))", "(1 2 T 2)"),
+    ("(progn (push 1 (gethash :l h)) (push 2 (gethash :l h)) (gethash :l h))", "(2 1) T"),
+    ("(let ((v (gethash :k h)) (f (lambda () (gethash :k h)))) (list v (multiple-value-list (funcall f))))", "(1 (1 T))"),
+    ("(list (gethash :k 3))", "TYPE-ERROR: The value 3 is not of type HASH-TABLE when binding HASH-TABLE"),
+    ("(setf (gethash :k 3) 1)", "TYPE-ERROR: The value 3 is not of type HASH-TABLE when binding HASH-TABLE"),
+    ("(let ((h (make-hash-table :test 'equalp))) (setf (gethash 1 h) :a (gethash 1.0 h) :b (gethash \"X\" h) 3) "
+     "(list (gethash 1 h) (gethash \"x\" h) (hash-table-count h)))", "(:B 3 2)"),
+    ("(let ((h (make-hash-table :weakness :key))) (setf (gethash :a h) 1) (list (gethash :a h) (gethash :b h 2)))", "(1 2)"),
+])
+def test_gethash_gives_one_value_where_one_is_wanted(session, program, wanted):
+    assert answer(session, f"(let ((h (make-hash-table))) (setf (gethash :k h) 1) {program})") == wanted

@@ -151,11 +151,16 @@ class Cons:
         return "(" + " ".join(parts) + ")"
 
 
+new_object = object.__new__
+
+
 def lisp_list(*items):
     """The list of ``items``; ``None`` when there are none."""
     head = None
     for item in reversed(items):
-        head = Cons(item, head)
+        cell = new_object(Cons)
+        cell.car, cell.cdr = item, head
+        head = cell
     return head
 
 
@@ -163,7 +168,9 @@ def list_from(iterable, tail=None):
     """The list of the elements of ``iterable``, ending in ``tail``."""
     head = tail
     for item in reversed(iterable if isinstance(iterable, (list, tuple)) else list(iterable)):
-        head = Cons(item, head)
+        cell = new_object(Cons)  # made without its constructor, which would be a call of a Python function
+        cell.car, cell.cdr = item, head
+        head = cell
     return head
 
 

@@ -19,4 +19,6 @@ class Destination:
 EFFECT = Destination("effect")
 VALUE = Destination("value")
 VALUES = Destination("value", multiple=True)
+FIRST_OF_VALUES = Destination("value", multiple=True)
+"""The first value is wanted, and who wants it takes it out of several: so it need not be done before."""
 RETURN = Destination("return", multiple=True)

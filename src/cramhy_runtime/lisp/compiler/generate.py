@@ -15,14 +15,14 @@ from ..packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import List, expression, word
-from .destinations import EFFECT, NONE, TRUE, VALUE, VALUES, Destination
+from .destinations import EFFECT, FIRST_OF_VALUES, NONE, TRUE, VALUE, VALUES, Destination
 from .facts import NUMBERS, study, walk
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
 
 
-COLLECT, FORMAT = sym("CRAMHY::COLLECT"), sym("FORMAT")
+COLLECT, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT FORMAT GETHASH".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
@@ -241,6 +241,8 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             if model is not None:
                 return self.finish(model, node, destination)
         models = self.arguments(arguments)
+        if standard and symbol is GETHASH and 1 < len(arguments) < 4 and (not destination.multiple or destination is FIRST_OF_VALUES):
+            return self.finish(self.positioned(self.call("gethash", *models), node), nodes.Constant(None), destination)
         model = self.through_object(node, symbol, models)
         if model is not None:
             reader = symbol.reads is not None and model[0] == "if"
@@ -427,7 +429,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
                 return TRUE
             true = expression(word("is-not"), value, NONE)
             return true if kind == "boolean" else expression(word("and"), true, expression(word("is-not"), value, word("False")))
-        model = self.gen(node, VALUES)
+        model = self.gen(node, FIRST_OF_VALUES)
         if model.__class__ is not core.Expression:
             return self.call("truth", model)
         value = word("Lv")

@@ -14,7 +14,7 @@ from ..packages import sym
 from . import nodes
 from .core import NONE, TRUE, Expression, Symbol, expression, word
 from .declared_types import kind_of_type
-from .destinations import VALUES
+from .destinations import FIRST_OF_VALUES
 from .facts import DIVIDE, MINUS, PLUS, TIMES, kind_of
 
 ARITHMETIC = {sym(name): word(f"L{function}") for name, function in (
@@ -80,7 +80,7 @@ class OperatorGenerator:
 
         Several values are left in: the generic functions take the first.
         """
-        models = self.arguments(arguments, VALUES)
+        models = self.arguments(arguments, FIRST_OF_VALUES)
         first, later = [], []
         for index, (model, node) in enumerate(zip(models, arguments)):
             simple = nameable(model)

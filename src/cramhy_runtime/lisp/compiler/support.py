@@ -18,6 +18,7 @@ from ..conditions import (HandlerExit, SimpleControlError, caught, enter_case, e
                           unbound_variable)
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
+from ..collections.hash_tables import value_in_table
 from ..dynamic import Bindings, bind, unbind
 from ..evaluation.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
@@ -215,6 +216,7 @@ def spread(value, count):
     return value + (None,) * (count - len(value))
 
 
+KEYS_OF_ARGUMENTS = slice(None, None, 2)
 KEPT_GETTERS = 32
 """For how many sequences of keywords a function with &key keeps a getter."""
 
@@ -235,7 +237,7 @@ def key_parser(table, allow_others):
     def parse(rest, python):
         if not python and not len(rest) & 1:
             try:
-                getter = getter_for(rest[::2])
+                getter = getter_for(rest[KEYS_OF_ARGUMENTS])
             except TypeError:  # something that is no keyword and has no hash
                 getter = None
             if getter is not None:
@@ -293,7 +295,7 @@ NAMESPACE = {
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lchecked": checked, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
-    "Lcomplex": complex_,
+    "Lcomplex": complex_, "Lgethash": value_in_table,
     "Lcharacter": Character, "Lfloat": float, "Lcomma": Comma,
     "Ladd2": arithmetic.add2, "Lsub2": arithmetic.sub2, "Lmul2": arithmetic.mul2, "Ldiv2": arithmetic.div2, "Llt2": arithmetic.lt2,
     "Lgt2": arithmetic.gt2, "Lle2": arithmetic.le2, "Lge2": arithmetic.ge2, "Lnum_eq2": arithmetic.num_eq2,
