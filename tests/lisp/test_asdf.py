@@ -200,3 +200,17 @@ def test_an_error_in_a_test_leaves_the_system_usable(write, run):
         with pytest.raises(Condition) as caught:
             run("(asdf:test-system :erring)")
         assert caught.value.report() == "tests failed"
+
+
+def test_systems_that_are_part_of_cramhy_may_be_depended_on(write, run):
+    write("leaning.asd", """(defsystem "leaning" :depends-on ("asdf" "uiop" (:version "trivial-features" "0.1"))
+      :components ((:doc-file "README.md") (:html-file "index.html") (:file "leaning")))""")
+    write("leaning.lisp", "(push #+(and (or little-endian big-endian) (or 64-bit 32-bit)) :leaning cl-user::*log*)")
+    assert run("(asdf:load-system :leaning) *log*") == "(:LEANING)"
+    assert run("""(mapcar (lambda (part) (list (typep part 'asdf:doc-file) (typep part 'asdf:static-file) (typep part 'asdf:html-file)))
+                          (asdf:component-children (asdf:find-system :leaning)))""") == "((T T NIL) (T T T) (NIL NIL NIL))"
+
+
+def test_the_arguments_of_the_command_line(run):
+    assert run("(let ((uiop:*command-line-arguments* '(\"a\"))) (uiop:command-line-arguments))") == '("a")'
+    assert run("(every #'stringp uiop:*command-line-arguments*)") == "T"

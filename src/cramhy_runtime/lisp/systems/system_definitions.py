@@ -73,6 +73,14 @@ class StaticFile(Component):
     lisp_name = "ASDF::STATIC-FILE"
 
 
+class DocFile(StaticFile):
+    lisp_name = "ASDF::DOC-FILE"
+
+
+class HtmlFile(DocFile):
+    lisp_name = "ASDF::HTML-FILE"
+
+
 class SourceFile(Component):
     lisp_name = "ASDF::CL-SOURCE-FILE"
 
@@ -250,7 +258,7 @@ def _components(parent, table):
 
 
 _KINDS = {"FILE": SourceFile, "CL-SOURCE-FILE": SourceFile, "CL-SOURCE-FILE.CL": SourceFile, "CL-SOURCE-FILE.LSP": SourceFile,
-          "MODULE": Module}
+          "MODULE": Module, "DOC-FILE": DocFile, "HTML-FILE": HtmlFile}
 
 
 def _component(parent, form):

@@ -5,6 +5,7 @@ files and strings that plans use.
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 from .. import packages
@@ -13,8 +14,10 @@ from ..data import Cons, list_from, truth
 from ..evaluation.evaluator import PACKAGE
 from ..faces import define_face
 from ..files.files import lisp_path
-from ..packages import find_package, is_symbol, string_designator
+from ..packages import find_package, is_symbol, string_designator, sym
 from ..reader.reader_functions import read_from_string
+
+COMMAND_LINE_ARGUMENTS = sym("UIOP::*COMMAND-LINE-ARGUMENTS*")
 
 
 def find_package_(designator, errorp=True):
@@ -147,4 +150,5 @@ def define_faces():
         "read-file-form": read_file_form, "subpathname": subpathname, "subpathname*": subpathname,
         "pathname-directory-pathname": pathname_directory_pathname, "getcwd": getcwd, "split-string": split_string, "strcat": strcat,
         "string-prefix-p": string_prefix_p, "string-suffix-p": string_suffix_p, "version<=": version_le, "version<": version_lt,
-        "emptyp": emptyp, "ensure-list": ensure_list})
+        "emptyp": emptyp, "ensure-list": ensure_list, "command-line-arguments": lambda: COMMAND_LINE_ARGUMENTS.value},
+        variables={"*command-line-arguments*": list_from(sys.argv[1:])})
