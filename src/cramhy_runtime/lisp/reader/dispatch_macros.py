@@ -7,8 +7,8 @@ and path names are made by the rooms that own them.
 from __future__ import annotations
 
 import os
-import sys
 import re
+import sys
 
 from ..collections.characters import name_char
 from ..collections.vectors import bit_vector
@@ -29,7 +29,7 @@ from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
 READ_EVAL = special("*READ-EVAL*", True)
 FEATURES = special("*FEATURES*", list_from([keyword(name) for name in (
     "CRAMHY", "ANSI-CL", "COMMON-LISP", "IEEE-FLOATING-POINT", "UNICODE", *(["UNIX"] if os.name == "posix" else []),
-    *[{"linux": "LINUX", "darwin": "DARWIN", "win32": "WINDOWS"}.get(sys.platform, "OTHER-OS")],
+    "WINDOWS" if sys.platform == "win32" else sys.platform.upper(),
     f"{sys.byteorder.upper()}-ENDIAN", "64-BIT" if sys.maxsize > 2 ** 32 else "32-BIT")]))
 
 _MAX_ARGUMENT = 1 << 24

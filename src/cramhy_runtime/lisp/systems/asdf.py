@@ -222,7 +222,8 @@ def define_faces():
         "system-depends-on": system_depends_on, "version-satisfies": version_satisfies, "asdf-version": lambda: "3.3.1",
         "initialize-source-registry": initialize_source_registry, "perform": PERFORM},
         variables={"*central-registry*": None},
-        export="defsystem operation component module system cl-source-file static-file doc-file html-file missing-component missing-dependency "
+        export="defsystem operation component module system cl-source-file static-file doc-file html-file "
+               "missing-component missing-dependency "
                + " ".join(name.lower() for name in OPERATIONS))
     define_face("CRAMHY", functions={"define-system-here": define_system_here})
     define_face("QUICKLISP-CLIENT", nicknames=["QL"], functions={"quickload": quickload})

@@ -150,5 +150,6 @@ def define_faces():
         "read-file-form": read_file_form, "subpathname": subpathname, "subpathname*": subpathname,
         "pathname-directory-pathname": pathname_directory_pathname, "getcwd": getcwd, "split-string": split_string, "strcat": strcat,
         "string-prefix-p": string_prefix_p, "string-suffix-p": string_suffix_p, "version<=": version_le, "version<": version_lt,
-        "emptyp": emptyp, "ensure-list": ensure_list, "command-line-arguments": lambda: COMMAND_LINE_ARGUMENTS.value},
+        "emptyp": emptyp, "ensure-list": ensure_list,
+        "command-line-arguments": lambda: COMMAND_LINE_ARGUMENTS.value},
         variables={"*command-line-arguments*": list_from(sys.argv[1:])})
