@@ -17,8 +17,6 @@ from ..files.files import lisp_path
 from ..packages import find_package, is_symbol, string_designator, sym
 from ..reader.reader_functions import read_from_string
 
-COMMAND_LINE_ARGUMENTS = sym("UIOP::*COMMAND-LINE-ARGUMENTS*")
-
 
 def find_package_(designator, errorp=True):
     """``uiop:find-package*``"""
@@ -141,6 +139,11 @@ def version_lt(version1, version2):
     return True if None not in (_version(version1), _version(version2)) and _version(version1) < _version(version2) else None
 
 
+def command_line_arguments():
+    """``uiop:command-line-arguments``: the value of the variable of that name, what the command line says after the program."""
+    return sym("UIOP::*COMMAND-LINE-ARGUMENTS*").value
+
+
 def define_faces():
     """Make the package UIOP."""
     define_face("UIOP", functions={
@@ -151,5 +154,5 @@ def define_faces():
         "pathname-directory-pathname": pathname_directory_pathname, "getcwd": getcwd, "split-string": split_string, "strcat": strcat,
         "string-prefix-p": string_prefix_p, "string-suffix-p": string_suffix_p, "version<=": version_le, "version<": version_lt,
         "emptyp": emptyp, "ensure-list": ensure_list,
-        "command-line-arguments": lambda: COMMAND_LINE_ARGUMENTS.value},
+        "command-line-arguments": command_line_arguments},
         variables={"*command-line-arguments*": list_from(sys.argv[1:])})

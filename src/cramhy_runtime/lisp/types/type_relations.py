@@ -14,7 +14,7 @@ from ..packages import is_symbol, sym
 from .types import bounds, expand_type, is_known_type, is_star, same_specifier, typep
 
 _DEFINED_AS = {
-    "ATOM": "(NOT CONS)", "LIST": "(OR CONS NULL)", "SEQUENCE": "(OR CONS NULL VECTOR)", "NUMBER": "(OR REAL COMPLEX)",
+    "LIST": "(OR CONS NULL)", "SEQUENCE": "(OR CONS NULL VECTOR)", "NUMBER": "(OR REAL COMPLEX)",
     "BOOLEAN": "(MEMBER T NIL)", "NULL": "(MEMBER NIL)", "CHARACTER": "(OR BASE-CHAR EXTENDED-CHAR)",
 }
 _NUMERIC = {  # kinds of numbers, by name: (the leaf kinds it consists of, low, high)
@@ -76,8 +76,31 @@ def _any(answers):
     return None if unknown else False
 
 
+def _plain(specifier):
+    """A specifier whose deftype is expanded, with ATOM as a complement and complements of complements, unions and intersections resolved."""
+    specifier = expand_type(_name_of(specifier))
+    name, arguments = _parts(specifier)
+    if name == "ATOM":
+        return lisp_list(sym("NOT"), sym("CONS"))
+    if name != "NOT" or len(arguments) != 1:
+        return specifier
+    inner = _plain(arguments[0])
+    if inner is None or inner is True:
+        return True if inner is None else None
+    inner_name, parts = _parts(inner)
+    if inner_name == "NOT":
+        return _plain(parts[0])
+    if inner_name in ("OR", "AND"):
+        return _compound("AND" if inner_name == "OR" else "OR", [lisp_list(sym("NOT"), part) for part in parts])
+    return lisp_list(sym("NOT"), inner)
+
+
+def _compound(operator, parts):
+    return parts[0] if len(parts) == 1 else list_from([sym(operator), *parts])
+
+
 def _subtype(first, second):
-    first, second = expand_type(_name_of(first)), expand_type(_name_of(second))
+    first, second = _plain(first), _plain(second)
     if first is None or second is True or (is_symbol(first) and first is second) or is_star(second):
         return True
     if isinstance(first, Cons) and isinstance(second, Cons) and same_specifier(first, second):
@@ -101,11 +124,11 @@ def _subtype(first, second):
         return _subtype(others[0], arguments[0]) if name == "NOT" else _disjoint(first, others[0])
     if other == "OR":
         answer = _any(_subtype(first, argument) for argument in others)
+        if not answer and first is True:
+            answer = _covers_all(others) or answer
         return answer if answer else _subtype_of_union(first, name, arguments, second, answer)
     if name == "AND":
-        if _any(_subtype(argument, second) for argument in arguments):
-            return True
-        return False if _inhabited(first) and any(_disjoint(argument, second) for argument in arguments) else None
+        return _intersection_within(first, arguments, second)
     if name == "SATISFIES" or other == "SATISFIES":
         return None
     if first is True:
@@ -113,18 +136,68 @@ def _subtype(first, second):
     return _compare(first, name, arguments, second, other, others)
 
 
-def _subtype_of_union(first, name, arguments, second, answer):
-    # The union may cover the type although no part of it does: take the type apart.
+def _covers_all(parts):
+    """Whether a union is everything: one of its ``parts`` is the complement of what others contain."""
+    for part in parts:
+        name, arguments = _parts(_plain(part))
+        rest = [other for other in parts if other is not part]
+        if name == "NOT" and rest and _subtype(arguments[0], _compound("OR", rest)):
+            return True
+    return False
+
+
+def _intersection_within(first, arguments, second):
+    """Whether the intersection of the types ``arguments``, which ``first`` is, lies in ``second``: its parts are taken one by one."""
+    if second is not None and _any(_subtype(argument, second) for argument in arguments):
+        return True
+    types = [_plain(argument) for argument in arguments]
+    for index, part in enumerate(types):
+        name, its_arguments = _parts(part)
+        others = [*types[:index], *types[index + 1:]]
+        if name == "AND":
+            return _subtype(_compound("AND", [*its_arguments, *others]), second)
+        if name in ("MEMBER", "EQL"):
+            return None if "SATISFIES" in map(_head, others) else all(
+                typep(member, second) for member in its_arguments if all(typep(member, other) for other in others))
+        alternatives = _alternatives(name, its_arguments)
+        if alternatives:
+            return _all(_subtype(_compound("AND", [alternative, *others]), second) for alternative in alternatives)
+    if any(_disjoint(one, other) for index, one in enumerate(types) for other in types[index + 1:]):
+        return True
+    ranges = [_numeric(*_parts(part)) for part in types]
+    if len(types) > 1 and all(limits is not None and limits[0] == ("INTEGER",) for limits in ranges):
+        low = max((limits[1] for limits in ranges if limits[1] is not None), default=sym("*"))
+        high = min((limits[3] for limits in ranges if limits[3] is not None), default=sym("*"))
+        return _subtype(lisp_list(sym("INTEGER"), low, high), second)
+    if second is None:
+        return None
+    return False if _inhabited(first) and any(_disjoint(part, second) for part in types) else None
+
+
+def _head(specifier):
+    return _parts(specifier)[0]
+
+
+def _alternatives(name, arguments):
+    """The types that a union, or a name of one, consists of; ``None`` for other types."""
+    if name == "OR":
+        return arguments
     definition = _definition(name, arguments)
     if definition is not None:
-        return _subtype(definition, second)
+        head, rest = _parts(definition)
+        return rest if head == "OR" else [definition]
     numeric = _numeric(name, arguments)
-    if numeric is not None and len(numeric[0]) > 1:
-        names = {"INTEGER": "INTEGER", "RATIO": "RATIO", "SINGLE": "SINGLE-FLOAT", "DOUBLE": "DOUBLE-FLOAT"}
-        limits = arguments if name in ("RATIONAL", "REAL", "FLOAT") else []
-        return _all(_subtype(lisp_list(sym(names[kind]), *limits) if limits and kind != "RATIO" else sym(names[kind]), second)
-                    for kind in numeric[0])
-    return answer
+    if numeric is None or len(numeric[0]) < 2:
+        return None
+    names = {"INTEGER": "INTEGER", "RATIO": "RATIO", "SINGLE": "SINGLE-FLOAT", "DOUBLE": "DOUBLE-FLOAT"}
+    limits = arguments if name in ("RATIONAL", "REAL", "FLOAT") else []
+    return [lisp_list(sym(names[kind]), *limits) if limits and kind != "RATIO" else sym(names[kind]) for kind in numeric[0]]
+
+
+def _subtype_of_union(first, name, arguments, second, answer):
+    # The union may cover the type although no part of it does: take the type apart.
+    alternatives = _alternatives(name, arguments)
+    return _all(_subtype(part, second) for part in alternatives) if alternatives else answer
 
 
 def _definition(name, arguments):
@@ -143,10 +216,8 @@ def _compare(first, name, arguments, second, other, others):
         return _array_within(name, arguments, other, others)
     if name == "CONS" and other == "CONS":
         return _all(_subtype(a, b) for a, b in zip(_cons_parts(arguments), _cons_parts(others)))
-    if other == "ATOM":
-        return _disjoint(first, sym("CONS"))
     if name == "NOT":  # the complement of a type lies in a named type only if that is nearly everything
-        return None if isinstance(second, Cons) else other == "CONS" and _parts(arguments[0])[0] == "ATOM"
+        return None if isinstance(second, Cons) else False
     if other == "NOT":
         return None
     for specifier, its_name, its_arguments in ((first, name, arguments),):
@@ -273,7 +344,7 @@ def _array_within(name, arguments, other, others):
 
 def _disjoint(first, second):
     """Whether no object is of both types."""
-    first, second = expand_type(first), expand_type(second)
+    first, second = _plain(first), _plain(second)
     name, arguments = _parts(first)
     other, others = _parts(second)
     if name in ("MEMBER", "EQL"):
@@ -288,7 +359,12 @@ def _disjoint(first, second):
         return _disjoint(_definition(name, arguments), second)
     if _definition(other, others) is not None:
         return _disjoint(first, _definition(other, others))
-    if "SATISFIES" in (name, other) or "AND" in (name, other) or "NOT" in (name, other):
+    if name == "NOT" or other == "NOT":
+        return _subtype(second, arguments[0]) if name == "NOT" else _subtype(first, others[0])
+    if name == "AND" or other == "AND":
+        pairs = [(part, second) for part in arguments] if name == "AND" else [(first, part) for part in others]
+        return True if any(_disjoint(*pair) for pair in pairs) else None
+    if "SATISFIES" in (name, other):
         return None
     numeric, other_numeric = _numeric(name, arguments), _numeric(other, others)
     if numeric is not None and other_numeric is not None:
@@ -306,7 +382,8 @@ def _disjoint(first, second):
 
 def _inhabited(specifier):
     """Whether there are objects of the type; ``None`` when that cannot be told."""
-    name, arguments = _parts(expand_type(specifier))
+    specifier = _plain(specifier)
+    name, arguments = _parts(specifier)
     numeric = _numeric(name, arguments)
     if numeric is not None and numeric[1] is not None and numeric[3] is not None:
         return numeric[1] <= numeric[3]
@@ -315,4 +392,7 @@ def _inhabited(specifier):
     if name == "AND" and len(arguments) == 2 and _parts(arguments[1])[0] == "NOT":
         inner = _subtype(arguments[0], arguments[1].cdr.car)
         return None if inner is None else not inner
-    return None if name in ("SATISFIES", "AND", "NOT") else specifier is not None
+    if name == "AND":
+        empty = _intersection_within(specifier, arguments, None)
+        return None if empty is None else not empty
+    return None if name in ("SATISFIES", "NOT") else specifier is not None
