@@ -77,7 +77,7 @@ def _any(answers):
 
 
 def _plain(specifier):
-    """A specifier whose deftype is expanded, with ATOM as a complement and complements of complements, unions and intersections resolved."""
+    """A specifier whose deftype is expanded, with ATOM as a complement; complements of complements and compounds are resolved."""
     specifier = expand_type(_name_of(specifier))
     name, arguments = _parts(specifier)
     if name == "ATOM":
