@@ -35,6 +35,7 @@ HELPERS = {
     "printer.printing_support": """pprint-logical-block pprint-pop pprint-list-exhausted print-unreadable-object formatter
         make-fill-pointer-output-stream stream-position with-standard-io-syntax""",
     "streams.file_streams": "with-open-file with-open-stream",
+    "collections.list_search": "with-property",
     "evaluation.assertions": "assertion-failed assertion-prompt",
     "evaluation.forms": "define-compiler-macro",
     "evaluation.declarations": "declaim",
@@ -46,7 +47,7 @@ HELPERS = {
     "evaluation.expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
         handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
         signal-with-restarts with-condition-restarts hash-table-iterator
-        put-property remove-property next-method-exists""",
+        remove-property next-method-exists""",
     "symbols.package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",
     "tools.tracing": "trace untrace time step",
 }

@@ -31,6 +31,7 @@ def cached_file_value(file):
 
 
 def set_cached_file_value(value, file):
+    """``(setf cut:cached-file-value)``: keep ``value`` until the file changes."""
     name, date = _date(file)
     _values[name] = (date, value)
     return value

@@ -1,4 +1,4 @@
-"""Functions about functions, forms and the environment (ANSI chapters 3, 5, 9, 25)."""
+"""``eval``, ``fdefinition``, and the functions on conditions and restarts, as Lisp calls them (ANSI chapters 3, 5, 9)."""
 
 from __future__ import annotations
 

@@ -135,6 +135,7 @@ def note_special(symbol):
 
 
 def proclaim_special(symbol):
+    """Make ``symbol`` a special variable. A constant or a symbol of a locked package is an error."""
     if not isinstance(symbol, Symbol):
         return type_error(symbol, "SYMBOL")
     check_symbol(symbol, "globally declaring ~S SPECIAL", symbol)
@@ -145,6 +146,7 @@ def proclaim_special(symbol):
 
 
 def define_symbol_macro(symbol, expansion):
+    """What ``define-symbol-macro`` does when it is run. Returns the symbol; a special variable is a program-error."""
     check_symbol(symbol, "defining ~S as a symbol-macro", symbol)
     if not isinstance(symbol, Symbol) or symbol.special:
         return program_error("Symbol macro name already declared SPECIAL: ~S.", symbol)

@@ -27,12 +27,12 @@ _compiler = None
 
 
 def compiler():
-    """The compiler's classes, imported when something is first compiled: a cached program starts without Hy."""
+    """The compiler's classes, imported when something is first compiled: a cached program starts without it."""
     global _compiler
     if _compiler is None:
-        from . import hy_backend
+        from . import compiler_parts
 
-        _compiler = hy_backend
+        _compiler = compiler_parts
     return _compiler
 
 
@@ -72,7 +72,7 @@ class Unit:
     def code(self, statements):
         """The code object of core statements."""
         try:
-            tree = compiler().python_tree(statements, self.filename)
+            tree = compiler().python_tree(statements)
             try:
                 return compile(tree, self.filename, "exec")
             except SyntaxError as problem:
@@ -243,7 +243,7 @@ def compile_lambda(form, environment=None, text=None):
     node = analyzer.toplevel(form) if environment is None else backend.toplevel_with_macros(analyzer, form, environment)
     statements = backend.Generator(unit.constants).toplevel(node)
     unit.namespace.update(unit.constants.take_objects())
-    return one(unit.run(compile(backend.python_tree(statements, text.filename), text.filename, "exec")))
+    return one(unit.run(compile(backend.python_tree(statements), text.filename, "exec")))
 
 
 def macro_lambda(name, lambda_list, body, definer="DEFMACRO", default=None):

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from .. import conditions
 from ..collections.hash_tables import need_table
+from ..collections.list_search import without_property
 from ..compiler.support import function_of
 from ..conditions import CaseFailure, SimpleProgramError, SimpleTypeError, error, program_error
-from ..data import Cons, MultipleValues, list_from, truth
+from ..data import Cons, MultipleValues, boolean, truth
 from ..packages import is_symbol, keyword, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..types.type_names import simplified_type
@@ -56,10 +57,12 @@ def key_table(arguments, known, allow_others, what):
 
 
 def key_given_p(table, key):
+    """Whether the keyword ``key`` is in what `key_table` made."""
     return True if key in table else None
 
 
 def key_value(table, key):
+    """The argument of the keyword ``key`` in what `key_table` made, nil if it was not given."""
     return table.get(key)
 
 
@@ -67,6 +70,7 @@ def key_value(table, key):
 
 
 def case_failure(value, operator, possibilities):
+    """Signal that no clause of ``ecase`` or ``etypecase`` fits: ``possibilities`` is the list of the keys or types."""
     return error(CaseFailure(value, operator, possibilities))
 
 
@@ -77,8 +81,9 @@ def ask_for_value(value, operator, possibilities):
 
 
 def check_type_failed(value, place, kind, name):
-    text, kind = name, simplified_type(kind)
-    condition = SimpleTypeError("The value of ~S is ~S, which is not ~:[of type ~S~;~:*~A~].", place, value, text, kind,
+    """Signal that the value of ``place`` is not of the type ``kind``, which the program may call ``name``. Returns the new value."""
+    kind = simplified_type(kind)
+    condition = SimpleTypeError("The value of ~S is ~S, which is not ~:[of type ~S~;~:*~A~].", place, value, name, kind,
                                 datum=value, expected_type=kind)
     where = symbol_name(place) if is_symbol(place) else "the place"
     return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, f"Supply a new value for {where}.")], lambda: error(condition))
@@ -88,10 +93,12 @@ def check_type_failed(value, place, kind, name):
 
 
 def handler_bind(clauses, thunk):
+    """``handler-bind``: clauses are lists (type handler), a handler is a function designator."""
     return conditions.handler_bind([(clause.car, function_of(clause.cdr.car)) for clause in clauses or ()], thunk)
 
 
 def handler_case(clauses, thunk, no_error):
+    """``handler-case``: clauses are lists (type function); ``no_error`` gets the values of ``thunk``."""
     return conditions.handler_case([(clause.car, clause.cdr.car) for clause in clauses or ()], thunk, no_error)
 
 
@@ -103,7 +110,7 @@ def restart_report(report):
     def text():
         stream = StringOutputStream()
         report(stream)
-        return stream.text() if hasattr(stream, "text") else stream.get_text()
+        return stream.text()
 
     return text
 
@@ -119,10 +126,12 @@ def signal_with_restarts(operator, *arguments):
 
 
 def with_condition_restarts(condition, restarts, thunk):
+    """``with-condition-restarts``: while ``thunk`` runs, the list ``restarts`` belongs to ``condition``."""
     return conditions.with_condition_restarts(condition, list(restarts or ()), thunk)
 
 
 def restart_bind(bindings, thunk):
+    """``restart-bind``: bindings are lists (name function option value ...); their functions return to where they were invoked."""
     restarts = []
     for name, function, *options in bindings or ():
         options = {option.name: value for option, value in zip(options[::2], options[1::2])}
@@ -132,10 +141,12 @@ def restart_bind(bindings, thunk):
 
 
 def with_simple_restart(name, report, thunk):
+    """``with-simple-restart``, see `conditions.with_simple_restart`."""
     return conditions.with_simple_restart(name, report, thunk)
 
 
 def next_method_exists(next_method):
+    """``next-method-p`` in the body of a method."""
     return next_method.exists
 
 
@@ -148,28 +159,10 @@ def hash_table_iterator(table):
     return lambda: next((MultipleValues((True, key, value)) for key, value in entries), None)
 
 
-# -------------------------------------------------------------------------------------------------------------- places, plists
-
-
-def put_property(plist, indicator, value):
-    """The property list with ``indicator`` set: changed in place when it is there, else extended in front."""
-    cell = plist
-    while isinstance(cell, Cons):
-        if cell.car is indicator or _eql(cell.car, indicator):
-            cell.cdr.car = value
-            return plist
-        cell = cell.cdr.cdr
-    return Cons(indicator, Cons(value, plist))
-
-
-def _eql(a, b):
-    return type(a) is type(b) and not isinstance(a, str) and a == b
+# -------------------------------------------------------------------------------------------------------------- property lists
 
 
 def remove_property(plist, indicator):
-    """Two values: the property list without ``indicator``, and whether it was there."""
-    items = list(plist or ())
-    for index in range(0, len(items) - 1, 2):
-        if items[index] is indicator or _eql(items[index], indicator):
-            return MultipleValues((list_from(items[:index] + items[index + 2:]), True))
-    return MultipleValues((plist, None))
+    """What ``remf`` becomes. Two values: the property list without ``indicator``, changed in place, and whether it was there."""
+    rest, found = without_property(plist, indicator)
+    return MultipleValues((rest, boolean(found)))

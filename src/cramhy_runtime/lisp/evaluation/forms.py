@@ -27,6 +27,7 @@ def macro_function(symbol, environment=None):
 
 
 def set_macro_function(function, symbol, environment=None):
+    """``(setf macro-function)``: ``function`` takes a form and an environment."""
     expander = function_of(function)
     symbol.macro = lambda form, env: one(expander(form, env))
     return function
@@ -57,6 +58,7 @@ def compiler_macro_function(name, environment=None):
 
 
 def set_compiler_macro_function(function, name, environment=None):
+    """``(setf compiler-macro-function)``; nil takes the compiler macro away."""
     if function is None:
         _setf_name_data(name).pop("compiler-macro", None)
     else:

@@ -368,7 +368,7 @@ def _getf_place(place, environment):
     temporaries, forms, stores, setter, getter = setf_expansion(inner, environment)
     key, store = gensym("INDICATOR"), gensym("NEW")
     defaults = [gensym("DEFAULT") for _ in default]
-    changed = lisp_list(support("PUT-PROPERTY"), getter, key, store)
+    changed = lisp_list(support("WITH-PROPERTY"), getter, key, store)
     storing = lisp_list(LET_STAR, lisp_list(lisp_list(stores[0], changed)), setter, store)
     return ([*temporaries, key, *defaults], [*forms, indicator, *default], [store], storing,
             lisp_list(sym("GETF"), getter, key, *defaults))

@@ -1,12 +1,13 @@
 """Where in the user's text something happens: from Python frames back to file, line and column.
 
-Compiled code carries the places of its forms, because Hy models do and Python's code objects keep them. So an error knows the
+Compiled code carries the places of its forms, because core forms have them and Python's code objects keep them. So an error knows the
 innermost frame of a ``.lisp`` or ``.hy`` file or of a REPL line, and shows that line; frames of the runtime are not shown.
 """
 
 from __future__ import annotations
 
 import linecache
+import os
 import sys
 from pathlib import Path
 
@@ -76,8 +77,6 @@ def describe(position):
 
 
 def _relative(filename):
-    import os
-
     if filename.startswith("<"):
         return filename
     relative = os.path.relpath(filename)

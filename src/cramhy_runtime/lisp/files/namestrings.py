@@ -281,6 +281,7 @@ def native_namestring(pathname):
 
 
 def logical_directory(pathname):
+    """The directory of a logical pathname as it is written: ``PLANS;TURTLE;``."""
     if not pathname.directory:
         return ""
     start, *parts = pathname.directory

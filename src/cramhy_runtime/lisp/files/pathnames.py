@@ -154,6 +154,7 @@ def customary(part):
 
 
 def in_case(part, case, path=None):
+    """A component as the argument :case of ``pathname-name`` and its relatives asks; that of a logical pathname stays."""
     if case is UNSUPPLIED or case is None or case is keyword("LOCAL") or isinstance(path, LogicalPathname):
         return part
     if case is not keyword("COMMON"):

@@ -1,4 +1,4 @@
-"""The class world: names of classes, ``find-class``, ``class-of``, and how classes print.
+"""The class world: names of classes, ``find-class`` and ``class-of``.
 
 Every Lisp class is a Python class. Those of ``defclass``, ``defstruct`` and ``define-condition`` are registered under their
 symbols; the system classes are in ``builtin_classes.py``; classes of the runtime are found by their attribute ``lisp_name``.

@@ -146,6 +146,7 @@ def getattr_(obj, name, default=MISSING):
 
 
 def set_getattr(value, obj, name, default=None):
+    """``(setf py:getattr)``: set the attribute; one that is not there yet gets the name with underscores."""
     spelled = python_names.attribute_name(obj, name) or python_names.keyword_spelling(symbol_name(name))
     guarded(setattr, obj, spelled, plain(value))
     return value
@@ -163,6 +164,7 @@ def item(obj, *keys):
 
 
 def set_item(value, obj, *keys):
+    """``(setf py:item)``: ``obj[key] = value``."""
     def assign():
         obj[_key(keys)] = plain(value)
 

@@ -52,6 +52,7 @@ class Stream:
 
 
 def misused(stream, what):
+    """The type-error that ``stream`` is no stream of the kind ``what``, such as ``"character input"``."""
     return late.error(late.SimpleTypeError("~S is not a ~A stream.", stream, what, datum=stream, expected_type=f"(SATISFIES {what})"))
 
 

@@ -173,6 +173,7 @@ def package_symbols(package, external_only):
 
 
 def all_symbols():
+    """The symbols present in any package, for ``do-all-symbols``; one that is present in two comes twice."""
     return list_from([symbol for package in all_packages() for table in (package.external, package.internal)
                       for symbol in table.values()])
 

@@ -373,18 +373,22 @@ def unlock_package(package):
 
 
 def package_locked_p(package):
+    """``sb-ext:package-locked-p``."""
     return True if locked(find_package_or_error(package)) else None
 
 
 def name_conflict_symbols(condition):
+    """``sb-ext:name-conflict-symbols``: the list of symbols that want the same name."""
     return list_from(_conflict(condition).symbols)
 
 
 def name_conflict_function(condition):
+    """``sb-ext:name-conflict-function``: the symbol of the function that found the conflict."""
     return _conflict(condition).function
 
 
 def name_conflict_datum(condition):
+    """``sb-ext:name-conflict-datum``: what that function was given."""
     return _conflict(condition).datum
 
 

@@ -1,4 +1,4 @@
-"""Symbols and packages as functions of Common Lisp (ANSI chapters 10 and 11)."""
+"""The functions on symbols: their values, functions and names, and making new ones (ANSI chapter 10)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``ros-load``: how a user of ROS loads a system (roslisp.md section 12); and ``load`` and ``require``."""
+"""``ros-load``: how a user of ROS loads a system (roslisp.md section 12); and ``require``."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ def ros_package_path(package):
 
 
 def ros_home():
+    """Where ROS keeps its logs: ``$ROS_HOME``, or ``.ros`` in the user's home."""
     return os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
 
 

@@ -47,6 +47,7 @@ NOT_TO_BE_HAD = {
 
 
 def provide_system(names):
+    """Note systems that cramhy contains, so that nothing is looked for or loaded: ``names`` is one text."""
     built_in.update(names.split())
 
 

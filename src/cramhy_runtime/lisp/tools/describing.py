@@ -98,6 +98,7 @@ class Description:
 
 
 def margin():
+    """The column where lines end: ``*print-right-margin*``, or 72."""
     return PRINT_RIGHT_MARGIN.value or 72
 
 
@@ -277,6 +278,7 @@ def describe_python_object(obj, out):
 
 
 def describe_array(array, out):
+    """Element type, size and what is behind an array."""
     rank = arrays.array_rank(array)
     out.line()
     out.line(f"Element-type: {prin1_to_string(arrays.array_element_type(array))}")

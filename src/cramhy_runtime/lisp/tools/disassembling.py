@@ -84,7 +84,7 @@ def python_text(function):
         unit = Unit(code.co_filename, positions)
         with binding(PACKAGE, package):
             for part in unit.toplevel_parts(form):
-                for node in ast.walk(compiler().python_tree(unit.statements(part), unit.filename)):
+                for node in ast.walk(compiler().python_tree(unit.statements(part))):
                     if isinstance(node, (ast.FunctionDef, ast.Lambda)) and _is_it(node, code):
                         return ast.unparse(_Named(unit.namespace).visit(node))
     return None

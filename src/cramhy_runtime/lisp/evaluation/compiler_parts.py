@@ -1,11 +1,10 @@
-"""The compiler's parts in one place, and the step from its output to Python's syntax tree.
+"""The compiler's parts in one place.
 
 The evaluator imports this module when it first compiles, so that a cached program starts without the compiler.
 """
 
 from __future__ import annotations
 
-from ..compiler import python_code
 from ..compiler import special_forms  # noqa: F401  fills SPECIAL_FORMS
 from ..compiler.analyze import SPECIAL_FORMS, Analyzer
 from ..compiler.constants import Constants, NotStorable
@@ -13,14 +12,11 @@ from ..compiler.deep_blocks import flatten
 from ..compiler.environment import Env, FunctionScope, LocalMacro
 from ..compiler.generate import Generator
 from ..compiler.nodes import Lambda, Parameters
-
-
-def python_tree(statements, filename):
-    """The Python module (an ``ast.Module``) that runs the core forms ``statements``."""
-    return python_code.module(statements)
+from ..compiler.python_code import module as python_tree
 
 
 def is_special(symbol):
+    """Whether the compiler itself treats forms that begin with ``symbol``: special operators, and some macros."""
     return symbol in SPECIAL_FORMS
 
 
