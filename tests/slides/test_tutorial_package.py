@@ -31,6 +31,7 @@ def test_both_lectures_give_the_same_bytes_twice_and_on_both_back_ends(tmp_path,
     assert DRIVEN in stable(first)
 
 
+@pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
 def test_a_hy_file_runs_with_hy_itself(tmp_path):
     script = tmp_path / "drive.hy"
     script.write_text("""\
