@@ -208,7 +208,8 @@ def token(name):
     base, case = PRINT_BASE.value, READTABLE.value.case.name
     text = _quoted.get((name, base, case))
     if text is None:
-        if needs_bars(name, base, case) or looks_numeric(name, base):  # SBCL's automaton misses 1E5 in base 2
+        if needs_bars(name, base, case) or looks_numeric(name, base) or not unicodedata.is_normalized("NFKC", name):
+            # SBCL's automaton misses 1E5 in base 2; the reader normalizes a name that has no bars
             text = _between_bars(name)
         else:
             text = ""
