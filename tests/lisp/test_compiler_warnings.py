@@ -301,3 +301,13 @@ def test_a_type_that_nobody_defines(lisp):
         ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-ERROR"),
         ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-TYPE")]
     assert printed(lisp("(handler-case (handler-case (error \"x\") (no-such-error () 1)) (error () 2))")) == ["2"]  # it fits nothing
+
+
+def test_a_function_that_becomes_a_macro(lisp):
+    lisp("(defun changing-kind (x) x)")
+    assert printed(lisp("""(let ((seen nil))
+      (handler-bind ((style-warning (lambda (c) (push (princ-to-string c) seen) (muffle-warning c))))
+        (eval '(defmacro changing-kind (x) (list 'list x)))
+        (eval '(defmacro changing-kind (x) (list 'list x x))))
+      (list seen (eval '(changing-kind 1)) (handler-case (funcall 'changing-kind 1) (undefined-function () :gone))))""")) == [
+          '(("CHANGING-KIND is being redefined as a macro when it was previously defined to be a function.")\n (1 1) :GONE)']

@@ -6,7 +6,7 @@ Lisp name (``__lisp_name__``) and the file it came from, for printing, ``describ
 
 from __future__ import annotations
 
-from ..conditions import CompileError, error, program_error, restart_case, type_error, warn
+from ..conditions import CompileError, error, program_error, restart_case, style_warn, type_error, warn
 from ..conditions import types as condition_types
 from ..data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, lisp_list, one
 from ..equality import eql
@@ -72,9 +72,16 @@ class RedefinitionWarning(condition_types.SimpleWarning):
 
 
 def define_macro(name, expander, documentation=None, lambda_list=None):
-    """``defmacro``: ``expander`` is a function of the form and the environment. Returns the name."""
+    """``defmacro``: ``expander`` is a function of the form and the environment. Returns the name.
+
+    A function of that name is no more, and a style-warning says so; names that cramhy gives may be both.
+    """
     _check_name(name, "macro")
     check_symbol(name, "defining ~S as a macro", name)
+    if not isinstance(name.function, UndefinedFunction) and not (name.package is not None and name.package.built_in):
+        style_warn("~S is being redefined as a macro when it was previously defined to be a function.", name)
+        name.function = UndefinedFunction(name)
+        name.function_changed()
     expander.__doc__ = documentation
     expander.__lisp_name__ = name
     name.macro = lambda form, environment: one(expander(form, environment))
