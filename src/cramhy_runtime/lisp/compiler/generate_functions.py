@@ -82,7 +82,7 @@ class FunctionGenerator:
             self.before.append(self.setting(parser, self.call("key_parser", self.constant_keys(table),
                                                               TRUE if spec.allow_other_keys else NONE)))
             if spec.keys:
-                self.emit(word("setv"), List([word(variable.name) for variable, *_ in spec.keys]), values)
+                self.keys_in_order(spec.keys, table, word(rest), word(keywords), values)
             else:
                 self.out.append(values)
         if spec.rest is not None:
@@ -90,6 +90,23 @@ class FunctionGenerator:
         for variable, default, supplied, _ in spec.keys:
             self.default(variable, default, supplied)
         return parameters
+
+    def keys_in_order(self, keys, table, rest, python, values):
+        """Give the parameters ``keys`` their values: those in the order of the lambda list, as mostly written, are taken one by one.
+
+        Where arguments are left over then, all are sorted by the parser: ``values``.
+        """
+        taken, last = word(self.temporary("Ltaken")), word(self.temporary("Llast"))
+        self.emit(word("setv"), last, expression(word("-"), self.call("len", rest), 1))
+        self.emit(word("setv"), taken, 0)
+        for (variable, *_), (key, plain) in zip(keys, table, strict=True):
+            found = expression(word("and"), expression(word("<"), taken, last),
+                               expression(word("is"), expression(word("get"), rest, taken), self.constant(key)))
+            take = [self.setting(variable.name, expression(word("get"), rest, expression(word("+"), taken, 1))),
+                    self.setting(taken, expression(word("+"), taken, 2))]
+            self.branch(found, take, [self.setting(variable.name, NONE if plain else word("Lunsupplied"))])
+        left = expression(word("or"), expression(word("<="), taken, last), python)
+        self.emit(word("when"), left, expression(word("setv"), List([word(variable.name) for variable, *_ in keys]), values))
 
     def constant_keys(self, table):
         return Tuple([Tuple([self.constant(key), NONE if plain else word("Lunsupplied")]) for key, plain in table])

@@ -295,7 +295,7 @@ NAMESPACE = {
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lchecked": checked, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
-    "Lcomplex": complex_, "Lgethash": value_in_table,
+    "Lcomplex": complex_, "Lgethash": value_in_table, "Llen": len,
     "Lcharacter": Character, "Lfloat": float, "Lcomma": Comma,
     "Ladd2": arithmetic.add2, "Lsub2": arithmetic.sub2, "Lmul2": arithmetic.mul2, "Ldiv2": arithmetic.div2, "Llt2": arithmetic.lt2,
     "Lgt2": arithmetic.gt2, "Lle2": arithmetic.le2, "Lge2": arithmetic.ge2, "Lnum_eq2": arithmetic.num_eq2,
