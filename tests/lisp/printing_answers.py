@@ -10,14 +10,14 @@ from pathlib import Path
 
 from cramhy_runtime.lisp import faces
 from cramhy_runtime.lisp.collections import array_making
-from cramhy_runtime.lisp.format import format
-from cramhy_runtime.lisp.printer import pprint_dispatch, pretty, printer
-from cramhy_runtime.lisp.streams import stream_functions
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import Character, Cons, Keyword, Symbol, lisp_list, one, python_list
+from cramhy_runtime.lisp.format import format
 from cramhy_runtime.lisp.packages import find_package, sym
+from cramhy_runtime.lisp.printer import pprint_dispatch, pretty, printer
 from cramhy_runtime.lisp.printer.print_controls import bound
 from cramhy_runtime.lisp.reader.reader import read_from_string
+from cramhy_runtime.lisp.streams import stream_functions
 
 FOLDER = Path(__file__).parent / "printing"
 FUNCTIONS = {

@@ -8,9 +8,9 @@ from sbcl_answers import answer, recorded
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.collections import array_making, arrays
+from cramhy_runtime.lisp.collections.vectors import LispArray, TypedVector, Vector, bit_vector
 from cramhy_runtime.lisp.data import Character, DoubleFloat, LispString, lisp_list, list_from, python_list
 from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.collections.vectors import LispArray, TypedVector, Vector, bit_vector
 
 
 @pytest.fixture(autouse=True)

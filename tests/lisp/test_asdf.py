@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.lisp.systems import systems
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.systems import systems
 
 
 @pytest.fixture

@@ -4,10 +4,10 @@ import pytest
 
 from cramhy_runtime import image
 from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.data import Cons, lisp_list
 from cramhy_runtime.lisp.objects import class_definition, classes, generic, instances, slots
 from cramhy_runtime.lisp.objects.builtin_classes import lisp_mro
 from cramhy_runtime.lisp.objects.classes import class_name, find_class, make_instance
-from cramhy_runtime.lisp.data import Cons, lisp_list
 from cramhy_runtime.lisp.objects.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
 from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
 

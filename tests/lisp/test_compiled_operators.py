@@ -130,6 +130,14 @@ def test_a_function_that_is_defined_again_is_seen_by_its_callers(session):
     assert answer(session, "(outer 1)") == "22"
 
 
+def test_an_accessor_of_the_same_name_for_a_slot_of_another_name_is_seen_by_its_callers(session):
+    answer(session, "(defstruct (old-spot (:conc-name spot-)) x)")
+    answer(session, "(defun x-of (spot) (incf (spot-x spot)) (spot-x spot))")
+    assert answer(session, "(x-of (make-old-spot :x 1))") == "2"
+    answer(session, "(defstruct (new-spot (:conc-name nil)) (y 5) spot-x)")
+    assert answer(session, "(x-of (make-new-spot :spot-x 7))") == "8"
+
+
 @pytest.mark.parametrize("loop", [
     "(loop)", "(loop (setq x 1))", "(dotimes (i 1000000000) (setq x i))", "(loop for i from 0 do (setq x i))",
     "(tagbody a (go b) c b (go a))", "(loop for i below 1000000000 do (list i))", "(let ((l (list 1))) (setf (cdr l) l) (dolist (e l) e))",

@@ -10,8 +10,8 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.compiler import support
 from cramhy_runtime.lisp.conditions import CompileError, Condition
-from cramhy_runtime.lisp.symbols.package_errors import SymbolPackageLockedError
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.symbols.package_errors import SymbolPackageLockedError
 from cramhy_runtime.repl.session import condition_of
 
 

@@ -5,14 +5,13 @@ session, by the compiler and the whole image.
 """
 
 import pytest
+from sbcl_answers import line, recorded
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session, condition_of
-
-from sbcl_answers import line, recorded
 
 PROGRAMS = recorded("compiler.txt")
 

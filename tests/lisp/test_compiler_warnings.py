@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.streams import streams
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp.streams import streams
 from cramhy_runtime.repl import json_lines
 from cramhy_runtime.repl.session import Session
 

@@ -9,11 +9,11 @@ from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import equality
+from cramhy_runtime.lisp.collections.hash_tables import HashTable
+from cramhy_runtime.lisp.collections.vectors import LispArray, Vector, bit_vector
 from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, LispString, list_from
 from cramhy_runtime.lisp.equality import eq, eql, equal, equalp, sxhash
-from cramhy_runtime.lisp.collections.hash_tables import HashTable
 from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.collections.vectors import LispArray, Vector, bit_vector
 
 atoms = st.one_of(
     st.none(), st.booleans(), st.integers(-2, 2), st.sampled_from([0.0, -0.0, 1.0, 2.0, float("nan"), DoubleFloat(0.0), DoubleFloat(1.0)]),

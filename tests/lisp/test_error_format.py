@@ -3,8 +3,8 @@
 import pytest
 
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.tools.advice import explanation
 from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.lisp.tools.advice import explanation
 from cramhy_runtime.repl.session import condition_of, signalled_here
 
 READING = [

@@ -13,8 +13,8 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.evaluation import universal_time
 from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.evaluation import universal_time
 from cramhy_runtime.lisp.files.files import lisp_path
 from cramhy_runtime.lisp.files.pathnames import DEFAULTS
 from cramhy_runtime.lisp.printer.printer import prin1_to_string

@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-from cramhy_runtime.lisp.systems import importer, systems
 from cramhy_runtime.lisp.conditions import SimpleProgramError, TypeError_, from_python
 from cramhy_runtime.lisp.data import lisp_list
+from cramhy_runtime.lisp.systems import importer, systems
 
 _numbers = itertools.count()
 

@@ -8,11 +8,11 @@ import sys
 
 import pytest
 
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.systems import loader
 from cramhy_runtime.lisp.conditions import Condition, FileError
+from cramhy_runtime.lisp.evaluation import evaluator
 from cramhy_runtime.lisp.packages import find_package, make_package, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.systems import loader
 
 
 @pytest.fixture

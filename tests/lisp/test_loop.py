@@ -4,10 +4,10 @@ import pytest
 
 from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.loop import loop
 from cramhy_runtime.lisp.data import python_list
 from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.evaluation import evaluator
+from cramhy_runtime.lisp.loop import loop
 from cramhy_runtime.lisp.packages import find_package, sym
 from cramhy_runtime.lisp.reader.reader import Reader
 

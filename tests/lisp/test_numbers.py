@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 
 from cramhy_runtime import image
-from cramhy_runtime.lisp.numbers import arithmetic, irrational, random_state, rounding
 from cramhy_runtime.lisp.conditions import DivisionByZero, FloatingPointOverflow, SimpleTypeError, TypeError_
 from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.lisp.numbers import arithmetic, irrational, random_state, rounding
 from cramhy_runtime.lisp.packages import sym
 
 image.boot()

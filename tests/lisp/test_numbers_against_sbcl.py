@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.objects.classes import class_name
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import all_values, one
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.evaluation.evaluator import evaluate
+from cramhy_runtime.lisp.objects.classes import class_name
 from cramhy_runtime.lisp.packages import find_package, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.lisp.reader.reader import read_from_string

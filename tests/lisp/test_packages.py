@@ -7,8 +7,8 @@ import pytest
 from cramhy_runtime.lisp import packages
 from cramhy_runtime.lisp.conditions import restart_case
 from cramhy_runtime.lisp.data import Symbol
-from cramhy_runtime.lisp.symbols.package_errors import NameConflict, PackageLockedError, check_package, unlocked
 from cramhy_runtime.lisp.packages import Package
+from cramhy_runtime.lisp.symbols.package_errors import NameConflict, PackageLockedError, check_package, unlocked
 
 
 @pytest.fixture

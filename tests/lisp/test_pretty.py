@@ -4,9 +4,9 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.printer import pprint_dispatch, printing_support
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, lisp_list
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, sym
+from cramhy_runtime.lisp.printer import pprint_dispatch, printing_support
 from cramhy_runtime.lisp.printer.pretty import logical_block, pprint_indent, pprint_newline
 from cramhy_runtime.lisp.printer.print_controls import (
     PACKAGE,

@@ -16,23 +16,23 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.numbers.arithmetic import single
 from cramhy_runtime.lisp.collections.array_making import make_array
-from cramhy_runtime.lisp.reader.backquote import QUASIQUOTE, Comma
-from cramhy_runtime.lisp.numbers.complex_numbers import DoubleComplex, exact
+from cramhy_runtime.lisp.collections.vectors import LispArray, bit_vector
 from cramhy_runtime.lisp.condition_types import EndOfFile, ReaderError
 from cramhy_runtime.lisp.conditions import Condition, Warning_, handler_bind, muffle_warning
 from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, LispString, Symbol, list_from, one
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.evaluation.evaluator import evaluate
-from cramhy_runtime.lisp.symbols.package_errors import PackageLockedError
-from cramhy_runtime.lisp.packages import Package, find_package, intern, keyword, register, sym
 from cramhy_runtime.lisp.files.pathnames import parse_namestring
+from cramhy_runtime.lisp.numbers.arithmetic import single
+from cramhy_runtime.lisp.numbers.complex_numbers import DoubleComplex, exact
+from cramhy_runtime.lisp.objects.structures import slots_of
+from cramhy_runtime.lisp.packages import Package, find_package, intern, keyword, register, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.reader.backquote import QUASIQUOTE, Comma
 from cramhy_runtime.lisp.reader.reader import Reader
 from cramhy_runtime.lisp.reader.readtables import STANDARD
-from cramhy_runtime.lisp.objects.structures import slots_of
-from cramhy_runtime.lisp.collections.vectors import LispArray, bit_vector
+from cramhy_runtime.lisp.symbols.package_errors import PackageLockedError
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 FORMS, TEXTS, SECONDS_A_TEXT = (10_000, 100_000, 5) if SOAK else (300, 3_000, 5)

@@ -9,9 +9,9 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.printer import printer
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, LispString, Symbol, lisp_list, list_from
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, Package, find_package, keyword, register, sym
+from cramhy_runtime.lisp.printer import printer
 from cramhy_runtime.lisp.printer.print_controls import PACKAGE, PRINT_CASE, PRINT_CIRCLE, PRINT_PRETTY, PRINT_READABLY, bound
 from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable
 

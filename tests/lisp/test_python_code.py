@@ -7,9 +7,9 @@ from hy import models
 from hy.compiler import hy_compile
 
 from cramhy_runtime import kernel
+from cramhy_runtime.lisp.compiler.core import hy_model
 from cramhy_runtime.lisp.evaluation import evaluator
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.compiler.core import hy_model
 from cramhy_runtime.lisp.reader.reader import Reader
 from cramhy_runtime.repl.session import Session
 

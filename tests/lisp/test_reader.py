@@ -7,14 +7,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.reader import backquote
 from cramhy_runtime.lisp.conditions import Condition, Warning_, handler_bind, muffle_warning
 from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.streams.file_streams import open_
 from cramhy_runtime.lisp.packages import find_package, intern, keyword, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.reader import backquote
 from cramhy_runtime.lisp.reader.reader import Reader, incomplete, read, read_from_string
+from cramhy_runtime.lisp.streams.file_streams import open_
 from cramhy_runtime.lisp.streams.streams import InputStream, StringInputStream
 
 USER = "COMMON-LISP-USER"

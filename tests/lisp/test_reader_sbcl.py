@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.evaluation import evaluator
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.data import all_values
 from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.evaluation import evaluator
 from cramhy_runtime.lisp.packages import find_package, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.lisp.reader.reader import Reader

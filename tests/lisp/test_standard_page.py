@@ -5,13 +5,12 @@ import subprocess
 import sys
 
 import pytest
+import standard_page
 
 from cramhy_runtime.lisp import coverage, standard_names
 from cramhy_runtime.lisp.conditions import CompileError
 from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.lisp.packages import sym
-
-import standard_page
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,12 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.files import files
-from cramhy_runtime.lisp.streams import file_streams, streams
-from cramhy_runtime.lisp.streams import stream_functions as functions
 from cramhy_runtime.lisp.data import Character, LispString
+from cramhy_runtime.lisp.files import files
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.lisp.printer.print_controls import bound
+from cramhy_runtime.lisp.streams import file_streams, streams
+from cramhy_runtime.lisp.streams import stream_functions as functions
 from cramhy_runtime.lisp.streams.streams import StringInputStream, StringOutputStream
 
 

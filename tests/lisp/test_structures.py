@@ -3,11 +3,11 @@
 import pytest
 
 from cramhy_runtime import image
-from cramhy_runtime.lisp.objects import structures
-from cramhy_runtime.lisp.objects.classes import class_name, find_class
 from cramhy_runtime.lisp.conditions import SimpleProgramError, TypeError_
 from cramhy_runtime.lisp.data import Symbol, UndefinedFunction, lisp_list
 from cramhy_runtime.lisp.equality import equalp
+from cramhy_runtime.lisp.objects import structures
+from cramhy_runtime.lisp.objects.classes import class_name, find_class
 from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
 
 image.boot()

@@ -11,13 +11,13 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.objects.classes import class_name
 from cramhy_runtime.lisp.condition_types import ProgramError
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.files.files import lisp_path
-from cramhy_runtime.lisp.packages import COMMON_LISP, Package, delete_package, register, sym
 from cramhy_runtime.lisp.files.pathnames import DEFAULTS
+from cramhy_runtime.lisp.objects.classes import class_name
+from cramhy_runtime.lisp.packages import COMMON_LISP, Package, delete_package, register, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.lisp.streams.streams import StringInputStream, StringOutputStream
 from cramhy_runtime.repl.session import Session, condition_of

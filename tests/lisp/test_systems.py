@@ -6,9 +6,9 @@ import itertools
 
 import pytest
 
-from cramhy_runtime.lisp.systems import systems
 from cramhy_runtime.lisp.conditions import CompileError, Condition, Error, FileError
 from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.lisp.systems import systems
 
 _numbers = itertools.count()
 

@@ -3,11 +3,11 @@
 import pytest
 
 from cramhy_runtime import image
-from cramhy_runtime.lisp.types import types
-from cramhy_runtime.lisp.objects.classes import class_of, find_class, register_class
 from cramhy_runtime.lisp.conditions import PackageError, SimpleError, SimpleTypeError
-from cramhy_runtime.lisp.data import Symbol, list_from, lisp_list
+from cramhy_runtime.lisp.data import Symbol, lisp_list, list_from
+from cramhy_runtime.lisp.objects.classes import class_of, find_class, register_class
 from cramhy_runtime.lisp.packages import find_package, make_package, sym
+from cramhy_runtime.lisp.types import types
 
 image.boot()
 HOME = find_package("TYPE-TESTS") or make_package("TYPE-TESTS", use=("COMMON-LISP",))

@@ -7,11 +7,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from cramhy_runtime.lisp import conditions
+from cramhy_runtime.lisp.collections.vectors import LispArray
 from cramhy_runtime.lisp.data import DoubleFloat, lisp_list
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import find_package, keyword, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.collections.vectors import LispArray
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
 from cramhy_runtime.transforms.package import CL_TRANSFORMS
 from cramhy_runtime.transforms.poses import Pose, Transform

@@ -40,11 +40,12 @@ class Symbol:
     ``value`` is the current dynamic value: see ``lisp/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
     ``reads`` and ``writes`` are the structure class whose slot ``function`` reads and ``setf_function`` writes: where the compiler
-    saw that they do, it takes the slot of an object of that class itself. `function_changed` keeps them right.
+    saw that they do, it takes the slot of an object of that class itself. `function_changed` keeps them right. ``attribute`` is that
+    slot's Python name in compiled code, once and for all: a later accessor of this name for a slot of another name is just called.
     """
 
     __slots__ = ("name", "package", "value", "function", "macro", "setf_function", "plist", "special", "constant",
-                 "compiler_data", "reads", "writes", "__weakref__")
+                 "compiler_data", "reads", "writes", "attribute", "__weakref__")
 
     def __init__(self, name, package=None):
         self.name = name
@@ -57,22 +58,25 @@ class Symbol:
         self.special = False
         self.constant = False
         self.compiler_data = None
-        self.reads = self.writes = None
+        self.reads = self.writes = self.attribute = None
 
     def function_changed(self):
         """To be called after ``function`` or ``setf_function`` got another value."""
-        self.reads, self.writes = _slot_class(self.function), _slot_class(self.setf_function)
+        self.reads, self.writes = self._slot_class(self.function), self._slot_class(self.setf_function)
+
+    def _slot_class(self, function):
+        known = getattr(function, "__dict__", None)
+        if not known or "traced" in known or "slot_of" not in known:
+            return None
+        if self.attribute is None:
+            self.attribute = function.attribute
+        return known["slot_of"] if function.attribute == self.attribute else None
 
     def __repr__(self):
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
 
     def __reduce__(self):
         return (late.intern, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
-
-
-def _slot_class(function):
-    known = getattr(function, "__dict__", None)
-    return known.get("slot_of") if known and "traced" not in known else None
 
 
 class Keyword(Symbol):
