@@ -82,8 +82,7 @@ PART = """
              ((1 2) :left)
              (otherwise :behind)))))
 
-(defun place-{n} (x y)
-  (declare (ignorable x y))
+(defun place-{n} (?x ?y)
   (desig:a location (x ?x) (y ?y) (for (desig:an object (type part-{n})))))
 
 (defvar *load-{n}* (cpl:make-fluent :name 'load-{n} :value 0))

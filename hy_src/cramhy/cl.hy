@@ -155,13 +155,6 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator return [[value None]]
   `(return-from nil ~value))
 
-(defn split-declarations [body]
-  "(declarations, other forms)"
-  (setv declare (sym "DECLARE") forms (list body) declarations [])
-  (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) declare))
-    (.append declarations (.pop forms 0)))
-  #(declarations forms))
-
 ;; ------------------------------------------------------------------------------------------------------------ iteration
 
 (defn iteration-spec [variable form [result None] #* extra]

@@ -101,10 +101,12 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   "(list (type function) ...) for a clause (type (variable) . body): one for each type of an (or ...)."
   (setv #(type variables #* body) clause)
   (setv types (if (and (listp type) (= (symbol-name type.car) "OR")) (elements type.cdr) [type]))
+  (setv #(declarations forms) (split-declarations body))
   (lfor each types
     `(list (quote ~each)
            (lambda [~@(elements variables) ~again]
-             (flet [[retry [] (funcall ~again)]] ~@body)))))
+             ~@declarations
+             (flet [[retry [] (funcall ~again)]] ~@forms)))))
 
 (defoperator with-failure-handling [clauses #* body]
   (setv again (gensym "RETRY"))

@@ -26,3 +26,10 @@ runtime's helpers are, and `pkg::name` to that package. Lists in brackets are li
 (defn elements [form]
   "The elements of a form that is a list, as a Python list; `nil` has none."
   (if (is form None) [] (list form)))
+
+(defn split-declarations [body]
+  "(declarations, other forms)"
+  (setv declare (sym "DECLARE") forms (list body) declarations [])
+  (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) declare))
+    (.append declarations (.pop forms 0)))
+  #(declarations forms))

@@ -311,3 +311,8 @@ def test_a_function_that_becomes_a_macro(lisp):
         (eval '(defmacro changing-kind (x) (list 'list x x))))
       (list seen (eval '(changing-kind 1)) (handler-case (funcall 'changing-kind 1) (undefined-function () :gone))))""")) == [
           '(("CHANGING-KIND is being redefined as a macro when it was previously defined to be a function.")\n (1 1) :GONE)']
+
+
+def test_a_failure_that_its_handler_ignores_is_not_warned_of(lisp):
+    assert lisp.said("""(defun quiet ()
+      (cpl:with-failure-handling ((error (failure) (declare (ignore failure)) (return 1))) 2))""") == ""
