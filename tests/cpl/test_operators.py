@@ -4,7 +4,7 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import operators, tags
-from cramhy_runtime.cpl.tasks import DEAD, EVAPORATED, FAILED, SUCCEEDED
+from cramhy_runtime.cpl.statuses import DEAD, EVAPORATED, FAILED, SUCCEEDED
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, lisp_list, python_list
 from cramhy_runtime.lisp.packages import keyword

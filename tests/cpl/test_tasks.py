@@ -4,7 +4,8 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import task_variables, tasks
-from cramhy_runtime.cpl.tasks import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED, Task
+from cramhy_runtime.cpl.statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
+from cramhy_runtime.cpl.tasks import Task
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, Symbol
 from cramhy_runtime.lisp.dynamic import binding

@@ -7,7 +7,7 @@ import pytest
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import logging, plans, policies, tags, tree
 from cramhy_runtime.cpl.failures import attempt
-from cramhy_runtime.cpl.tasks import CREATED, SUCCEEDED
+from cramhy_runtime.cpl.statuses import CREATED, SUCCEEDED
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import Cons, lisp_list, list_from, python_list
 from cramhy_runtime.lisp.packages import intern, keyword, sym

@@ -6,7 +6,8 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.backends import NoStack, threads
+from cramhy_runtime.kernel.backends import threads
+from cramhy_runtime.kernel.errors import NoStack
 
 
 @pytest.fixture

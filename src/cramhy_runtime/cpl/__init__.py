@@ -50,7 +50,8 @@ from .operators import (
 )
 from .suspension import on_suspension, retry_after_suspension, suspend, wake_up, with_task_suspended, without_scheduling
 from .task_variables import define_task_variable
-from .tasks import Task, ToplevelTask, current_task, evaporate, join_task
+from .current import current_task
+from .tasks import Task, ToplevelTask, evaporate, join_task
 from .waiting import sleep, wait_for, whenever
 
 __all__ = [

@@ -16,7 +16,10 @@ from cramhy_runtime import kernel
 
 from ..lisp.conditions import error
 from .failures import signal_failure
-from .tasks import DEAD, FAILED, Task, end_tasks, inside_plan, pause
+from .current import inside_plan
+from .pausing import pause
+from .statuses import DEAD, FAILED
+from .tasks import Task, end_tasks
 
 
 class Branches:

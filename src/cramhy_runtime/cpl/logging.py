@@ -13,6 +13,7 @@ from cramhy_runtime import kernel
 from ..lisp.conditions import error
 from ..lisp.data import Symbol, list_from, python_list
 from ..lisp.packages import keyword
+from .current import current_task
 from .symbols import sym
 
 TAGS = ("DEBUG FINISH SEND-EVENT RECEIVE-EVENT DEBUGGER PROPAGATE-EVENT JOIN-TASK WAIT-FOR REGISTER-CHILD TEARDOWN EVENT-LOOP "
@@ -36,8 +37,6 @@ def log_event(event, *tags):
     """Log ``event()``, a pair (context, text), if one of ``tags`` is active."""
     if _active and not _active.isdisjoint(tags):
         context, display = event()
-        from .tasks import current_task
-
         task = current_task()
         name = task.name if task else str(kernel.current().name)
         time = f"{kernel.now():.3f}" if task else "n/a"

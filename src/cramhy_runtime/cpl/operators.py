@@ -23,7 +23,9 @@ from .failures import attempt, composite_failure
 from .fluent_operators import fl_pulsed
 from .fluents import ValueFluent
 from .hooks import on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook
-from .tasks import DEAD, DONE, FAILED, Task, ToplevelTask, end_tasks, inside_plan, task_dead
+from .current import inside_plan
+from .statuses import DEAD, DONE, FAILED
+from .tasks import Task, ToplevelTask, end_tasks, task_dead
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
 from .watching import watch
 

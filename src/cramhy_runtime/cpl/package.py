@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..lisp.faces import define_face
 from . import (
+    current,
     failures,
     fluent_operators,
     fluents,
@@ -19,6 +20,7 @@ from . import (
     plans,
     policies,
     readers,
+    statuses,
     suspension,
     task_variables,
     tasks,
@@ -85,12 +87,12 @@ MACROS_AND_MARKERS = """fluent value-fluent whenever def-cpl-parameter current-t
 
 def define_faces():
     """Declare the packages. COMMON-LISP must be filled."""
-    for name, getter in (("*CURRENT-TASK*", tasks.current_task), ("*CURRENT-PATH*", tree.current_path),
+    for name, getter in (("*CURRENT-TASK*", current.current_task), ("*CURRENT-PATH*", tree.current_path),
                          ("*TASK-TREE*", tree.current_tree)):
         if not CPL_IMPL.present(name):
             task_variables.define_task_state(CPL_IMPL, name, getter)
     hook_functions = {hook.name.name: hook.function for hook in vars(hooks).values() if isinstance(hook, hooks.Hook)}
-    constants = {"+alive+": tasks.ALIVE, "+dead+": tasks.DEAD, "+done+": tasks.DONE}
+    constants = {"+alive+": statuses.ALIVE, "+dead+": statuses.DEAD, "+done+": statuses.DONE}
     log_lists = {"+log-all+": logging.TAGS, "+log-default+": logging.DEFAULT, "+log-verbose+": logging.VERBOSE,
                  "+log-very-verbose+": logging.VERY_VERBOSE, "+log-language+": logging.LANGUAGE}
     define_face(
@@ -99,7 +101,7 @@ def define_faces():
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
                    "*save-tasks*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
                    "timeout-policy": policies.TIMEOUT_POLICY,
-                   **{name: tasks.status_list(statuses) for name, statuses in constants.items()},
+                   **{name: statuses.status_list(members) for name, members in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
         export=MACROS_AND_MARKERS + " *current-task* *current-path* *task-tree*", internal=INTERNAL)
     not_reexported = {name.upper() for name in IMPLEMENTATION_ONLY.split()}

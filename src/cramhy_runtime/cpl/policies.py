@@ -17,7 +17,7 @@ from .failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotF
 from .hooks import on_with_policy_begin, on_with_policy_end
 from .operators import pursue
 from .symbols import sym
-from .tasks import inside_plan
+from .current import inside_plan
 from .waiting import sleep
 
 POLL = 0.01  # s between two checks

@@ -13,21 +13,16 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..lisp.data import truth
-from .failures import assert_no_nlx
-from .tasks import CREATED, DEAD, RUNNING, SUSPENDED, check_reason, current_task, inside_plan
-
-
-class _Unwind(BaseException):
-    """Unwinds to the outermost ``retry-after-suspension`` of ``task``."""
-
-    def __init__(self, task):
-        self.task = task
+from .current import current_task, inside_plan
+from .pausing import Unwind, obey, release, request
+from .statuses import CREATED, DEAD, RUNNING, SUSPENDED
+from .tasks import check_reason
 
 
 def suspend(task, *, reason=None, sync=True):
     """Suspend ``task`` and all below it; with ``sync`` wait until it is suspended or dead."""
     check_reason(reason)
-    _request(task)
+    request(task)
     if task is current_task():
         if truth(sync):
             obey(task)
@@ -35,64 +30,12 @@ def suspend(task, *, reason=None, sync=True):
         task.park_until((SUSPENDED, CREATED, *DEAD), lambda: f"the suspension of {task.name}")
 
 
-def _request(task):
-    if task.status in DEAD or task.held:
-        return
-    task.held = True
-    if task.kernel_task is not None and task.status is RUNNING and task is not current_task():
-        task.kernel_task.interject(lambda: obey(task))
-
-
 def wake_up(task, *, reason=None, sync=True):
     """Let ``task`` and all below it go on; with ``sync`` wait until it is running or dead."""
     check_reason(reason)
-    _release(task)
+    release(task)
     if truth(sync) and task is not current_task():
         task.park_until((RUNNING, CREATED, *DEAD), lambda: f"the wake-up of {task.name}")
-
-
-def _release(task):
-    if task.held:
-        task.held = False
-        if task.status is SUSPENDED:
-            task.kernel_task.kernel.unpark(task.kernel_task)
-
-
-def obey(task):
-    """Suspend the current task, which is ``task``, if that is still wanted; returns after the wake-up."""
-    me = kernel.current()
-    if task.unschedulable or me.cancelled_delivered or not task.held:
-        return
-    if task.retry_level:
-        raise _Unwind(task)
-    _run_handlers(task)
-    children = list(task.children)
-    for child in children:
-        _request(child)
-    _await(children, (SUSPENDED, CREATED, *DEAD), "suspension")
-    task.change_status(SUSPENDED)
-    while task.held:
-        kernel.park(lambda: "its wake-up: it is suspended")
-    for child in task.children:
-        _release(child)
-    _await(list(task.children), (RUNNING, CREATED, *DEAD), "wake-up")
-    task.change_status(RUNNING)
-
-
-def _run_handlers(task):
-    handlers = task.suspension_handlers
-    if handlers:
-        task.unschedulable += 1
-        try:
-            for handler in reversed(handlers):
-                assert_no_nlx("ON-SUSPENSION", handler)
-        finally:
-            task.unschedulable -= 1
-
-
-def _await(children, statuses, what):
-    for child in children:
-        child.park_until(statuses, lambda child=child: f"the {what} of {child.name}", kernel.park)
 
 
 def on_suspension(handler, body):
@@ -119,7 +62,7 @@ def retry_after_suspension(body):
         task.retry_level += 1
         try:
             return body()
-        except _Unwind as unwind:
+        except Unwind as unwind:
             if unwind.task is not task:
                 raise
         finally:

@@ -14,7 +14,8 @@ from ..lisp.data import Cons, lisp_list
 from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
 from .symbols import sym
-from .tasks import CREATED, inside_plan
+from .current import inside_plan
+from .statuses import CREATED
 from .tree import current_path, make_task
 
 TAGGED = sym("CPL-IMPL::TAGGED")

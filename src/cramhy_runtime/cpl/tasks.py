@@ -8,7 +8,8 @@ form that starts tasks waits for their death before it returns or lets an except
 and reaches the task that waits for it (law 3). Source: cpl.md section 3. Repaired: children are awaited on failure and
 evaporation too, in which the original only tells them to end; a cleanup form of the parent cannot be overrun by a child.
 
-Suspension is in ``suspension.py``; how parallel forms wait and decide is in ``branches.py``.
+How a task parks and obeys is in ``pausing.py``, who may ask it to in ``suspension.py``; how parallel forms wait and decide is in
+``branches.py``.
 """
 
 from __future__ import annotations
@@ -21,24 +22,16 @@ from ..lisp import condition_types as types
 from ..lisp.conditions import error, from_python, type_error
 from ..lisp.data import NO_VALUES, Symbol, list_from, truth
 from ..lisp.evaluation.places_in_source import locate
-from ..lisp.packages import keyword
+from .current import current_task
 from .failure_types import PlanFailure, envelope
+from .failures import signal_failure
 from .fluent_operators import fl_and, fl_funcall
 from .fluents import ValueFluent, function_of
+from .pausing import obey, pause
+from .statuses import ALIVE, CREATED, DEAD, DONE, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED, status_list
 from .symbols import sym
 from .task_variables import inherit, inherited_bindings
-
-CREATED, RUNNING, WAITING, SUSPENDED = map(keyword, ("CREATED", "RUNNING", "WAITING", "SUSPENDED"))
-SUCCEEDED, FAILED, EVAPORATED = map(keyword, ("SUCCEEDED", "FAILED", "EVAPORATED"))
-ALIVE = (CREATED, RUNNING, WAITING, SUSPENDED)
-DEAD = (FAILED, SUCCEEDED, EVAPORATED)
-DONE = (SUCCEEDED, EVAPORATED)
-
-_NEXT = {
-    CREATED: (RUNNING, EVAPORATED),
-    RUNNING: (SUSPENDED, SUCCEEDED, FAILED, EVAPORATED),
-    SUSPENDED: (RUNNING, EVAPORATED, FAILED),
-}
+from .waiting import wait_for
 
 DEEPEST = 1000
 """How many levels of tasks below a top-level there may be. A plan that nests deeper has lost its end."""
@@ -117,7 +110,7 @@ class Task:
 
     def change_status(self, new):
         """Go to the status ``new``; what cpl.md 3.2 does not allow is an error."""
-        if new not in _NEXT.get(self.status, ()):
+        if new not in NEXT.get(self.status, ()):
             error("Invalid status transition from ~S to ~S.", self.status, new)
         self.status = new
         if self._status_fluent is not None:
@@ -169,8 +162,6 @@ class Task:
                 self._await_constraints()
             result = self.body()
             if self.held:
-                from .suspension import obey
-
                 obey(self)
             status = SUCCEEDED
         except BaseException as exception:
@@ -193,8 +184,6 @@ class Task:
                                                               f"{alive} tasks are alive.")))
 
     def _await_constraints(self):
-        from .waiting import wait_for
-
         wait_for(fl_and(*self.constraints))
         # If a predecessor failed, that may end the form around us before our body begins. A failure climbs one level of the
         # tree per turn, so it gets as many turns as the tree is deep.
@@ -290,11 +279,6 @@ class _KernelName:
 # ------------------------------------------------------------------------------------------------------ the current task
 
 
-def current_task():
-    """The plan task that runs, or ``None`` outside of plans."""
-    return getattr(kernel.current().local, "plan_task", None)
-
-
 def current_task_or_dummy():
     """``(current-task)``: as `current_task`; outside of plans a fresh dummy, as in the original."""
     task = current_task()
@@ -302,27 +286,6 @@ def current_task_or_dummy():
         task = ToplevelTask(name=str(kernel.current().name))
         task.change_status(RUNNING)
     return task
-
-
-def inside_plan(form):
-    """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
-    task = getattr(kernel.current().local, "plan_task", None)
-    if task is None:
-        outside = types.SimpleError("'~a' form not inside a plan.", form)
-        outside.hint = f"Plan forms run inside of a plan: write (top-level ({str(form).lower()} ...))."
-        return error(outside)
-    return task
-
-
-def pause(why, until=None):
-    """Park as ``kernel.park`` does, and obey requests to suspend that arrived meanwhile."""
-    woken = kernel.park(why, until)
-    task = getattr(kernel.current().local, "plan_task", None)
-    if task is not None and task.held:
-        from .suspension import obey
-
-        obey(task)
-    return woken
 
 
 def end_tasks(tasks, reason=None):
@@ -361,11 +324,6 @@ def task_dead(task):
 
 def _status_net(task, statuses):
     return fl_funcall(lambda now: status_list(statuses[statuses.index(now):]) if now in statuses else None, status(task))
-
-
-def status_list(statuses):
-    """``statuses`` as a Lisp list."""
-    return list_from(statuses)
 
 
 def task_running_p(task):
@@ -433,7 +391,5 @@ def join_task(task):
         error("Cannot join current task.")
     task.park_until(DEAD, lambda: f"the end of {task.name}")
     if task.status is FAILED:
-        from .failures import signal_failure
-
         signal_failure(task.result)
     return task.result

@@ -13,7 +13,9 @@ from ..lisp.packages import keyword
 from .branches import run_one
 from .hooks import on_finishing_task_execution, on_preparing_task_execution
 from .symbols import sym
-from .tasks import CREATED, Task, current_task
+from .current import current_task
+from .statuses import CREATED
+from .tasks import Task
 
 CALL = keyword("CALL")
 _goal_marks = (sym("CPL-IMPL::GOAL"), sym("CPL-IMPL::GOAL-CONTEXT"))

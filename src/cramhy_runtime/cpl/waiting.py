@@ -13,7 +13,7 @@ from cramhy_runtime import kernel
 from ..lisp.conditions import error
 from ..lisp.data import truth
 from .fluents import Fluent
-from .tasks import pause
+from .pausing import pause
 
 
 def wait_for(fluent, *, timeout=None, **ignored):

@@ -9,7 +9,9 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..lisp.data import list_from
-from .tasks import DEAD, DONE, FAILED, end_tasks, pause
+from .pausing import pause
+from .statuses import DEAD, DONE, FAILED
+from .tasks import end_tasks
 
 
 def watch(tasks, watcher):

@@ -45,3 +45,7 @@ class Deadlock(Exception):
 
 class TimeLimit(Exception):
     """Kernel time reached the limit given to `start`. Raised in the main task."""
+
+
+class NoStack(Exception):
+    """The system gives no more stacks; the cause says why. Back ends raise it, and the task that needed one fails."""

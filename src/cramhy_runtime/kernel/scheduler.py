@@ -21,11 +21,11 @@ from _thread import get_ident
 from collections import deque
 
 from . import reports
-from .backends import NoStack, make_backend
+from .backends import make_backend
 from .budget import budget, need_headroom
 from .clocks import Bell, make_clock
 from .endings import PATIENCE, Endings
-from .errors import Deadlock, Interrupted, KernelError, TimeLimit
+from .errors import Deadlock, Interrupted, KernelError, NoStack, TimeLimit
 from .outside import Outside
 from .tasks import DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
 from .timers import CALLBACK, TimerHeap

@@ -13,7 +13,8 @@ from cramhy_runtime import kernel
 
 from ..cpl.fluent_operators import fl_pulsed
 from ..cpl.operators import par
-from ..cpl.tasks import current_task, pause
+from ..cpl.current import current_task
+from ..cpl.pausing import pause
 from ..cpl.waiting import wait_for, whenever
 from ..lisp.conditions import error
 from ..lisp.data import Cons

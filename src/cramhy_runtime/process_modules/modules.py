@@ -22,8 +22,11 @@ from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
 from ..cpl.fluents import ValueFluent
 from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_variables import inherit
-from ..cpl.tasks import EVAPORATED, Task, current_task, pause
-from ..cpl.tasks import FAILED as TASK_FAILED
+from ..cpl.current import current_task
+from ..cpl.pausing import pause
+from ..cpl.statuses import EVAPORATED
+from ..cpl.tasks import Task
+from ..cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.waiting import wait_for
 from ..designators.equating import current_desig
 from ..lisp.condition_types import SimpleWarning

@@ -9,7 +9,7 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
-from ..cpl.tasks import pause
+from ..cpl.pausing import pause
 from ..lisp.conditions import SimpleError, error
 from ..lisp.data import Symbol, list_from
 from .symbols import sym

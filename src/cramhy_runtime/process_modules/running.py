@@ -10,7 +10,9 @@ from cramhy_runtime import kernel
 
 from ..cpl.failure_types import opened
 from ..cpl.operators import par
-from ..cpl.tasks import DEAD, FAILED, ToplevelTask, end_tasks, pause
+from ..cpl.pausing import pause
+from ..cpl.statuses import DEAD, FAILED
+from ..cpl.tasks import ToplevelTask, end_tasks
 from ..cpl.tree import TaskTreeNode
 from ..lisp.conditions import error
 from ..lisp.data import Cons

@@ -19,10 +19,6 @@ A third back end (a browser, where neither threads nor greenlets exist) implemen
 """
 
 
-class NoStack(Exception):
-    """The system gives no more stacks; the cause says why."""
-
-
 def make_backend(backend):
     """A fresh back end for "threads" or "greenlet"; an object with the interface above is taken as it is."""
     if backend == "threads":

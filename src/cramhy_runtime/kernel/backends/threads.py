@@ -17,7 +17,7 @@ from collections import deque
 
 from ..clocks import LONGEST_WAIT
 from ..depth import STACK_SIZE
-from . import NoStack
+from ..errors import NoStack
 from .nearness import nearness
 
 KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory

@@ -1,0 +1,23 @@
+"""The plan task that runs, if one does. Everything else in this room may ask; nothing here knows what a task is."""
+
+from __future__ import annotations
+
+from cramhy_runtime import kernel
+
+from ..lisp import condition_types as types
+from ..lisp.conditions import error
+
+
+def current_task():
+    """The plan task that runs, or ``None`` outside of plans."""
+    return getattr(kernel.current().local, "plan_task", None)
+
+
+def inside_plan(form):
+    """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
+    task = getattr(kernel.current().local, "plan_task", None)
+    if task is None:
+        outside = types.SimpleError("'~a' form not inside a plan.", form)
+        outside.hint = f"Plan forms run inside of a plan: write (top-level ({str(form).lower()} ...))."
+        return error(outside)
+    return task
