@@ -221,7 +221,7 @@ class ArithmeticError_(Error, ArithmeticError):
         self.operation, self.operands = operation, operands
 
     def report(self):
-        head = f"arithmetic error {symbol_name(_class_symbol(type(self)))} signalled"
+        head = f"arithmetic error {symbol_name(late.class_name(type(self)))} signalled"
         if self.operation is None:
             return head
         operator = shown(self.operation) if is_symbol(self.operation) else printed(self.operation)
@@ -432,10 +432,6 @@ class TimeLimit(RunEnded):
     """The time limit of the run is reached."""
 
     lisp_name = "CRAMHY::TIME-LIMIT"
-
-
-def _class_symbol(cls):
-    return late.class_name(cls)
 
 
 _ARITY = re.compile(r"^(?P<name>.*)\(\) (?:takes (?:from )?\d+(?: to \d+)? positional arguments? but (?P<given>\d+) (?:was|were) given"

@@ -25,9 +25,9 @@ from .types import types
 
 HEAD = """# The symbols of Common Lisp
 
-Of the {total} external symbols of the package COMMON-LISP {there} are there and {absent} are not. This page is made from the code by
-`make docs`; what differs from SBCL in behaviour is in [differences.md](differences.md). A program that uses a symbol that is not there
-gets the reason when it is compiled, with its place.
+{there} of the {total} external symbols of the package COMMON-LISP are there. `make docs` makes this page from the code; what
+differs from SBCL in behaviour is in [differences.md](differences.md). A program that uses a symbol that is not there gets the reason
+when it is compiled, with its place.
 
 {counts}
 
@@ -89,7 +89,7 @@ def page():
         lines += ["", "## Not there", "", "| symbol | why |", "|---|---|"]
     lines += [f"| `{_cell(name)}` | {_cell(ABSENT.get(name, '?'))} |" for name, _, _ in absent]
     summary = "By kind: " + ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items())) + "."
-    return HEAD.format(total=len(rows), there=len(there), absent=len(absent), counts=summary) + "\n".join(lines) + "\n"
+    return HEAD.format(total=len(rows), there=len(there), counts=summary) + "\n".join(lines) + "\n"
 
 
 def _cell(text):

@@ -18,7 +18,7 @@ from ..packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
 from .declared_types import declared_types, kind_of_type
-from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable
+from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
 from .nodes import (Call, CallLocal, CallSetf, CallValue, Checked, Constant, FunctionReference, GlobalVariable, Lambda, Let, LocalVariable,
                     Parameters, Progn, SetGlobal, SetLocal)
 from .open_coding import MAPPING, open_coded
@@ -232,7 +232,7 @@ class Analyzer(Scrutiny):
         """
         with expanding(self.unit, lambda_list, self.place()):
             parsed = parse(lambda_list)
-        if name is not None and not local and env.function(_name_key(name)) is None:
+        if name is not None and not local and env.function(function_key(name)) is None:
             self.defines(name, Shape(lambda_list))
         scope = FunctionScope(env.scope)
         inner = Env(env, scope)
@@ -345,10 +345,6 @@ class Analyzer(Scrutiny):
         scope = FunctionScope(names=names)
         env = Env(None, scope)
         return Lambda(None, Parameters(), self.form(form, env), scope)
-
-
-def _name_key(name):
-    return ("setf", name.cdr.car) if isinstance(name, Cons) else name
 
 
 BUILTIN_TRAITS: dict = {}

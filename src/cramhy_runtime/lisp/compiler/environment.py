@@ -7,6 +7,7 @@ variable used by an inner function is captured, a block left from an inner funct
 
 from __future__ import annotations
 
+from ..data import Cons
 from ..faces import python_name
 from ..packages import sym, symbol_name
 from .core import HEADS
@@ -119,27 +120,13 @@ class LocalMacro:
         self.expander = expander
 
 
-class Block:
-    """A ``block``: ``escapes`` when it is left from an inner function, which takes an exception."""
-
-    def __init__(self, symbol, owner):
-        self.symbol = symbol
-        self.owner = owner
-        self.used = False
-        self.escapes = False
-        self.variable = None
-
-    def used_from(self, scope):
-        self.used = True
-        if scope is not self.owner:
-            self.escapes = True
-            self.variable.used_from(scope)
+def function_key(name):
+    """What a function's name, a symbol or ``(setf symbol)``, is found by in a table."""
+    return ("setf", name.cdr.car) if isinstance(name, Cons) else name
 
 
-class Tagbody:
-    """A ``tagbody``; its tags are (this, index). ``structured``: it became a loop of Python."""
-
-    structured = False
+class _Exit:
+    """A form that can be left from within: ``escapes`` when it is left from an inner function, which takes an exception."""
 
     def __init__(self, owner):
         self.owner = owner
@@ -152,6 +139,20 @@ class Tagbody:
         if scope is not self.owner:
             self.escapes = True
             self.variable.used_from(scope)
+
+
+class Block(_Exit):
+    """A ``block`` with its name."""
+
+    def __init__(self, symbol, owner):
+        super().__init__(owner)
+        self.symbol = symbol
+
+
+class Tagbody(_Exit):
+    """A ``tagbody``; its tags are (this, index). ``structured``: it became a loop of Python."""
+
+    structured = False
 
 
 class Env:

@@ -18,7 +18,7 @@ from ..evaluation.function_shapes import wrong_call
 from ..packages import COMMON_LISP, sym
 from ..standard_names import missing
 from ..types.types import is_known_type
-from .environment import Variable
+from .environment import Variable, function_key
 
 CRAMHY = sym("CRAMHY::X").package
 
@@ -204,13 +204,13 @@ class Scrutiny:
         if self.unit is not None and form.car.name.startswith("DEFINE-") and isinstance(quoted, Cons) and quoted.car is QUOTE:
             name = quoted.cdr.car
             if isinstance(name, Symbol) or isinstance(name, Cons) and isinstance(name.cdr, Cons):
-                self.unit.define(_key(name), None, None)
+                self.unit.define(function_key(name), None, None)
 
     def defines(self, name, shape):
         """Note that a function of this name and shape is being compiled for the global name ``name``."""
         if self.unit is None:
             return
-        first = self.unit.define(_key(name), shape, self.place())
+        first = self.unit.define(function_key(name), shape, self.place())
         if first is not None:
             self.warn(SimpleWarning, "Duplicate definition for ~S found in one file.", name, also=[first])
 
@@ -220,10 +220,6 @@ class Scrutiny:
             return
         for control, *rest in wrong_call(name, shape, arguments):
             self.warn(SimpleWarning, control, *rest)
-
-
-def _key(name):
-    return ("setf", name.cdr.car) if isinstance(name, Cons) else name
 
 
 def _elements(lst):

@@ -6,18 +6,17 @@ analyzer, the form and the environment, and gives a node.
 
 from __future__ import annotations
 
-from ..conditions import Condition
-from ..data import Cons, Symbol, lisp_list, list_from, truth
+from ..data import Cons, Symbol, lisp_list, list_from
 from ..evaluation.lambda_lists import gensym
 from ..late import late
 from ..objects.methods import Shape
 from ..packages import COMMON_LISP, is_symbol, sym
 from ..symbols.package_errors import locked
-from .analyze import LAMBDA, SETF, SPECIAL_FORMS, Env, progn
+from .analyze import LAMBDA, SETF, SPECIAL_FORMS, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
 from .nodes import (BlockNode, Call, CallLocal, CallSetf, CallSpread, CallValue, Catching, Checked, Constant, FunctionReference,
-                    Functions, Go, If, Lambda, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom,
+                    Functions, Go, If, Let, LoadTimeValue, LocalVariable, MultipleValueBind, MultipleValueProg1, ReturnFrom,
                     Support, TagbodyNode, UnwindProtect)
 
 PROGN, FUNCTION, MACROLET = sym("PROGN"), sym("FUNCTION"), sym("MACROLET")
@@ -528,10 +527,3 @@ def _support(analyzer, form, env):
     """``(support "name" argument...)``: a call of a function of ``compiler/support.py``; arguments keep all values."""
     name, *arguments = _parts(analyzer, form, 1)
     return Support(str(name), [analyzer.form(argument, env) for argument in arguments], single=False)
-
-
-def known_function(symbol):
-    return isinstance(symbol, Symbol) and truth(symbol.function)
-
-
-__all__ = ["Env", "LAMBDA", "Condition", "Lambda"]

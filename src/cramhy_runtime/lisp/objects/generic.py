@@ -239,7 +239,7 @@ class UnaryGeneric(GenericFunction):
         return arguments[0].__class__
 
 
-class FirstOfTwo(GenericFunction):
+class FirstOfTwo(UnaryGeneric):
     def __call__(self, *arguments, **keywords):
         try:
             argument, _ = arguments
@@ -247,9 +247,6 @@ class FirstOfTwo(GenericFunction):
         except (KeyError, ValueError):
             effective = self.lookup(arguments)
         return effective(*arguments, **keywords)
-
-    def cache_key(self, arguments):
-        return arguments[0].__class__
 
 
 class _SecondOfTwo(GenericFunction):

@@ -11,7 +11,7 @@ from __future__ import annotations
 from ..data import Cons, Symbol, UndefinedFunction
 from ..late import late
 from ..packages import COMMON_LISP, is_symbol, sym, symbol_name
-from .pretty import call_logical_block, pprint_fill, pprint_linear
+from .pretty import call_logical_block, newline_if_pretty, pprint_fill, pprint_linear
 from .print_controls import PRINT_PRETTY, bound
 
 DECLARATION_QUOTES = Symbol("*PPRINT-QUOTE-WITH-SYNTACTIC-SUGAR*")
@@ -34,11 +34,6 @@ def _output(obj, stream):
 # -------------------------------------------------------------------------------------------------------------- layouts
 
 
-def _newline(out, kind):
-    if PRINT_PRETTY.value is not None:
-        out.newline(kind)
-
-
 def _indent(out, amount, relative_to="block"):
     if PRINT_PRETTY.value is not None:
         out.indent(relative_to, amount)
@@ -48,7 +43,7 @@ def _each(out, block, kind):
     """The rest of the block: a newline of ``kind`` and a space before each element."""
     while not block.exhausted:
         out.write(" ")
-        _newline(out, kind)
+        newline_if_pretty(out, kind)
         _output(block.pop(), out)
 
 
@@ -73,7 +68,7 @@ def _aligned(first, others):
     def body(out, block):
         _first(out, block)
         out.write(" ")
-        _newline(out, first)
+        newline_if_pretty(out, first)
         _indent(out, 0, "current")
         _output(block.pop(), out)
         _each(out, block, others)
@@ -98,15 +93,15 @@ def pprint_call_form(stream, form, *_):
         for index in range(position):
             if index:
                 _indent(out, 3)
-                _newline(out, "mandatory")
+                newline_if_pretty(out, "mandatory")
             _output(block.pop(), out)
             block.exit_if_exhausted()
         _indent(out, 1)
-        _newline(out, "mandatory")
+        newline_if_pretty(out, "mandatory")
         while True:
             _output(block.pop(), out)
             block.exit_if_exhausted()
-            _newline(out, "mandatory")
+            newline_if_pretty(out, "mandatory")
 
     _block(stream, form, macro_call)
 
@@ -161,7 +156,7 @@ def pprint_block(stream, form, *_):
         _first(out, block)
         _indent(out, 3)
         out.write(" ")
-        _newline(out, "fill")
+        newline_if_pretty(out, "fill")
         _output(block.pop(), out)
         _indent(out, 1)
         _each(out, block, "linear")
@@ -180,9 +175,9 @@ def pprint_lambda_list(stream, lambda_list, *_):
             keyword = symbol_name(argument) if is_symbol(argument) else ""
             if keyword in ("&OPTIONAL", "&AUX", "&REST", "&BODY", "&KEY"):
                 state = {"&KEY": "key", "&REST": "required", "&BODY": "required"}.get(keyword, "optional")
-                _newline(out, "linear")
+                newline_if_pretty(out, "linear")
             else:
-                _newline(out, "fill")
+                newline_if_pretty(out, "fill")
             _block(out, argument, _required_argument if state == "required" else _optional_argument(state == "key"))
             first = False
 
@@ -220,7 +215,7 @@ def pprint_lambda(stream, form, *_):
         _first(out, block)
         _indent(out, 3)
         out.write(" ")
-        _newline(out, "fill")
+        newline_if_pretty(out, "fill")
         pprint_lambda_list(out, block.pop())
         _indent(out, 1)
         _each(out, block, "linear")
@@ -232,10 +227,10 @@ def _local_function(out, block):
     _first(out, block)
     _indent(out, 3)
     out.write(" ")
-    _newline(out, "fill")
+    newline_if_pretty(out, "fill")
     pprint_lambda_list(out, block.pop())
     _indent(out, 1)
-    _newline(out, "mandatory")
+    newline_if_pretty(out, "mandatory")
     _rest_linear(out, block)
 
 
@@ -244,7 +239,7 @@ def _rest_linear(out, block):
         _output(block.pop(), out)
         block.exit_if_exhausted()
         out.write(" ")
-        _newline(out, "linear")
+        newline_if_pretty(out, "linear")
 
 
 def _bindings(element):
@@ -253,7 +248,7 @@ def _bindings(element):
             _block(out, block.pop(), element)
             block.exit_if_exhausted()
             out.write(" ")
-            _newline(out, "linear")
+            newline_if_pretty(out, "linear")
 
     return body
 
@@ -262,11 +257,11 @@ def _let_like(element):
     def body(out, block):
         _first(out, block)
         out.write(" ")
-        _newline(out, "miser")
+        newline_if_pretty(out, "miser")
         _block(out, block.pop(), _bindings(element))
         _indent(out, 1)
         block.exit_if_exhausted()
-        _newline(out, "mandatory")
+        newline_if_pretty(out, "mandatory")
         _rest_linear(out, block)
 
     return body
@@ -310,11 +305,11 @@ def pprint_prog2(stream, form, *_):
             _first(out, block)
             _indent(out, 3)
             out.write(" ")
-            _newline(out, kind)
+            newline_if_pretty(out, kind)
             _output(block.pop(), out)
             block.exit_if_exhausted()
             out.write(" ")
-            _newline(out, "linear")
+            newline_if_pretty(out, "linear")
             _output(block.pop(), out)
             block.exit_if_exhausted()
             _indent(out, 1)
@@ -346,7 +341,7 @@ def pprint_setq(stream, form, *_):
         out.write(" ")
         if not isinstance(form.cdr, Cons):
             out.write(". ")
-        _newline(out, "miser")
+        newline_if_pretty(out, "miser")
         call_logical_block(out, form.cdr, pairs)
 
     def pairs(out, block):
@@ -355,12 +350,12 @@ def pprint_setq(stream, form, *_):
             _output(block.pop(), out)
             block.exit_if_exhausted()
             out.write(" ")
-            _newline(out, "fill")
+            newline_if_pretty(out, "fill")
             _indent(out, 0)
             _output(block.pop(), out)
             block.exit_if_exhausted()
             out.write(" ")
-            _newline(out, "mandatory")
+            newline_if_pretty(out, "mandatory")
 
     _block(stream, form, body)
 
@@ -371,7 +366,7 @@ def _tagbody_rest(out, block):
         out.write(" ")
         form = block.pop()
         _indent(out, 1 if isinstance(form, Cons) else 0)
-        _newline(out, "linear")
+        newline_if_pretty(out, "linear")
         _output(form, out)
 
 
@@ -388,12 +383,12 @@ def _clauses(print_clause):
         _first(out, block)
         out.write(" ")
         _indent(out, 3)
-        _newline(out, "fill")
+        newline_if_pretty(out, "fill")
         _output(block.pop(), out)
         _indent(out, 1)
         while not block.exhausted:
             out.write(" ")
-            _newline(out, "linear")
+            newline_if_pretty(out, "linear")
             _block(out, block.pop(), print_clause)
 
     return body
@@ -417,7 +412,7 @@ def _definition(methods):
     def body(out, block):
         _first(out, block)
         out.write(" ")
-        _newline(out, "miser")
+        newline_if_pretty(out, "miser")
         _indent(out, 0, "current")
         _output(block.pop(), out)
         block.exit_if_exhausted()
@@ -426,7 +421,7 @@ def _definition(methods):
             _output(block.pop(), out)
             block.exit_if_exhausted()
             out.write(" ")
-        _newline(out, "fill")
+        newline_if_pretty(out, "fill")
         pprint_lambda_list(out, block.pop())
         _indent(out, 1)
         _each(out, block, "linear")
@@ -449,7 +444,7 @@ def pprint_defpackage(stream, form, *_):
         _first(out, block)
         out.write(" ")
         _indent(out, 0, "current")
-        _newline(out, "miser")
+        newline_if_pretty(out, "miser")
         _rest_linear(out, block)
 
     def body(out, block):
@@ -457,12 +452,12 @@ def pprint_defpackage(stream, form, *_):
         block.exit_if_exhausted()
         out.write(" ")
         _indent(out, 3)
-        _newline(out, "fill")
+        newline_if_pretty(out, "fill")
         _output(block.pop(), out)
         block.exit_if_exhausted()
         _indent(out, 1)
         while not block.exhausted:
-            _newline(out, "mandatory")
+            newline_if_pretty(out, "mandatory")
             _block(out, block.pop(), option)
 
     _block(stream, form, body)
@@ -473,11 +468,11 @@ def pprint_destructuring_bind(stream, form, *_):
         _first(out, block)
         _indent(out, 3)
         out.write(" ")
-        _newline(out, "linear")
+        newline_if_pretty(out, "linear")
         pprint_lambda_list(out, block.pop())
         block.exit_if_exhausted()
         out.write(" ")
-        _newline(out, "linear")
+        newline_if_pretty(out, "linear")
         _output(block.pop(), out)
         block.exit_if_exhausted()
         _indent(out, 1)
@@ -491,7 +486,7 @@ def pprint_do(stream, form, *_):
         while not block.exhausted:
             _block(out, block.pop(), _do_binding)
             block.exit_if_exhausted()
-            _newline(out, "mandatory")
+            newline_if_pretty(out, "mandatory")
 
     def body(out, block):
         _first(out, block)
@@ -500,7 +495,7 @@ def pprint_do(stream, form, *_):
         _block(out, block.pop(), bindings)
         block.exit_if_exhausted()
         out.write(" ")
-        _newline(out, "linear")
+        newline_if_pretty(out, "linear")
         pprint_linear(out, block.pop())
         _tagbody_rest(out, block)
 
@@ -512,7 +507,7 @@ def pprint_dolist(stream, form, *_):
         _first(out, block)
         _indent(out, 3)
         out.write(" ")
-        _newline(out, "fill")
+        newline_if_pretty(out, "fill")
         _block(out, block.pop(), _dolist_binding)
         _tagbody_rest(out, block)
 
@@ -523,7 +518,7 @@ def pprint_prog(stream, form, *_):
     def body(out, block):
         _first(out, block)
         out.write(" ")
-        _newline(out, "miser")
+        newline_if_pretty(out, "miser")
         pprint_fill(out, block.pop())
         _tagbody_rest(out, block)
 
@@ -551,7 +546,7 @@ def pprint_loop(stream, form, *_):
         while True:
             item = block.pop()
             if is_symbol(item) and symbol_name(item) in _LOOP_WORDS:
-                _newline(out, "mandatory")
+                newline_if_pretty(out, "mandatory")
             _output(item, out)
             block.exit_if_exhausted()
             out.write(" ")

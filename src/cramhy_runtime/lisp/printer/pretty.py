@@ -241,6 +241,12 @@ def pprint_newline(kind, stream=None):
         stream.newline(kind)
 
 
+def newline_if_pretty(out, kind):
+    """A conditional newline in the pretty stream ``out``, if that is what printing is now."""
+    if PRINT_PRETTY.value is not None:
+        out.newline(kind)
+
+
 def pprint_indent(relative_to, n, stream=None):
     """``pprint-indent``: lines of the block start ``n`` columns right of its start ("block") or of here ("current")."""
     relative_to = _checked(relative_to, "block", "current")

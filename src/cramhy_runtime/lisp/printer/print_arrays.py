@@ -10,8 +10,8 @@ import math
 from ..collections.vectors import CHARACTER, LispArray, Vector, is_bit_vector
 from ..data import Character
 from ..late import late
-from .pretty import NO_OBJECT, call_logical_block
-from .print_controls import PRINT_ARRAY, PRINT_PRETTY, PRINT_READABLY, deeper, length_limit, too_deep
+from .pretty import NO_OBJECT, call_logical_block, newline_if_pretty
+from .print_controls import PRINT_ARRAY, PRINT_READABLY, deeper, length_limit, too_deep
 
 
 def is_printed_array(obj):
@@ -101,14 +101,9 @@ def _fill_elements(out, block, elements):
     for index, item in enumerate(elements):
         if index:
             out.write(" ")
-            _newline(out, "fill")
+            newline_if_pretty(out, "fill")
         block.pop()
         late.output_object(item, out)
-
-
-def _newline(out, kind):
-    if PRINT_PRETTY.value is not None:
-        out.newline(kind)
 
 
 def _pprint_dimension(stream, elements, dimensions, index):
@@ -122,7 +117,7 @@ def _pprint_dimension(stream, elements, dimensions, index):
         for position in range(dimensions[0]):
             if position:
                 out.write(" ")
-                _newline(out, "linear" if rest else "fill")
+                newline_if_pretty(out, "linear" if rest else "fill")
             block.pop()
             _pprint_dimension(out, elements, rest, index + position * step)
 
