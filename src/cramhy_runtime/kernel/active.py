@@ -6,6 +6,7 @@ floors above call: `kernel.park(...)` is `kernel.active().park(...)`.
 
 import atexit
 from _thread import get_ident
+from contextlib import contextmanager
 
 from .budget import budget
 from .errors import KernelError
@@ -14,18 +15,19 @@ from .scheduler import Kernel
 _active = None
 
 
-def start(clock="virtual", backend="threads", seed=None, time_limit=None):
+def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=Kernel):
     """Make a fresh kernel active, whose main task is the caller. The one before, if any, is stopped first.
 
     CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", or a back end. SEED: None for first
-    come, first served; a number shuffles the order, reproducibly. TIME_LIMIT: seconds of the kernel's clock after which
-    the main task gets `TimeLimit`, or None.
+    come, first served; a number shuffles the order, reproducibly; a function of the queue gives the place in it of the
+    task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main task gets `TimeLimit`, or None.
+    KIND: a subclass of `Kernel`, for tests that look on.
     """
     global _active
     if _active is not None and _active.main.carrier.ident == get_ident():
         _active.stop()
     _active = None
-    kernel = Kernel(clock, backend, seed, time_limit)
+    kernel = kind(clock, backend, seed, time_limit)
     kernel.when_stopped = lambda: _forget(kernel)
     _active = kernel
     return kernel
@@ -35,6 +37,19 @@ def stop():
     """Stop the active kernel (see `Kernel.stop`); afterwards none is active."""
     if _active is not None:
         _active.stop()
+
+
+@contextmanager
+def aside():
+    """While the block runs, the active kernel is put aside as if there were none, and others may be started and stopped."""
+    global _active
+    before, _active = _active, None
+    try:
+        yield
+    finally:
+        stop()
+        _active = before
+        budget.renew()
 
 
 def _forget(kernel):

@@ -6,7 +6,7 @@ task on its own stack (`_next`), and jumps to it, or goes on if it is the next i
 
 1. messages from outside (the inbox),
 2. timers that are due, the one created first before others of the same time,
-3. the first task in the queue (or, with a seed, any of them, by lot),
+3. the first task in the queue (or, with a seed, any of them, by lot; or the one that a given function chooses),
 4. if nothing is runnable, this instant is over: the clock goes to the next timer,
 5. if there is none either, and nobody outside who may send a message: deadlock, which the main task hears of.
 
@@ -35,6 +35,12 @@ STEPS_PER_INSTANT = 100_000  # hand-overs at one instant, after which time passe
 INFINITY = float("inf")
 
 
+def lots(seed):
+    """A choice by lot: the place in the queue of the task that goes next."""
+    draw = random.Random(seed).random
+    return lambda queue: int(draw() * len(queue))
+
+
 class Kernel(Endings, Outside):
     """A set of tasks with their clock. Made by `kernel.start`; the module's functions act on the one that is active."""
 
@@ -43,7 +49,7 @@ class Kernel(Endings, Outside):
         self.backend = make_backend(backend)
         self.time_limit = time_limit
         self._limit = time_limit
-        self._lots = None if seed is None else random.Random(seed)
+        self._choose = None if seed is None else seed if callable(seed) else lots(seed)
         self._queue = deque()
         self._timers = TimerHeap()
         self._inbox = deque()
@@ -333,10 +339,10 @@ class Kernel(Endings, Outside):
                         return self._settlers.pop()
                     self._time_passes()
                     continue
-                if self._lots is None:
+                if self._choose is None:
                     task = queue.popleft()
                 else:
-                    task = self._draw_lots()
+                    task = self._chosen()
                 if task.carrier is None and task.cancel_request is not None:
                     task.never_runs()
                     self._bury(task)
@@ -348,12 +354,12 @@ class Kernel(Endings, Outside):
                 self._end_of_instant()
 
     def _all_busy(self):
-        return self._lots is None or all(task.preempted for task in self._queue)
+        return self._choose is None or all(task.preempted for task in self._queue)
 
-    def _draw_lots(self):
+    def _chosen(self):
         # A task that has not begun never overtakes one spawned before it: branches begin in the order in which they stand.
         queue = self._queue
-        number = int(self._lots.random() * len(queue))
+        number = self._choose(queue)
         task = queue[number]
         if task.carrier is None:
             number, task = next((index, other) for index, other in enumerate(queue) if other.carrier is None)
