@@ -69,7 +69,7 @@ from .timers import Timer
 
 __all__ = [
     "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer",
-    "VirtualClock", "WallClock", "active", "aside", "allow_deep_recursion", "call_at", "call_every", "checkpoint", "current", "describe_frame",
-    "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle", "shield",
+    "VirtualClock", "WallClock", "active", "aside", "allow_deep_recursion", "call_at", "call_every", "checkpoint", "current",
+    "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle", "shield",
     "sleep", "slice_over", "spawn", "start", "stop", "unhandled", "unpark", "yield_",
 ]  # fmt: skip
