@@ -101,11 +101,4 @@ def _next_form(lisp_reader):
     return models.Expression([models.Symbol("lisp-form-read"), Form(form)])
 
 
-def plain_operator(name, forms, body=False):
-    """A call of the function ``name`` of the plan language: each form is a branch, or with ``body`` all of them are one."""
-    function = read(f"hy.I.cramhy_runtime/cpl/operators.{name}")
-    branches = [forms] if body else [[form] for form in forms]
-    return models.Expression([function, *[models.Expression([models.Symbol("fn"), models.List(), *branch]) for branch in branches]])
-
-
-__all__ = ["compile_form", "lisp_form", "plain_operator", "take_over"]
+__all__ = ["compile_form", "lisp_form", "take_over"]

@@ -7,12 +7,12 @@ A `.hy` file that begins with
 
 is line for line Common Lisp after that: `in-package` takes the reader over, so symbols are upcased and live in packages, `#'f`
 is a function and `(a . b)` a pair. Each form is compiled by the one compiler of `cramhy_runtime.lisp`, and Hy makes Python of
-what it emits. Without `in-package` the operators of the plan language take Hy bodies: `(top-level (par (left) (right)))`."
+what it emits. Without `in-package` the operators of the plan language take Hy bodies: `(top-level (par (left) (right)))`; see `plain.hy`."
 
 (eval-and-compile
   (import cramhy_runtime.image [boot])
   (boot)
-  (import cramhy.hy-files [lisp-form compile-form take-over plain-operator]))
+  (import cramhy.hy-files [lisp-form compile-form take-over]))
 
 (defmacro defpackage [#* parts]
   "As in Common Lisp; a file that defines a package needs no `in-package` before it."
@@ -27,9 +27,4 @@ what it emits. Without `in-package` the operators of the plan language take Hy b
   "What the reader that `in-package` installed makes of every form after it."
   (compile-form form.value))
 
-(defmacro top-level [#* body] (plain-operator "top_level" body :body True))
-(defmacro seq [#* body] `(do ~@body))
-(defmacro par [#* branches] (plain-operator "par" branches))
-(defmacro pursue [#* branches] (plain-operator "pursue" branches))
-(defmacro try-all [#* branches] (plain-operator "try_all" branches))
-(defmacro try-in-order [#* branches] (plain-operator "try_in_order" branches))
+(require cramhy.plain *)

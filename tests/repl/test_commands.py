@@ -40,6 +40,14 @@ class TestRun:
         assert cramhy("run", "plan.hy", "--time", "virtual").stdout == "\n1 "
         assert cramhy("run", "my-system.asd", "--time", "virtual").stdout == "\n:LOADED "
 
+    def test_a_hy_file_that_goes_into_no_package_stays_hy(self, cramhy, tmp_path):
+        (tmp_path / "plan.hy").write_text("(require cramhy *)\n(import cramhy_runtime.cpl *)\n"
+                                          "(setv slow [])\n(print (top-level (par (do (sleep 2) \"one\") (.append slow 2))) slow)\n"
+                                          "(top-level (par (sleep 1) (fail \"Lost.\")))")
+        done = cramhy("run", "plan.hy", "--time", "virtual")
+        assert (done.returncode, done.stdout) == (1, "one [2]\n")
+        assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at plan.hy:5:28\n")
+
     def test_exit_gives_the_status(self, cramhy, tmp_path):
         (tmp_path / "leave.lisp").write_text("(exit :code 7)")
         assert cramhy("run", "leave.lisp").returncode == 7

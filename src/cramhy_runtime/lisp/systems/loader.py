@@ -2,7 +2,7 @@
 
 ``.lisp`` files are read by our reader from the first character on; in ``.hy`` files the line ``(require cramhy *)`` says that
 what follows ``(in-package ...)`` is the same language, so they are loaded in the same way (run by ``hy`` itself, the macro
-``in-package`` takes the reader over: see ``hy_src/cramhy/language.hy``).
+``in-package`` takes the reader over: see ``hy_src/cramhy/language.hy``). A ``.hy`` file that goes into no package is Hy's alone.
 
 What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written, in the user's cache folder).
 A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system, and
@@ -16,6 +16,8 @@ import importlib.util
 import linecache
 import marshal
 import os
+import re
+import runpy
 import sys
 from pathlib import Path
 
@@ -87,6 +89,9 @@ def load_file(path, chain="", finished=None, show=None, encoding=None):
     """
     path = Path(path).absolute()
     text = decoded(path, encoding)
+    if path.suffix == ".hy" and _is_plain_hy(text):
+        _run_hy(path)
+        return chain
     fingerprint = hashlib.sha256(f"{stamp()}{chain}{path}".encode() + text.encode()).hexdigest()
     with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path),
                   LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
@@ -165,6 +170,17 @@ def _is_hy_requirement(form):
     """Whether ``form`` is ``(require cramhy *)`` or another line that only Hy itself needs."""
     return isinstance(form, Cons) and symbol_name(form.car) == "REQUIRE" and isinstance(form.cdr, Cons) \
         and symbol_name(form.cdr.car).startswith("CRAMHY") if isinstance(form, Cons) and hasattr(form.car, "name") else False
+
+
+def _is_plain_hy(text):
+    """Whether a ``.hy`` file takes the macros of the plan language and stays Hy: it never goes into a package of Lisp."""
+    return re.search(r"^\(require cramhy\b", text, re.M) and not re.search(r"^\((in-package|defpackage)\b", text, re.M | re.I)
+
+
+def _run_hy(path):
+    import hy  # noqa: F401  teaches `runpy` to run .hy files
+
+    runpy.run_path(str(path), run_name="__main__")
 
 
 def _kept(path, fingerprint):
