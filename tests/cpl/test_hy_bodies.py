@@ -6,7 +6,7 @@ import hy
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.cpl import PlanFailure, SimplePlanFailure
+from cramhy_runtime.cpl import SimplePlanFailure
 
 BEGINNING = """
 (require cramhy *)
