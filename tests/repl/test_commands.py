@@ -46,7 +46,7 @@ class TestRun:
                                           "(top-level (par (sleep 1) (fail \"Lost.\")))")
         done = cramhy("run", "plan.hy", "--time", "virtual")
         assert (done.returncode, done.stdout) == (1, "one [2]\n")
-        assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at plan.hy:5:28\n")
+        assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at plan.hy:5:27\n")
 
     def test_exit_gives_the_status(self, cramhy, tmp_path):
         (tmp_path / "leave.lisp").write_text("(exit :code 7)")
