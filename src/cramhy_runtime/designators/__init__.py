@@ -7,12 +7,14 @@
     motion = desig.make_designator(keyword("MOTION"), lisp_list(lisp_list(keyword("TYPE"), keyword("DRIVING"))))
     desig.reference(motion)        # the first solution of motion-grounding, or a DesignatorError
 
-``classes`` the kinds and their properties · ``equating`` chains of designators for one thing · ``resolution``, ``locations`` from
-description to thing · ``hints`` why not · ``predicates`` for Prolog · ``syntax`` the notation ``(a motion ...)`` · ``printing`` ·
-``language_support`` with-designators · ``package`` the Lisp faces. Reference: designators.md.
+``classes`` the kinds and their properties · ``protocol`` what one can ask of them · ``equating`` chains of designators for one
+thing · ``resolution``, ``locations`` from description to thing · ``hints`` why not · ``predicates`` for Prolog · ``syntax`` the
+notation ``(a motion ...)`` · ``printing`` · ``language_support`` with-designators · ``package`` the Lisp faces. Reference:
+designators.md.
 """
 
 from .. import cpl as _cpl  # noqa: F401  the floor below comes first
+from . import hints as _hints  # noqa: F401  errors explain themselves with it
 from . import predicates as _predicates  # noqa: F401
 from .classes import (
                       ActionDesignator,

@@ -18,6 +18,7 @@ from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
 from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
 from ..prolog.utilities import current_timestamp
+from .protocol import equate
 from .symbols import DESIG_PROPS
 
 A, ALL = keyword("A"), keyword("ALL")
@@ -41,10 +42,9 @@ class DesignatorError(SimpleError):
 
     @property
     def hint(self):
-        from .hints import hint
+        return self.explain(self.about) if self.about is not None else None
 
-        return hint(self.about) if self.about is not None else None
-
+    explain = None  # the function of hints.py, which knows the clauses that were tried
     about = None  # the designator that could not be resolved; the slot DESIGNATOR stays as the original leaves it
 
 
@@ -167,8 +167,6 @@ def _make_designator(class_, description, parent=None):
             return error("Designator type `~a' undefined", class_)
     designator = cls(description)
     if parent is not None:
-        from .equating import equate
-
         equate(parent, designator)
     return designator
 

@@ -13,10 +13,9 @@ from ..lisp.hooks import Hook
 from ..lisp.objects.generic import generic
 from ..prolog.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError
+from .protocol import equate, next_solution, reference
 
 on_equate_designators = Hook("CUT::ON-EQUATE-DESIGNATORS", "(successor parent)")
-equate = generic("DESIG::EQUATE", "(parent successor)", documentation="""
-Join the chains of the two and return the successor; an error if they are one already.""")
 desig_equal = generic("DESIG::DESIG-EQUAL", "(desig-1 desig-2)", documentation="Whether both are designators of one chain.")
 first_desig = generic("DESIG::FIRST-DESIG", "(desig)", documentation="The oldest of its chain.")
 current_desig = generic("DESIG::CURRENT-DESIG", "(desig)", documentation="The youngest of its chain; nil for nil.")
@@ -102,8 +101,6 @@ def get_equal_designators(designator):
 
 def designator_solutions(designator, from_root=None):
     """The lazy list of its reference (or that of the oldest) and those of the solutions after it; empty if it has none."""
-    from .resolution import next_solution, reference
-
     def solutions():
         member = oldest(designator) if from_root is not None else designator
         while member is not None:

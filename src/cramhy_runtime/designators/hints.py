@@ -11,7 +11,7 @@ from ..lisp.data import Cons, Symbol
 from ..lisp.printer.printer import princ_to_string
 from ..prolog.database import functors
 from ..prolog.patterns import is_var
-from .classes import ActionDesignator, MotionDesignator, ObjectDesignator, desig_prop_value
+from .classes import ActionDesignator, DesignatorError, MotionDesignator, ObjectDesignator, desig_prop_value
 from .symbols import sym
 
 DESIG_PROP = sym("DESIG::DESIG-PROP")
@@ -64,3 +64,6 @@ def _compare(designator, clause):
                 for key, wanted in _contradictions(designator, clause)]
     problems += [f"property {princ_to_string(key)} is missing" for key, _ in _asks(clause) if key not in present]
     return f"  {princ_to_string(clause.head)}: {'; '.join(problems) or 'all properties are there, another goal fails'}".lower()
+
+
+DesignatorError.explain = staticmethod(hint)

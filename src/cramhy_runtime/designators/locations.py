@@ -19,6 +19,7 @@ from ..prolog.lazy_lists import elements, from_iterator
 from ..prolog.query import ask
 from ..prolog.terms import Var
 from .classes import LocationDesignator
+from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
 
 ACCEPT, UNKNOWN, MAYBE_REJECT = keyword("ACCEPT"), keyword("UNKNOWN"), keyword("MAYBE-REJECT")
@@ -155,8 +156,6 @@ def location_prolog_generator(designator):
 
 def location_prolog_validator(designator, solution):
     """If Prolog knows places for the designator, these are accepted and others are not wanted."""
-    from .resolution import designator_solutions_equal
-
     known = False
     for (value,) in ask(LOCATION_GROUNDING, designator, Var()):
         known = True
@@ -181,8 +180,6 @@ def with_designator_solution_filter(predicate, body):
 
 def next_filtered_designator_solution(designator, predicate):
     """`next_solution` with the filter ``predicate``."""
-    from .resolution import next_solution
-
     return with_designator_solution_filter(predicate, lambda: next_solution(designator))
 
 

@@ -22,22 +22,17 @@ from ..prolog.query import ask
 from ..prolog.terms import Var
 from ..prolog.utilities import current_timestamp
 from .classes import ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator
-from .equating import equate, youngest
+from .equating import youngest
 from .locations import location_solutions
+from .protocol import designator_solutions_equal, equate, next_solution, reference
 from .symbols import sym
 
 DEFAULT_ROLE = special(sym("DESIG::*DEFAULT-ROLE*"))
 ACTION_GROUNDING = sym("DESIG::ACTION-GROUNDING")
 MOTION_GROUNDING = sym("DESIG::MOTION-GROUNDING")
 
-reference = generic("DESIG::REFERENCE", "(desig &optional role)", documentation="""
-What the designator stands for, always the same object; a designator-error if that cannot be found.""")
 resolve_designator = generic("DESIG::RESOLVE-DESIGNATOR", "(desig role)", documentation="""
 Find what the designator stands for; called by reference. Methods on ``(eql role)`` resolve in their own way.""")
-next_solution = generic("DESIG::NEXT-SOLUTION", "(desig)", documentation="""
-A designator for the next possibility, equated to this one, or nil. For locations always the same object.""")
-designator_solutions_equal = generic("DESIG::DESIGNATOR-SOLUTIONS-EQUAL", "(solution-1 solution-2)", documentation="""
-Whether two solutions are the same: strings without case, lists by equal, arrays by equalp, else eql.""")
 designator_pose = generic("DESIG::DESIGNATOR-POSE", "(desig)", documentation="""
 The pose of an effective designator; nil before. Methods come from packages that know poses (cram-tf).""")
 designator_distance = generic("DESIG::DESIGNATOR-DISTANCE", "(desig-1 desig-2)", documentation="""
