@@ -67,6 +67,16 @@ LECTURE_38 = [
 ]
 
 
+LOOK = """\
+(top-level
+      (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)
+        (let ((goal (desig:a motion (type moving) (goal (3 9 0)))))
+          (cpl:par
+            (pm-execute 'turtlesim-navigation goal)
+            (progn (sleep 1) (cpl:describe-task-tree))))))"""
+"""On no slide: the same plan again, and what each of its tasks does after a second."""
+
+
 class Typist:
     """Types lines into the console, showing them as a terminal would; afterwards the lines of ``further``."""
 
@@ -97,7 +107,8 @@ def main():
     from cramhy_runtime.repl.session import Session
 
     save = f'(turtlesim:save-paper "{options.png}")'
-    texts = [";; Lecture 34: controlling the turtle", *LECTURE_34, ";; Lecture 38: process modules", *LECTURE_38, save]
+    texts = [";; Lecture 34: controlling the turtle", *LECTURE_34, ";; Lecture 38: process modules", *LECTURE_38, save,
+             ";; What a plan is doing, while it is", LOOK]
     stays = sys.stdin.isatty() and sys.stdout.isatty()
     if stays:
         texts.append(";; Go on typing; Ctrl-D ends.")

@@ -27,6 +27,7 @@ from .current import inside_plan
 from .statuses import DEAD, DONE, FAILED
 from .tasks import Task, ToplevelTask, end_tasks, task_dead
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
+from .tree_report import note_stopped
 from .watching import watch
 
 
@@ -72,6 +73,8 @@ def _run_top_level(body, name, tree):
         while task.status not in DEAD:
             kernel.park(lambda: f"the plan {task.name}")
     except BaseException as exception:
+        if isinstance(exception, kernel.Interrupted | kernel.Deadlock | kernel.TimeLimit):
+            note_stopped(task, exception)
         end_tasks([task], f"{name.name if name is not None else 'NIL'} aborted.")
         if task.status is FAILED and isinstance(exception, kernel.Cancelled | kernel.Interrupted):
             exception.add_note(f"While the plan was ended, its cleanup failed: {task.result}")

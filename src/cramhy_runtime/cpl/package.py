@@ -25,6 +25,7 @@ from . import (
     task_variables,
     tasks,
     tree,
+    tree_report,
     waiting,
 )
 from . import printing as _printing  # noqa: F401
@@ -97,9 +98,10 @@ def define_faces():
                  "+log-very-verbose+": logging.VERY_VERBOSE, "+log-language+": logging.LANGUAGE}
     define_face(
         "CRAM-LANGUAGE-IMPLEMENTATION", ["CPL-IMPL"], use=["COMMON-LISP"],
-        functions={**FUNCTIONS, **OPERATORS, **hook_functions, "current-task": tasks.current_task_or_dummy, "task": tree.task_at},
+        functions={**FUNCTIONS, **OPERATORS, **hook_functions, "current-task": tasks.current_task_or_dummy, "task": tree.task_at,
+                   "describe-task-tree": tree_report.describe_task_tree_in_lisp},
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
-                   "*save-tasks*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
+                   "*save-tasks*": None, "*record-task-tree*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
                    "timeout-policy": policies.TIMEOUT_POLICY,
                    **{name: statuses.status_list(members) for name, members in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},

@@ -15,12 +15,14 @@ How a task parks and obeys is in ``pausing.py``, who may ask it to in ``suspensi
 from __future__ import annotations
 
 import itertools
+from collections import deque
 
 from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
 from ..lisp.conditions import error, from_python, type_error
 from ..lisp.data import NO_VALUES, Symbol, list_from, truth
+from ..lisp.dynamic import special
 from ..lisp.evaluation.places_in_source import locate
 from .current import current_task
 from .failure_types import PlanFailure, envelope
@@ -39,6 +41,9 @@ DEEPEST = 1000
 _count = itertools.count(1)
 SAVE_TASKS = inherit(sym("CPL-IMPL::*SAVE-TASKS*"), None)
 saved_tasks = []
+RECORD = special(sym("CPL-IMPL::*RECORD-TASK-TREE*"), None)
+recorded = deque(maxlen=10)
+"""The newest plans that began while ``*record-task-tree*`` was true."""
 
 
 class Task:
@@ -50,9 +55,11 @@ class Task:
     """
 
     __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
-                 "constraints", "ended", "observers", "held", "unschedulable", "suspension_handlers", "retry_level", "depth", "__weakref__",
-                 "__dict__")
+                 "constraints", "ended", "started_at", "ended_at", "observers", "held", "unschedulable", "suspension_handlers",
+                 "retry_level", "depth", "__weakref__", "__dict__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
+    record = None
+    """The list of all tasks of its plan, dead ones too, if they are recorded (``tree_report.py``)."""
 
     def __init__(self, body=None, name=None, path=None, *, thread_fun=None, run_thread=True):
         self._name = name
@@ -69,6 +76,7 @@ class Task:
         self.kernel_task = None
         self.constraints = None
         self.ended = None
+        self.started_at = self.ended_at = None  # s of the kernel's clock
         self.observers = None
         self.held = False  # a suspension is wanted
         self.unschedulable = 0
@@ -134,6 +142,9 @@ class Task:
             if self.depth > DEEPEST:
                 error(types.StorageCondition(f"Branches within branches, {DEEPEST} deep: a plan starts itself, perhaps without end."))
             parent.children[self] = True
+            if parent.record is not None:
+                self.record = parent.record
+                self.record.append(self)
             if self.tree is None:
                 self.tree = parent.tree
             if self.path is None:
@@ -142,6 +153,7 @@ class Task:
         self.kernel_task = kernel.spawn(self._live, bindings, name=self.name if self._name is None else "task")
         self.kernel_task.name = _KernelName(self)
         self.kernel_task.when_refused = self._refused
+        self.started_at = kernel.now()
         if truth(SAVE_TASKS.value):
             saved_tasks.append(self)
         return self
@@ -212,6 +224,7 @@ class Task:
 
     def _die(self, status, result):
         self.result = result  # before the status, so that who sees a dead status can read it
+        self.ended_at = kernel.now()
         self.body = self.constraints = self.suspension_handlers = None
         if self.parent is not None:
             self.parent.children.pop(self, None)
@@ -261,7 +274,9 @@ class ToplevelTask(Task):
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TOPLEVEL-TASK"
 
     def _find_parent(self):
-        pass
+        if truth(RECORD.value):
+            self.record = [self]
+            recorded.append(self)
 
 
 class _KernelName:

@@ -225,6 +225,11 @@ def get_top_level_task_tree(name):
     return tree
 
 
+def named_tree(name):
+    """The tree stored under ``name``, or ``None``."""
+    return _named_trees.get(name)
+
+
 def remove_top_level_task_tree(name):
     _named_trees.pop(name, None)
 

@@ -83,6 +83,11 @@ class Task:
         return self._exception
 
     @property
+    def ready(self):
+        """True when it waits for nothing but its turn."""
+        return self.state is RUNNABLE
+
+    @property
     def cancelled(self):
         """True as soon as it was asked to end, delivered or not."""
         return self.cancel_request is not None

@@ -35,13 +35,20 @@ def frame_position(frame, lasti=None):
 
 
 def user_position(frame=None):
-    """The place of the innermost user frame at or above ``frame`` (default: the caller), or ``None``."""
+    """The place of the innermost user frame at or above ``frame`` (default: the caller), or ``None``.
+
+    A frame in code that a macro made of nothing the user wrote has column 0; then the one that called it tells more.
+    """
     frame = frame or sys._getframe(1)
+    made_by_macro = None
     while frame is not None:
         if is_user_file(frame.f_code.co_filename):
-            return frame_position(frame)
+            position = frame_position(frame)
+            if position[2] != 0:
+                return position
+            made_by_macro = made_by_macro or position
         frame = frame.f_back
-    return None
+    return made_by_macro
 
 
 def exception_position(exception):
