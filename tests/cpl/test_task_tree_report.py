@@ -163,8 +163,8 @@ No plan runs now. The last one when it was interrupted, at 2 s:
 
 
 @pytest.mark.parametrize(("form", "text"), [
-    ("(describe-task-tree 'nobody)", "There is no task tree of NOBODY. What is described is a task, a task tree, or the name of a top-level "
-                                     "that has run; nil is for all that runs now."),
+    ("(describe-task-tree 'nobody)", "There is no task tree of NOBODY. What is described is a task, a task tree, or the name of a "
+                                     "top-level that has run; nil is for all that runs now."),
     ("(describe-task-tree :depth -1)", "The depth of a report is a number of levels, 0 or more, not -1."),
 ])
 def test_what_cannot_be_described_is_an_error_that_says_what_can(lisp, form, text):
