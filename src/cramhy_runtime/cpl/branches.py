@@ -38,6 +38,13 @@ class Branches:
             task.ended = self.ended
             task.execute()
 
+    def add(self, task):
+        """Start one more branch."""
+        self.tasks.append(task)
+        self.living += 1
+        task.ended = self.ended
+        task.execute()
+
     def ended(self, task):
         """A branch is dead. The waiting task is woken if that decides the matter."""
         self.living -= 1
@@ -64,6 +71,25 @@ class Branches:
             self.waiter = None
             end_tasks([task for task in self.tasks if task.status not in DEAD])
 
+    def abort(self, exception):
+        """Whoever waits is leaving with ``exception``: end the branches, then raise it, or what a branch failed with meanwhile."""
+        failed_before = self.failed
+        self.end()
+        if self.failed > failed_before and isinstance(exception, kernel.Cancelled):
+            raise self.last_failure() from None
+        raise exception
+
+    def finish(self, values, failure, late_failures_count=True):
+        """It is decided: end the branches that are left, and return ``values`` or signal ``failure``."""
+        if self.living:
+            failed_before = self.failed
+            self.end()
+            if failure is None and late_failures_count and self.failed > failed_before:
+                failure = self.last_failure()
+        if failure is not None:
+            signal_failure(failure)
+        return values
+
     def last_failure(self):
         """The failure of the failed branch with the highest position, or ``None``."""
         for task in reversed(self.tasks):
@@ -80,19 +106,8 @@ def run(form, tasks, ready, choose, late_failures_count=True):
         branches.wait(ready)
         values, failure = choose(branches)
     except BaseException as exception:
-        failed_before = branches.failed
-        branches.end()
-        if branches.failed > failed_before and isinstance(exception, kernel.Cancelled):
-            raise branches.last_failure() from None
-        raise
-    if branches.living:
-        failed_before = branches.failed
-        branches.end()
-        if failure is None and late_failures_count and branches.failed > failed_before:
-            failure = branches.last_failure()
-    if failure is not None:
-        signal_failure(failure)
-    return values
+        branches.abort(exception)
+    return branches.finish(values, failure, late_failures_count)
 
 
 def branch_tasks(form, thunks):

@@ -15,9 +15,10 @@ def current_task():
 
 def inside_plan(form):
     """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
-    task = getattr(kernel.current().local, "plan_task", None)
+    task = getattr(kernel.current().local, "plan_task", None) if kernel.active() is not None else None
     if task is None:
         outside = types.SimpleError("'~a' form not inside a plan.", form)
         outside.hint = f"Plan forms run inside of a plan: write (top-level ({str(form).lower()} ...))."
+        outside.add_note("From Python, run the plan with cpl.run(main), or write it below `with cpl.plan():`.")
         return error(outside)
     return task

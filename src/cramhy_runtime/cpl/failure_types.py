@@ -11,9 +11,12 @@ from ..lisp.condition_types import Condition, SeriousCondition, SimpleCondition,
 
 
 class PlanFailure(SeriousCondition):
-    """A plan could not reach its goal."""
+    """A plan could not reach its goal. In Python, derive your failures from it: ``class DoorStuck(cpl.PlanFailure): pass``."""
 
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::PLAN-FAILURE"
+
+    def report(self):
+        return BaseException.__str__(self) if self.args else super().report()
 
 
 class SimplePlanFailure(SimpleCondition, PlanFailure):
@@ -28,6 +31,11 @@ class CompositeFailure(PlanFailure):
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::COMPOSITE-FAILURE"
     initargs = {"FAILURES": "failures"}
     failures = None
+
+    @property
+    def exceptions(self):
+        """The failures as a Python list of what Python's ``except`` would see: errors without their envelopes."""
+        return [python_exception(failure) for failure in self.failures or ()]
 
 
 class CommonLispErrorEnvelope(PlanFailure):
@@ -75,11 +83,22 @@ def envelope(condition):
     """``condition`` as a plan failure: itself, or an envelope around it. Envelopes are never nested."""
     if isinstance(condition, PlanFailure):
         return condition
-    wrapped = CommonLispErrorEnvelope(error=condition)
-    wrapped.__cause__ = condition
+    wrapped = getattr(condition, "envelope", None)  # it came up to Python code, which let it go on: the same envelope again
+    if wrapped is None:
+        wrapped = CommonLispErrorEnvelope(error=condition)
+        wrapped.__cause__ = condition
     return wrapped
 
 
 def opened(condition):
     """What an envelope holds; any other condition is itself."""
     return condition.error if isinstance(condition, CommonLispErrorEnvelope) else condition
+
+
+def python_exception(condition):
+    """What Python code sees of ``condition``: an envelope's error, and for an exception that Python raised that exception."""
+    error = opened(condition)
+    if error is not condition:
+        error.envelope = condition
+    cause = error.__cause__
+    return cause if cause is not None and getattr(cause, "__lisp_condition__", None) is error else error

@@ -54,6 +54,16 @@ def obey(task):
         return
     if task.retry_level:
         raise Unwind(task)
+    me.local.obeying = True
+    try:
+        _suspend(task)
+    finally:
+        me.local.obeying = False
+    for block in getattr(me.local, "blocks", ()):
+        block.remind()  # what was to end a part of this task waited for the wake-up
+
+
+def _suspend(task):
     _run_handlers(task)
     children = list(task.children)
     for child in children:

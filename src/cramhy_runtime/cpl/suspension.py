@@ -10,47 +10,48 @@ the task; one wake-up undoes any number of suspensions. ``with-task-suspended`` 
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from cramhy_runtime import kernel
 
-from ..lisp.data import truth
 from .current import current_task, inside_plan
-from .pausing import Unwind, obey, release, request
-from .statuses import CREATED, DEAD, RUNNING, SUSPENDED
+from .pausing import Unwind, obey
 from .tasks import check_reason
 
 
 def suspend(task, *, reason=None, sync=True):
     """Suspend ``task`` and all below it; with ``sync`` wait until it is suspended or dead."""
     check_reason(reason)
-    request(task)
-    if task is current_task():
-        if truth(sync):
-            obey(task)
-    elif truth(sync):
-        task.park_until((SUSPENDED, CREATED, *DEAD), lambda: f"the suspension of {task.name}")
+    task.suspend(reason, sync)
 
 
 def wake_up(task, *, reason=None, sync=True):
     """Let ``task`` and all below it go on; with ``sync`` wait until it is running or dead."""
     check_reason(reason)
-    release(task)
-    if truth(sync) and task is not current_task():
-        task.park_until((RUNNING, CREATED, *DEAD), lambda: f"the wake-up of {task.name}")
+    task.wake_up(reason, sync)
 
 
-def on_suspension(handler, body):
-    """Values of ``body()``; whenever the task is suspended meanwhile, ``handler()`` runs in it first. Innermost first."""
+@contextmanager
+def handler_for_suspension(handler):
+    """While the block runs, ``handler()`` runs first in the task whenever it is suspended. Innermost first."""
     task = current_task()
     if task is None:
-        return body()
+        yield
+        return
     if task.suspension_handlers is None:
         task.suspension_handlers = []
     handlers = task.suspension_handlers
     handlers.append(handler)
     try:
-        return body()
+        yield
     finally:
         handlers.pop()
+
+
+def on_suspension(handler, body):
+    """``(on-suspension form body...)``: values of ``body()`` within `handler_for_suspension`."""
+    with handler_for_suspension(handler):
+        return body()
 
 
 def retry_after_suspension(body):
@@ -70,31 +71,46 @@ def retry_after_suspension(body):
         obey(task)
 
 
-def with_task_suspended(task, body, reason=None):
-    """Values of ``body()``, run while ``task`` is suspended; it is woken again on every exit."""
+@contextmanager
+def task_suspended(task, reason=None):
+    """While the block runs ``task`` is suspended; it is woken again on every exit."""
     inside_plan("WITH-TASK-SUSPENDED")
     suspend(task, reason=reason)
     try:
-        return body()
+        yield task
     finally:
         with kernel.shield():
             wake_up(task, reason=reason)
 
 
-def without_scheduling(body):
-    """Values of ``body()``; requests to suspend or evaporate the task wait until it is over."""
+def with_task_suspended(task, body, reason=None):
+    """``(with-task-suspended (task) body...)``: values of ``body()`` within `task_suspended`."""
+    with task_suspended(task, reason):
+        return body()
+
+
+@contextmanager
+def undisturbed():
+    """Requests to suspend or evaporate the task wait until the block is over."""
     task = current_task()
     if task is None:
         with kernel.shield():
-            return body()
+            yield
+        return
     task.unschedulable += 1
     try:
         with kernel.shield():
-            return body()
+            yield
     finally:
         task.unschedulable -= 1
         if task.held and not task.unschedulable:
             obey(task)
+
+
+def without_scheduling(body):
+    """``(without-scheduling body...)``: values of ``body()``, `undisturbed`."""
+    with undisturbed():
+        return body()
 
 
 def with_scheduling(body):

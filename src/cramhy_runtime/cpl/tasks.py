@@ -29,8 +29,8 @@ from .failure_types import PlanFailure, envelope
 from .failures import signal_failure
 from .fluent_operators import fl_and, fl_funcall
 from .fluents import ValueFluent, function_of
-from .pausing import obey, pause
-from .statuses import ALIVE, CREATED, DEAD, DONE, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED, status_list
+from .pausing import obey, pause, release, request
+from .statuses import ALIVE, CREATED, DEAD, DONE, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED, SUSPENDED, status_list
 from .symbols import sym
 from .task_variables import inherit, inherited_bindings
 from .waiting import wait_for
@@ -248,6 +248,30 @@ class Task:
             return
         kernel_task.cancel(reason)
 
+    def suspend(self, reason=None, sync=True):
+        """Ask the task, and all below it, to stand still; with ``sync`` wait until they do."""
+        request(self)
+        if self is current_task():
+            if truth(sync):
+                obey(self)
+        elif truth(sync):
+            self.park_until((SUSPENDED, CREATED, *DEAD), lambda: f"the suspension of {self.name}")
+
+    def wake_up(self, reason=None, sync=True):
+        """Let the task, and all below it, go on; with ``sync`` wait until they do."""
+        release(self)
+        if truth(sync) and self is not current_task():
+            self.park_until((RUNNING, CREATED, *DEAD), lambda: f"the wake-up of {self.name}")
+
+    def join(self):
+        """Wait until the task is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
+        if self is current_task():
+            error("Cannot join current task.")
+        self.park_until(DEAD, lambda: f"the end of {self.name}")
+        if self.status is FAILED:
+            signal_failure(self.result)
+        return self.result
+
     def park_until(self, statuses, why, wait=None):
         """Wait until its status is among ``statuses``. To be called in another task.
 
@@ -401,10 +425,5 @@ def execute(task):
 
 
 def join_task(task):
-    """Wait until ``task`` is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
-    if task is current_task():
-        error("Cannot join current task.")
-    task.park_until(DEAD, lambda: f"the end of {task.name}")
-    if task.status is FAILED:
-        signal_failure(task.result)
-    return task.result
+    """``(join-task task)``: see `Task.join`."""
+    return task.join()

@@ -16,11 +16,14 @@ from .tasks import BLOCKED, PARKED
 LONGEST_LIST = 30  # tasks
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
+_LIBRARY = os.path.dirname(_HERE) + os.sep
 
 
 def describe_frame(frame):
-    """The default: file, line and function of Python code."""
+    """The default: file, line and function of Python code, but not of this library's own."""
     code = frame.f_code
+    if code.co_filename.startswith(_LIBRARY):
+        return None
     return f"{code.co_filename}:{frame.f_lineno} in {code.co_name}"
 
 

@@ -173,13 +173,36 @@ class Task:
         if self.interjections and not self.shielded:
             functions, self.interjections = self.interjections, None
             self._look_again()
-            for function in functions:
-                function()
+            while functions:
+                function, *functions = functions
+                try:
+                    function()
+                except BaseException:  # it unwinds a part of the stack; what else was to be called comes after that
+                    self.interjections = [*functions, *(self.interjections or ())]
+                    self._look_again()
+                    raise
             self.woken = True  # whoever parked looks again whether what it waits for has come
 
     def _look_again(self):
         waiting = self.cancel_request is not None and not self.cancelled_delivered
         self.attention = waiting or bool(self.alarms) or bool(self.interjections) or self.abandoned
+
+    def unwinds(self):
+        """Called by the task itself, which ends a part of its own stack: until `unwound` nobody disturbs the cleanup in it.
+
+        A request to end the task that comes meanwhile is delivered after that.
+        """
+        self.cancelled_delivered = True
+
+    def unwound(self):
+        """The part of the stack that ended is gone, and the task lives on."""
+        self.cancelled_delivered = False
+        self._look_again()
+
+    def spare(self):
+        """The request to end it is dealt with, though it is alive: only what the main task ran as a plan has ended."""
+        self.cancel_request = self.delivered = None
+        self.unwound()
 
     def _cancellation(self):
         (reason,) = self.cancel_request

@@ -51,6 +51,7 @@ class Condition(BaseException):
     initargs: dict = {}
     restarts = ()
     context = ""
+    signalled = False
 
     def __init__(self, *arguments, **slots):
         super().__init__(*arguments)

@@ -34,6 +34,9 @@ DEBUGGER_HOOK.value, DEBUGGER_HOOK.special = None, True
 BREAK_ON_SIGNALS = sym("*BREAK-ON-SIGNALS*")
 BREAK_ON_SIGNALS.value, BREAK_ON_SIGNALS.special = None, True
 
+EVERYBODY = ("every handler on its way",)
+"""The mark of an exception that a handler raised: whoever was to be asked was asked when it left the handler."""
+
 _debugger = None
 
 
@@ -64,6 +67,7 @@ def signal_condition(condition):
     """Offer ``condition`` to the handlers, innermost first. Returns when all have declined."""
     if truth(BREAK_ON_SIGNALS.value):
         _break_on_signal(condition)
+    condition.signalled = True
     clusters = _handlers.value
     while clusters is not None:
         cluster, outer = clusters
@@ -97,7 +101,25 @@ def _offer(condition, cluster, outer):
     for specifier, handler in cluster:
         if matches(condition, specifier):
             with binding(_handlers, outer):
-                handler(condition)
+                try:
+                    handler(condition)
+                except (types.Condition, Exception) as raised:
+                    _raised_by_handler(raised)
+                    raise
+
+
+def _raised_by_handler(exception):
+    """Ask the handlers outside now; those inside, which it passes on its way out, are not to be asked (ANSI 9.1.4)."""
+    if isinstance(exception, types.Condition):
+        if not exception.signalled:
+            signal_condition(exception)
+    elif getattr(exception, "__lisp_asked__", None) is not EVERYBODY:
+        if not _were_asked(exception, _handlers.value):
+            signal_condition(from_python(exception))
+        try:
+            exception.__lisp_asked__ = EVERYBODY
+        except AttributeError:
+            pass
 
 
 def handler_bind(clauses, thunk):
@@ -107,7 +129,9 @@ def handler_bind(clauses, thunk):
     with binding(_handlers, cluster):
         try:
             return thunk()
-        except types.Condition:
+        except types.Condition as condition:
+            if not condition.signalled:  # Python code raised it without signalling
+                _offer(condition, clauses, outer)
             raise
         except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
             if not _were_asked(exception, cluster):
@@ -550,6 +574,8 @@ def _were_asked(exception, clusters):
     asked = getattr(exception, "__lisp_asked__", None)
     if asked is None:
         return False
+    if asked is EVERYBODY:
+        return True
     asked = asked[0]
     while asked is not clusters and asked is not None:
         asked = asked[1]
@@ -563,6 +589,7 @@ def from_python(exception):
     known = getattr(exception, "__lisp_condition__", None)
     if known is None:
         known = types.condition_for(exception)
+        known.__cause__ = exception
         try:
             exception.__lisp_condition__ = known
         except AttributeError:
