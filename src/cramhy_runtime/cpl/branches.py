@@ -14,7 +14,8 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from ..lisp.conditions import error
+from ..lisp.conditions import SimpleWarning, error, warn
+from .failure_types import CompositeFailure, PlanFailure, opened
 from .failures import signal_failure
 from .current import inside_plan
 from .pausing import pause
@@ -66,27 +67,33 @@ class Branches:
         return f"the branches of {self.form.upper()}: " + ", ".join(task.name for task in self.tasks if task.alive)
 
     def end(self):
-        """Evaporate the living branches and wait until they are dead."""
-        if self.living:
-            self.waiter = None
-            end_tasks([task for task in self.tasks if task.status not in DEAD])
+        """Evaporate the living branches and wait until they are dead; returns those that failed meanwhile."""
+        if not self.living:
+            return ()
+        self.waiter = None
+        living = [task for task in self.tasks if task.status not in DEAD]
+        end_tasks(living)
+        return [task for task in living if task.status is FAILED]
 
     def abort(self, exception):
         """Whoever waits is leaving with ``exception``: end the branches, then raise it, or what a branch failed with meanwhile."""
-        failed_before = self.failed
-        self.end()
-        if self.failed > failed_before and isinstance(exception, kernel.Cancelled):
+        late = self.end()
+        if late and isinstance(exception, kernel.Cancelled):
             raise self.last_failure() from None
+        _warn_of_lost(late)
         raise exception
 
     def finish(self, values, failure, late_failures_count=True):
         """It is decided: end the branches that are left, and return ``values`` or signal ``failure``."""
         if self.living:
-            failed_before = self.failed
-            self.end()
-            if failure is None and late_failures_count and self.failed > failed_before:
+            late = self.end()
+            if failure is None and late and late_failures_count:
                 failure = self.last_failure()
+            elif failure is None:
+                _warn_of_lost(late)
         if failure is not None:
+            if self.failed > 1 and isinstance(failure, PlanFailure) and not isinstance(failure, CompositeFailure):
+                _note_beside(failure, self.tasks)
             signal_failure(failure)
         return values
 
@@ -108,6 +115,24 @@ def run(form, tasks, ready, choose, late_failures_count=True):
     except BaseException as exception:
         branches.abort(exception)
     return branches.finish(values, failure, late_failures_count)
+
+
+def _note_beside(failure, tasks):
+    """Keep the failures of the other ``tasks`` with the one that the form fails with, so that the user is told of them (law 3)."""
+    known = [*getattr(failure, "beside", ())]
+    seen = {id(opened(failure)), *(id(other) for _, other in known)}
+    known += [(f"{task.name} failed too", opened(task.result)) for task in tasks
+              if task.status is FAILED and id(opened(task.result)) not in seen]
+    failure.beside = opened(failure).beside = known
+
+
+def _warn_of_lost(tasks):
+    """Tell of ``tasks`` that failed when nobody can take their failure any more: while they were ended for another reason."""
+    for task in tasks:
+        if task.status is FAILED and isinstance(task.result, PlanFailure):
+            warning = SimpleWarning("~a failed while it was ended: ~a", task.name, opened(task.result))
+            warning.position = getattr(opened(task.result), "position", None)
+            warn(warning)
 
 
 def branch_tasks(form, thunks):

@@ -37,6 +37,12 @@ class CompositeFailure(PlanFailure):
         """The failures as a Python list of what Python's ``except`` would see: errors without their envelopes."""
         return [python_exception(failure) for failure in self.failures or ()]
 
+    @property
+    def beside(self):
+        """What to tell with it: each failure."""
+        failures = list(self.failures or ())
+        return [(f"Failure {number} of {len(failures)}", opened(failure)) for number, failure in enumerate(failures, 1)]
+
 
 class CommonLispErrorEnvelope(PlanFailure):
     """The error of a child task, on its way up."""

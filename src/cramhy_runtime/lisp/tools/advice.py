@@ -48,7 +48,7 @@ def explanation(condition):
     lines += _expansion(condition, position)
     hint = hint_for(condition)
     if hint:
-        lines.append(f"  {hint}")
+        lines += [f"  {line}" for line in hint.splitlines()]
     return "\n".join(lines)
 
 
@@ -63,7 +63,22 @@ def _expansion(condition, position):
 
 
 def hint_for(condition):
-    """One sentence of advice, or ``None``."""
+    """Advice and what else went wrong, a line each, or ``None``."""
+    return "\n".join(filter(None, [_advice(condition), *_beside(condition)])) or None
+
+
+def _beside(condition):
+    """The other failures that ``condition`` brings along: its ``beside``, pairs of words and a condition."""
+    others = getattr(condition, "beside", ())
+    for words, other in others[:SHOWN_PLACES]:
+        text = " ".join(report_text(other).split())
+        place = describe(getattr(other, "position", None))
+        yield f"{words}: {text}{'' if text.endswith('.') else '.'}" + (f" (at {place})" if place else "")
+    if len(others) > SHOWN_PLACES:
+        yield f"and {len(others) - SHOWN_PLACES} more failures"
+
+
+def _advice(condition):
     own = getattr(condition, "hint", None)
     if own:
         return own
