@@ -61,7 +61,8 @@ def test_a_failure_in_the_cleanup_of_an_ended_branch_comes_along():
 
 
 def test_failures_of_every_level_are_gathered_once_each():
-    failure = failure_of(lambda: cpl.par(failing("inner", after=1), failing_in_cleanup("inner cleanup")), failing_in_cleanup("outer cleanup"))
+    inner = [failing("inner", after=1), failing_in_cleanup("inner cleanup")]
+    failure = failure_of(lambda: cpl.par(*inner), failing_in_cleanup("outer cleanup"))
     assert str(failure) == "inner"
     assert texts(failure) == ["inner cleanup", "outer cleanup"]
 
