@@ -1,10 +1,13 @@
-"The macros of the plan language: packages CRAM-LANGUAGE-IMPLEMENTATION and CRAM-LANGUAGE.
+"The macros of the plan language: packages CRAM-LANGUAGE-IMPLEMENTATION and CRAM-LANGUAGE. Those of the task tree, of plan
+functions and of goals are in `plans.hy`.
 
 A branch becomes a function of no arguments, and the operator a call of a function of `cramhy_runtime.cpl` with the branches.
 What the operators mean stands there, and in the sections of cpl.md that the comments name."
 
 (require cramhy.operators [defoperator])
-(import cramhy.operators *)
+(import cramhy.operators *
+        cramhy_runtime.lisp.conditions [CompileError]
+        cramhy_runtime.lisp.printer.printer [prin1-to-string])
 
 (setv package "CRAM-LANGUAGE-IMPLEMENTATION")
 
@@ -17,7 +20,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   `(%top-level (lambda [] ~@body)))
 
 (defoperator named-top-level [options #* body]
-  (setv #(_ name) (or options [None None]))
+  (setv name (.get (keyword-options "NAMED-TOP-LEVEL" (elements options) ["NAME"]) "NAME"))
   `(%named-top-level (quote ~name) (lambda [] ~@body)))
 
 (defoperator seq [#* forms]
@@ -44,13 +47,15 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   `(%par-loop ~items (lambda [~variable] ~@body)))
 
 (defn ordering [form]
-  (setv parts (elements form))
+  (setv parts (if (listp form) (elements form) []))
   (when (or (!= (len parts) 3) (is-not (get parts 0) (sym ":ORDER")))
-    (raise (ValueError "Malformed ordering constraint.")))
+    (setv problem (CompileError "Malformed ordering constraint."))
+    (setv problem.hint (.format "Instead of {} write (:order before after)." (prin1-to-string form)))
+    (error problem))
   `(list ~(get parts 1) ~(get parts 2)))
 
 (defoperator partial-order [steps #* orderings]
-  `(%partial-order (list ~@(branches (elements steps))) (list ~@(map ordering orderings))))
+  `(%partial-order (list ~@(branches (elements steps))) (lambda [] (list ~@(map ordering orderings)))))
 
 (defoperator with-parallel-childs [name groups forms #* watcher]
   `(block nil
@@ -61,8 +66,8 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   `(%with-task-suspended ~task ~(if options (get options 1) None) (lambda [] ~@body)))
 
 (defoperator with-task [options #* body]
-  (setv options (dict (zip (lfor key (cut (elements options) 0 None 2) key.name) (cut (elements options) 1 None 2))))
-  `(%with-task ~(.get options "NAME" "WITH-TASK") (lambda [] ~@body)))
+  (setv options (keyword-options "WITH-TASK" (elements options) ["CLASS" "NAME"]))
+  `(%with-task ~(.get options "CLASS" '(quote task)) ~(.get options "NAME" "WITH-TASK") (lambda [] ~@body)))
 
 ;; ---------------------------------------------------------------------------------------------------------- 2: fluents
 
@@ -124,113 +129,6 @@ What the operators mean stands there, and in the sections of cpl.md that the com
                 [get-counter [name] (list '%counter-value (%counter-variable name '~table))]
                 [reset-counter [name] (list '%reset-retry-counter (%counter-variable name '~table))]]
        ~@body)))
-
-;; -------------------------------------------------------------------------------------------------- 7: tags, task tree
-
-(defn tag-names [form found]
-  "The names of the (:tag name ...) forms in `form`, in textual order; quoted data is not entered."
-  (setv cell form)
-  (while (listp cell)
-    (setv item cell.car)
-    (when (and (listp item) (is-not item.car (sym "QUOTE")))
-      (when (and (is item.car (sym ":TAG")) (listp item.cdr) (not-in item.cdr.car found))
-        (.append found item.cdr.car))
-      (tag-names item found))
-    (setv cell cell.cdr))
-  found)
-
-(defoperator with-tags [#* body]
-  (setv names (tag-names (list-from body) []))
-  `(progn
-     (%enter-with-tags)
-     (let [~@(lfor name names [name `(%make-tag-task (quote ~name))])]
-       (macrolet [[tag-form [name &rest forms]
-                    (list 'progn
-                          (list 'setq name (list '%prepare-tag name))
-                          (list '%execute-tag name (list* 'lambda nil forms)))]]
-         ~@body))))
-
-(defn expand-tag [form environment]
-  "The meaning of (:tag name . body): a keyword is no operator, so this is entered by hand."
-  (setv local (sym "CPL-IMPL::TAG-FORM"))
-  (setv expander (when (is-not environment None) (.function environment local)))
-  (if (is expander None)
-      (lisp-list (sym "CRAMHY::TAG-OUTSIDE-OF-WITH-TAGS") (lisp-list (sym "QUOTE") form.cdr.car))
-      (.expander expander (Cons local form.cdr) environment)))
-
-(setv (. (sym ":TAG") macro) expand-tag)
-
-(defoperator with-task-tree-node [options #* body]
-  (setv table (dict (zip (lfor key (cut (elements options) 0 None 2) key.name) (cut (elements options) 1 None 2))))
-  (when (not-in "PATH-PART" table)
-    (raise (ValueError "Path parameter is required.")))
-  `(%with-tree-node ~(get table "PATH-PART") (lambda ~(.get table "LAMBDA-LIST") ~@body)
-                    ~(.get table "NAME" "WITH-TASK-TREE-NODE") ~(.get table "PARAMETERS")))
-
-(defoperator replaceable-function [name lambda-list parameters path-part #* body]
-  `(with-task-tree-node [:path-part ~path-part :name ~(+ "REPLACEABLE-FUNCTION-" (symbol-name name))
-                         :lambda-list ~lambda-list :parameters ~parameters]
-     ~@body))
-
-;; --------------------------------------------------------------------------------------------- 8: plan functions, goals
-
-(defn plan-function [name lambda-list body call kind]
-  (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) [(get body 0)] []))
-  (setv forms (cut body (len documentation) None) arguments (gensym "ARGUMENTS"))
-  `(progn
-     (defun ~name [&rest ~arguments]
-       ~@documentation
-       (~call (quote ~name) (lambda ~lambda-list (with-tags ~@forms)) ~arguments))
-     (%note-plan (quote ~name) ~kind (quote ~lambda-list))
-     (quote ~name)))
-
-(defoperator def-cram-function [name lambda-list #* body]
-  (plan-function name lambda-list body '%cram-function-call "PLAN"))
-
-(defoperator def-top-level-cram-function [name lambda-list #* body]
-  (plan-function name lambda-list body '%top-level-cram-function-call "TOP-LEVEL-PLAN"))
-
-(defn deprecated [old new form]
-  (import cramhy_runtime.lisp.conditions [style-warn])
-  (style-warn (+ "Use of deprecated form " old ". Please use " new " instead."))
-  form)
-
-(defoperator def-plan [name lambda-list #* body]
-  (deprecated "DEF-PLAN" "DEF-CRAM-FUNCTION" `(def-cram-function ~name ~lambda-list ~@body)))
-
-(defoperator def-top-level-plan [name lambda-list #* body]
-  (deprecated "DEF-TOP-LEVEL-PLAN" "DEF-TOP-LEVEL-CRAM-FUNCTION" `(def-top-level-cram-function ~name ~lambda-list ~@body)))
-
-(defoperator declare-goal [name lambda-list #* body]
-  (setv arguments (gensym "ARGUMENTS"))
-  (setv documentation (if (and body (isinstance (get body 0) str)) [(get body 0)] []))
-  `(progn
-     (%declare-goal (quote ~name))
-     (defun ~name [&rest ~arguments]
-       ~@documentation
-       (block nil
-         (apply (lambda ~lambda-list ~@(cut body (len documentation) None)) ~arguments)
-         (%goal-call (quote ~name) ~arguments)))))
-
-(defoperator def-goal [head #* body]
-  (setv name head.car pattern head.cdr bindings (gensym "BINDINGS") values (gensym "VALUES") body-block (gensym "GOAL"))
-  (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) (get body 0) None))
-  `(%register-goal (quote ~name) (quote ~pattern)
-     (lambda [~bindings]
-       (block ~body-block
-         (flet [[succeed [&rest ~values] (return-from ~body-block (values-list ~values))]]
-           (cut:with-vars-bound ~(list-from (pattern-variables pattern)) ~bindings
-             (with-tags ~@(if documentation (cut body 1 None) body))))))
-     ~documentation))
-
-(defn pattern-variables [pattern [found None]]
-  "The variables ?x of a pattern, without the anonymous one."
-  (setv found (if (is found None) [] found))
-  (cond
-    (listp pattern) (do (pattern-variables pattern.car found) (pattern-variables pattern.cdr found))
-    (and (isinstance pattern LispSymbol) (.startswith pattern.name "?") (!= pattern.name "?_") (not-in pattern found))
-    (.append found pattern))
-  found)
 
 ;; --------------------------------------------------------------------------------------------------------- 9: policies
 

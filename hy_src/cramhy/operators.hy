@@ -5,8 +5,8 @@ are those of Common Lisp or else of the Lisp package named by the file's `packag
 runtime's helpers are, and `pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable."
 
 (import cramhy_runtime.lisp.evaluation.macros [define-operator malformed]
-        cramhy_runtime.lisp.data [Cons Symbol :as LispSymbol list-from lisp-list]
-        cramhy_runtime.lisp.conditions [error program-error]
+        cramhy_runtime.lisp.data [Cons Keyword Symbol :as LispSymbol list-from lisp-list]
+        cramhy_runtime.lisp.conditions [CompileError error program-error]
         cramhy_runtime.lisp.evaluation.lambda_lists [gensym]
         cramhy_runtime.lisp.packages [sym is-symbol symbol-name])
 
@@ -33,3 +33,19 @@ runtime's helpers are, and `pkg::name` to that package. Lists in brackets are li
   (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) declare))
     (.append declarations (.pop forms 0)))
   #(declarations forms))
+
+(defn documentation-and-body [body]
+  "(list of the doc string or of nothing, declarations, other forms) of the body of a function."
+  (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) [(get body 0)] []))
+  (setv #(declarations forms) (split-declarations (cut body (len documentation) None)))
+  #(documentation declarations forms))
+
+(defn keyword-options [operator options known]
+  "The options `:key form ...` of an operator as a dictionary of forms by the names of the keys."
+  (when (% (len options) 2)
+    (raise (ValueError "each of its options is a keyword and a value.")))
+  (setv table (dict (zip (cut options 0 None 2) (cut options 1 None 2))))
+  (for [key table]
+    (when (or (not (isinstance key Keyword)) (not-in key.name known))
+      (error (CompileError "~A has no option ~S: it has ~{~S~^, ~}." operator key (list-from (lfor name known (sym (+ ":" name))))))))
+  (dfor #(key form) (.items table) key.name form))

@@ -274,15 +274,6 @@ def test_an_ordering_by_a_fluent_waits_for_its_pulse():
     assert log == ["A"] and kernel.now() == 2
 
 
-def test_a_ring_of_orderings_is_reported_as_a_deadlock():
-    def body():
-        tasks, step = steps_with_tags([], "A", "B")
-        cpl.partial_order([step("A", 0), step("B", 0)], [(tasks["A"], tasks["B"]), (tasks["B"], tasks["A"])])
-
-    with pytest.raises(kernel.Deadlock):
-        plan(body)
-
-
 def test_a_constrained_step_whose_predecessor_fails_never_runs():
     log = []
 

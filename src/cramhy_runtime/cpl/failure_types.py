@@ -97,8 +97,13 @@ def envelope(condition):
 
 
 def opened(condition):
-    """What an envelope holds; any other condition is itself."""
-    return condition.error if isinstance(condition, CommonLispErrorEnvelope) else condition
+    """What an envelope holds, with the envelope's place if it has none; any other condition is itself."""
+    if not isinstance(condition, CommonLispErrorEnvelope):
+        return condition
+    problem = condition.error
+    if getattr(problem, "position", None) is None and getattr(condition, "position", None) is not None:
+        problem.position = condition.position
+    return problem
 
 
 def python_exception(condition):

@@ -7,14 +7,21 @@ what the functions of this room take. Nothing else happens here.
 from __future__ import annotations
 
 from ..lisp.conditions import CompileError, error
-from ..lisp.data import list_from, python_list
+from ..lisp.data import Symbol, list_from, python_list
 from ..lisp.faces import define_face
+from ..lisp.objects.classes import find_class
 from . import failures, fluent_operators, logging, operators, plans, policies, suspension, tags, task_variables, tree, waiting
 from .symbols import sym
 
 
 def partial_order(steps, orderings):
-    return operators.partial_order(python_list(steps), [tuple(pair) for pair in python_list(orderings)])
+    """``orderings()`` gives a list of lists (before after)."""
+    return operators.partial_order(python_list(steps), lambda: [tuple(pair) for pair in python_list(orderings())])
+
+
+def with_task(cls, name, body):
+    """``cls``: a class of tasks, or its name."""
+    return operators.with_task(body, name, find_class(cls) if isinstance(cls, Symbol) else cls)
 
 
 def with_parallel_childs(name, thunks, watcher):
@@ -26,8 +33,9 @@ def with_failure_handling(clauses, body):
     return failures.with_failure_handling([tuple(clause) for clause in python_list(clauses)], body)
 
 
-def with_tree_node(path_part, function, name, parameters):
-    return tree.with_task_tree_node(path_part, function, name=name, parameters=parameters)
+def with_tree_node(path_part, function, name, sexp, lambda_list, parameters, log_parameters, log_pattern):
+    return tree.with_task_tree_node(path_part, function, name=name, sexp=sexp, lambda_list=lambda_list, parameters=parameters,
+                                    log_parameters=log_parameters, log_pattern=log_pattern)
 
 
 def cram_function_call(name, function, arguments):
@@ -77,7 +85,7 @@ FUNCTIONS = {
     "named-top-level": lambda name, body: operators.named_top_level(body, name),
     "par": operators.par, "pursue": operators.pursue, "try-all": operators.try_all, "try-in-order": operators.try_in_order,
     "try-each-in-order": operators.try_each_in_order, "par-loop": operators.par_loop, "partial-order": partial_order,
-    "with-parallel-childs": with_parallel_childs, "with-task": lambda name, body: operators.with_task(body, name),
+    "with-parallel-childs": with_parallel_childs, "with-task": with_task,
     "with-task-suspended": lambda task, reason, body: suspension.with_task_suspended(task, body, reason),
     "whenever": waiting.whenever,
     "cpl-parameter": fluent_operators.define_cpl_parameter, "parameter-value": fluent_operators.parameter_value,
@@ -89,10 +97,10 @@ FUNCTIONS = {
     "make-retry-counter": failures.RetryCounter, "use-retry": lambda counter: counter.use(),
     "counter-value": lambda counter: counter.left, "reset-retry-counter": lambda counter: counter.reset(),
     "enter-with-tags": tags.enter_with_tags, "make-tag-task": tags.make_tag_task, "prepare-tag": tags.prepare_tag,
-    "execute-tag": tags.execute_tag, "tag-outside-of-with-tags": tags.tag_outside_of_with_tags,
+    "execute-tag": tags.execute_tag,
     "with-tree-node": with_tree_node,
     "cram-function-call": cram_function_call, "top-level-cram-function-call": top_level_cram_function_call,
-    "note-plan": plans.note_plan,
+    "define-plan": plans.define_plan,
     "declare-goal": plans.declare_goal, "goal-call": plans.call_goal, "register-goal": plans.register_goal,
     "policy-get": lambda store, symbol: store.get(symbol), "policy-set": lambda store, symbol, value: store.set(symbol, value),
     "make-policy": make_policy, "define-policy": define_policy, "with-policy": with_policy, "named-policy": policies.named_policy,

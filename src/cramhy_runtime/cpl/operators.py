@@ -14,18 +14,18 @@ from contextlib import nullcontext
 
 from cramhy_runtime import kernel
 
+from ..lisp import condition_types as types
 from ..lisp.conditions import error, type_error
 from ..lisp.data import Cons, list_from, one, truth
 from ..lisp.dynamic import binding
 from .branches import branch_tasks, run, run_forms, run_one
 from .failure_types import CompositeFailure, opened
 from .failures import attempt, composite_failure
-from .fluent_operators import fl_pulsed
-from .fluents import ValueFluent
 from .hooks import on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook
 from .current import inside_plan
 from .statuses import DEAD, DONE, FAILED
-from .tasks import Task, ToplevelTask, end_tasks, task_dead
+from .orderings import apply_orderings
+from .tasks import Task, ToplevelTask, end_tasks
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
 from .tree_report import note_stopped
 from .watching import watch
@@ -44,11 +44,34 @@ def named_top_level(body, name=None):
     """``(named-top-level (:name name) body...)``: as `top_level`, with a task tree that is kept under ``name``."""
     me = kernel.current()
     if getattr(me.local, "plan_task", None) is not None:
-        error("top-level calls cannot be nested.")
+        nested = types.SimpleError("top-level calls cannot be nested.")
+        nested.hint = ("This form runs inside a plan already: leave TOP-LEVEL away here, or make what is called a plan function with "
+                       "DEF-CRAM-FUNCTION.")
+        error(nested)
     if name is None and not (on_preparing_named_top_level or on_top_level_setup_hook or on_finishing_named_top_level
                              or on_top_level_cleanup_hook):
         return _run_top_level(body, None, TaskTreeNode())
-    tree = clear_tasks(get_top_level_task_tree(name) if name is not None else TaskTreeNode())
+    if name is None:
+        return _observed_top_level(body, None, TaskTreeNode())
+    other = _running.get(name)
+    if other is not None and other.kernel is me.kernel:
+        twice = types.SimpleError("A top-level named ~S is running already.", name)
+        twice.hint = ("Two runs of one name would share, and disturb, one task tree: wait until the other has ended, or name this one "
+                      "differently.")
+        error(twice)
+    _running[name] = me
+    try:
+        return _observed_top_level(body, name, clear_tasks(get_top_level_task_tree(name)))
+    finally:
+        _running.pop(name, None)
+
+
+_running = {}
+"""Name of a top-level → the kernel's task that waits for it, while it runs."""
+
+
+def _observed_top_level(body, name, tree):
+    """Run ``body`` with what the hooks of cpl.md 5.1 want before and after it."""
     run_id = on_preparing_named_top_level.first(name)
     pairs = []
     for bound in on_top_level_setup_hook(name, tree):
@@ -194,28 +217,12 @@ def _list(elements):
 def partial_order(steps, orderings):
     """``(partial-order (step...) (:order before after)...)``: as `par`, with ``after`` starting its body only when ``before`` is dead.
 
-    ``orderings`` is a list of pairs (before, after): tasks, or for ``before`` a value fluent, which counts when it has been pulsed.
-    A ring of orderings never ends; the kernel reports it as a deadlock.
+    ``orderings`` is a list of pairs (before, after), or a function that gives it: tasks, or for ``before`` a value fluent, which
+    counts when it has been pulsed. A ring of orderings is an error, before any step starts (``orderings.py``).
     """
     inside_plan("PARTIAL-ORDER")
-    for before, after in orderings:
-        order(before, after)
+    apply_orderings(orderings)
     return run_forms("PAR", steps, _any_failed_or_all_dead, _first_values)
-
-
-def order(before, after):
-    """Let the task ``after`` start its body only when ``before`` is dead (a task) or has been pulsed (a fluent)."""
-    if not isinstance(after, Task):
-        type_error(after, "TASK")
-    if isinstance(before, Task):
-        constraint = task_dead(before)
-    elif before.__class__ is ValueFluent:
-        constraint = fl_pulsed(before)
-    else:
-        return type_error(before, "(OR TASK VALUE-FLUENT)")
-    if after.constraints is None:
-        after.constraints = []
-    after.constraints.append(constraint)
 
 
 def with_task(body, name="WITH-TASK", cls=None):

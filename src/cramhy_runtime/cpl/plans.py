@@ -8,8 +8,11 @@ says so.
 
 from __future__ import annotations
 
+from ..lisp import condition_types as types
 from ..lisp.conditions import error, style_warn
-from ..lisp.data import Cons, all_values, lisp_list, list_from
+from ..lisp.data import Cons, Symbol, all_values, lisp_list, list_from, truth
+from ..lisp.equality import equal
+from ..lisp.late import late
 from ..lisp.packages import keyword
 from .hooks import on_def_top_level_plan_hook
 from .operators import named_top_level
@@ -18,91 +21,141 @@ from .tree import replaceable_function, with_task_tree_node
 
 GOAL = sym("CPL-IMPL::GOAL")
 TOP_LEVEL = sym("CPL-IMPL::TOP-LEVEL")
-_PLAN_TYPE, _LAMBDA_LIST, _SEXP = sym("CPL-IMPL::PLAN-TYPE"), sym("CPL-IMPL::PLAN-LAMBDA-LIST"), sym("CPL-IMPL::PLAN-SEXP")
+REPLACEABLE_FUNCTION = sym("CPL-IMPL::REPLACEABLE-FUNCTION")
+PROPERTIES = {name: sym(f"CPL-IMPL::{name}") for name in ("PLAN-TYPE", "PLAN-LAMBDA-LIST", "PLAN-SEXP")}
+"""What the property list of a plan function's name tells: ``:plan`` or ``:top-level-plan``, its lambda list, its body."""
+
+_expressions = {}  # name of a plan function → (lambda list, what is recorded at the nodes of its calls)
 _goals = {}
 
 
-def call_cram_function(name, function, arguments, lambda_list=None, sexp=None):
+def call_cram_function(name, function, arguments):
     """A call of the plan function ``name``: ``function(*arguments)`` in a new task at ``(name)`` below the current path.
 
     ``arguments`` is a Python sequence; a wrong number of them is an error of the new task.
     """
+    lambda_list, sexp = _expressions.get(name, _UNKNOWN)
     return replaceable_function(name, lambda_list, list_from(arguments), lisp_list(name), function, sexp)
 
 
-def call_top_level_cram_function(name, function, arguments, lambda_list=None, sexp=None):
+def call_top_level_cram_function(name, function, arguments):
     """As `call_cram_function`, inside a top-level called ``name``; the tree is kept under that name."""
-    def body():
-        return with_task_tree_node(lisp_list(TOP_LEVEL, name), function, name=lambda: f"[REPLACEABLE-FUNCTION-{name.name}]",
-                                   sexp=sexp, lambda_list=lambda_list, parameters=list_from(arguments))
-
-    return named_top_level(body, name)
+    lambda_list, sexp = _expressions.get(name, _UNKNOWN)
+    return named_top_level(lambda: replaceable_function(name, lambda_list, list_from(arguments), lisp_list(TOP_LEVEL, name), function,
+                                                        sexp), name)
 
 
-def note_plan(name, kind, lambda_list=None, sexp=None):
-    """Note on the symbol ``name`` that it is a plan: ``kind`` is "PLAN" or "TOP-LEVEL-PLAN". Returns ``name``."""
-    for indicator, value in ((_SEXP, sexp), (_LAMBDA_LIST, lambda_list), (_PLAN_TYPE, keyword(kind))):
-        _put(name, indicator, value)
+_UNKNOWN = (None, None)
+
+
+def define_plan(name, kind, lambda_list=None, body=None):
+    """Note on the symbol ``name``, whose function was just defined, that it is a plan: ``kind`` is "PLAN" or "TOP-LEVEL-PLAN".
+
+    Returns ``name``. The property list tells it, so that programs that look at plans find it there.
+    """
+    for indicator, value in (("PLAN-SEXP", body), ("PLAN-LAMBDA-LIST", lambda_list), ("PLAN-TYPE", keyword(kind))):
+        cell = _property_cell(name, PROPERTIES[indicator])
+        if cell is not None:
+            cell.car = value
+        else:
+            name.plist = Cons(PROPERTIES[indicator], Cons(value, name.plist))
+    _expressions[name] = (lambda_list, Cons(REPLACEABLE_FUNCTION, Cons(name, Cons(lambda_list, body))))
     if kind == "TOP-LEVEL-PLAN" and on_def_top_level_plan_hook:
         on_def_top_level_plan_hook(name)
     return name
 
 
-def _put(symbol, indicator, value):
+def plan_property(name, indicator):
+    """The property ``indicator`` (see `PROPERTIES`) of the plan function ``name``; nil if it is none."""
+    cell = _property_cell(name, PROPERTIES[indicator]) if isinstance(name, Symbol) else None
+    return cell.car if cell is not None else None
+
+
+def _property_cell(symbol, indicator):
     cell = symbol.plist
     while isinstance(cell, Cons):
         if cell.car is indicator:
-            cell.cdr.car = value
-            return
+            return cell.cdr
         cell = cell.cdr.cdr
-    symbol.plist = Cons(indicator, Cons(value, symbol.plist))
+    return None
+
+
+class GoalBody:
+    """One body of a goal: the calls that it is for, the function of the bindings, the doc string."""
+
+    __slots__ = ("pattern", "variables", "function", "documentation", "sexp")
+
+    def __init__(self, pattern, function, documentation, sexp):
+        self.pattern, self.function, self.documentation, self.sexp = pattern, function, documentation, sexp
+        self.variables = sym("CUT::VARS-IN").function(pattern)
+
+    def match(self, arguments):
+        """The bindings under which the pattern is ``arguments``, and whether there are any."""
+        return all_values(sym("CUT::PAT-MATCH").function(self.pattern, arguments))
+
+    def values(self, bindings):
+        """The values of the variables, a list in the order of ``vars-in``."""
+        value = sym("CUT::VAR-VALUE").function
+        return list_from([value(variable, bindings) for variable in self.variables or ()])
 
 
 class Goal:
-    """The bodies of a goal: pattern, function of the bindings, doc string; in order of definition."""
+    """The bodies of a goal, in order of definition."""
 
     def __init__(self):
         self.bodies = []
 
 
 def declare_goal(name):
-    """Forget all bodies of the goal ``name``; what ``declare-goal`` does before it defines the function."""
+    """Forget all bodies of the goal ``name``; what ``declare-goal`` does when it has defined the function."""
     _goals[name] = Goal()
     return name
 
 
-def register_goal(name, pattern, function, documentation=None):
+def register_goal(name, pattern, function, documentation=None, sexp=None):
     """Add a body for calls that match ``pattern``; an equal pattern is replaced in place, with a style warning.
 
-    ``function`` takes the list of bindings.
+    ``function`` takes the list of bindings. ``sexp``: the form that is recorded at the nodes of its calls.
     """
     bodies = _goals.setdefault(name, Goal()).bodies
-    equal = sym("EQUAL").function
-    for index, (known, _, _) in enumerate(bodies):
-        if equal(known, pattern):
+    body = GoalBody(pattern, function, documentation, sexp)
+    for index, known in enumerate(bodies):
+        if truth(equal(known.pattern, pattern)):
             style_warn("Redefining goal `~a'", Cons(name, pattern))
-            bodies[index] = (pattern, function, documentation)
+            bodies[index] = body
             return name
-    bodies.append((pattern, function, documentation))
+    bodies.append(body)
     return name
 
 
 def call_goal(name, arguments):
     """Run the first body of the goal ``name`` whose pattern matches ``arguments`` (a Lisp list), in a new task: its values."""
-    match = sym("CUT::PAT-MATCH").function
-    for pattern, function, _ in _goals[name].bodies if name in _goals else ():
-        bindings, matched = all_values(match(pattern, arguments))
+    for body in _bodies(name):
+        bindings, matched = body.match(arguments)
         if matched:
-            return with_task_tree_node(lisp_list(GOAL, Cons(name, pattern)), function, name=lambda: f"[GOAL-{name.name}]",
-                                       lambda_list=None, parameters=lisp_list(bindings), log_parameters=arguments,
-                                       log_pattern=pattern)
-    return error("No goal found that matches arguments: ~a ~a", name, arguments)
+            return with_task_tree_node(lisp_list(GOAL, Cons(name, body.pattern)), lambda *values: body.function(bindings),
+                                       name=lambda: f"[GOAL-{name.name}]", sexp=body.sexp, lambda_list=body.variables,
+                                       parameters=body.values(bindings), log_parameters=arguments, log_pattern=body.pattern,
+                                       called_with=arguments)
+    missing = types.SimpleError("No goal found that matches arguments: ~a ~a", name, arguments)
+    patterns = [late.prin1_to_string(Cons(name, body.pattern)) for body in _bodies(name)]
+    missing.hint = (f"Bodies are defined for {', '.join(patterns)}." if patterns
+                    else f"No body is defined: write (def-goal ({name.name.lower()} ...) ...).")
+    return error(missing)
+
+
+def _bodies(name):
+    return _goals[name].bodies if name in _goals else ()
 
 
 def describe_goal(goal):
     """The doc string of the body whose pattern equals that of ``goal`` = ``(name . pattern)`` but for variable names, or nil."""
     same = sym("CUT::PATTERNS-EQ").function
-    for pattern, _, documentation in _goals[goal.car].bodies if goal.car in _goals else ():
-        if same(pattern, goal.cdr):
-            return documentation
+    for body in _bodies(goal.car):
+        if body.pattern is None or goal.cdr is None:
+            found = body.pattern is goal.cdr
+        else:
+            found = same(body.pattern, goal.cdr)
+        if found:
+            return body.documentation
     return None

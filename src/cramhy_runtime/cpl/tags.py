@@ -3,14 +3,16 @@
 ``(with-tags ... (:tag grasp form...) ...)`` binds a variable ``grasp`` to a task that is created now and executed when control
 reaches the tag; executing it again makes a new task at the next iteration path and assigns it to the variable. Source: cpl.md 7.1.
 
-The macro collects the tag names, binds each by `make_tag_task`, and compiles ``(:tag name form...)`` to
-``(progn (setq name (prepare-tag name)) (execute-tag name (lambda () form...)))``.
+The macro finds the names by walking through its body with all macros expanded (``walker.py``), binds each by `make_tag_task`, and
+compiles ``(:tag name form...)`` to ``(progn (setq name (prepare-tag name)) (execute-tag name (lambda () form...) '(:tag ...)))``.
+Tags of a ``with-tags`` inside belong to that one alone; in the original the outer one makes tasks for them too, which never run.
 """
 
 from __future__ import annotations
 
-from ..lisp.conditions import error
+from ..lisp.conditions import CompileError, error
 from ..lisp.data import Cons, lisp_list
+from ..lisp.packages import is_symbol
 from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
 from .symbols import sym
@@ -41,12 +43,15 @@ def prepare_tag(task):
     return make_task(name=lambda: f"[TAG-{part.cdr.car.name}]", path=Cons(lisp_list(part.car, part.cdr.car), task.path.cdr))
 
 
-def execute_tag(task, body):
-    """Run ``body`` as ``task`` and wait for it: its values; its failure is signalled here."""
-    if task.code is not None and task.code.function is None:
-        task.code.function = body
+def execute_tag(task, body, sexp=None):
+    """Run ``body`` as ``task`` and wait for it: its values; its failure is signalled here. ``sexp``: the tag's whole form."""
     code = task.code
-    task.body = body if code is None else lambda: code.function(*(code.parameters or ()))
+    if code is None:
+        task.body = body
+    else:
+        if code.function is None:
+            code.function, code.sexp = body, sexp
+        task.body = lambda: code.function(*(code.parameters or ()))
     if not (on_begin_execute_tag_task or on_finish_execute_tag_task):
         return run_one(task, "TAG")
     run_id = on_begin_execute_tag_task.first(task)
@@ -56,6 +61,14 @@ def execute_tag(task, body):
         on_finish_execute_tag_task(run_id)
 
 
-def tag_outside_of_with_tags(name):
-    """The error of ``(:tag ...)`` outside of ``with-tags``."""
-    return error("(:TAG ~S ..) used outside of WITH-TAGS.", name)
+def check_tag(form, within):
+    """At expansion time: signal what is wrong with the tag ``form``; ``within``: whether a ``with-tags`` is around it."""
+    name = form.cdr.car if isinstance(form.cdr, Cons) else None
+    if not is_symbol(name) or name is None or name.constant:
+        problem = CompileError("~S is no tag: it is written (:tag name form...), and the name is a symbol that can be a variable.", form)
+    elif not within:
+        problem = CompileError("(:TAG ~S ..) used outside of WITH-TAGS.", name)
+        problem.hint = "Put (with-tags ...) around the forms that use the tag; the body of a plan function or goal is in one already."
+    else:
+        return
+    error(problem)

@@ -23,13 +23,17 @@ _named_trees = {}
 
 
 class Code:
-    """What runs at a node: the form ``sexp``, the ``function`` made from it, the ``task`` that runs it, and its ``parameters``."""
+    """What runs at a node: the form ``sexp``, the ``function`` made from it, the ``task`` that runs it, and its ``parameters``.
 
-    __slots__ = ("sexp", "function", "task", "parameters")
+    ``called_with``: the arguments of the goal that runs here, whose values for the pattern's variables are the parameters.
+    """
+
+    __slots__ = ("sexp", "function", "task", "parameters", "called_with")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::CODE"
 
     def __init__(self, sexp=None, function=None, task=None, parameters=None):
         self.sexp, self.function, self.task, self.parameters = sexp, function, task, parameters
+        self.called_with = None
 
 
 class TaskTreeNode:
@@ -134,7 +138,7 @@ def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None
     return _task_of(_next_free(path.car, ensure_node(path.cdr, _tree_or_error())), name, sexp, function, parameters)
 
 
-def _task_of(node, name=None, sexp=None, function=None, parameters=None):
+def _task_of(node, name=None, sexp=None, function=None, parameters=None, called_with=None):
     code = node.effective_code
     if code is None:
         code = node.code = Code()
@@ -144,6 +148,7 @@ def _task_of(node, name=None, sexp=None, function=None, parameters=None):
     if function is not None and not replaced:
         code.function = function
     code.parameters = parameters
+    code.called_with = called_with
     task = code.task
     if task is None:
         task = code.task = Task(None, name or (lambda: "[TASK]"), node.path)
@@ -169,16 +174,17 @@ def sub_task(path):
 
 
 def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp=None, lambda_list=None, parameters=None,
-                        log_parameters=None, log_pattern=None):
+                        log_parameters=None, log_pattern=None, called_with=None):
     """Run ``function(*parameters)`` in a new task at ``path_part`` below the current path, and wait for it: its values.
 
-    ``parameters`` is a Lisp list. ``name`` may be a function that makes the name when it is asked for.
+    ``parameters`` is a Lisp list. ``name`` may be a function that makes the name when it is asked for. ``sexp`` and
+    ``called_with`` are noted at the node (`Code`).
     """
     _tree_or_error()
     observed = on_preparing_task_execution or on_finishing_task_execution
     run_id = on_preparing_task_execution.first(name, log_parameters, log_pattern, lambda_list, parameters) if observed else None
     label = name if callable(name) else (lambda: f"[{name}]")
-    task = _task_of(_next_free(path_part, _current_node()), label, sexp, function, parameters)
+    task = _task_of(_next_free(path_part, _current_node()), label, sexp, function, parameters, called_with)
     if not observed:
         return run_one(task, "TASK")
     try:
@@ -310,3 +316,16 @@ def goal_task_tree_node_pattern(node):
     if goal_task_tree_node_p(node) is None:
         error("The assertion (GOAL-TASK-TREE-NODE-P NODE) failed.")
     return node.path.car.cdr.car
+
+
+def goal_task_tree_node_parameter_bindings(node):
+    """The variables of a goal's pattern with their values in the latest run, an alist; the last variable first, as ``vars-in``."""
+    variables = sym("CUT::VARS-IN").function(goal_task_tree_node_pattern(node).cdr)
+    return list_from([Cons(*pair) for pair in zip(variables or (), task_tree_node_parameters(node) or (), strict=False)])
+
+
+def goal_task_tree_node_goal(node):
+    """The goal as it was called in the latest run, ``(name . arguments)``; the pattern when it did not run."""
+    pattern = goal_task_tree_node_pattern(node)
+    called_with = node.code.called_with if node.code is not None else None
+    return pattern if called_with is None else Cons(pattern.car, called_with)

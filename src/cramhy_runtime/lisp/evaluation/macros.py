@@ -20,7 +20,7 @@ from ..reader.backquote import QUOTE, Comma
 from .functions import function_of
 from .macro_shapes import SHAPES
 
-FILES = ("cl", "clos", "cut", "prolog", "cpl", "desig", "cpm", "roslisp", "python")
+FILES = ("cl", "clos", "cut", "prolog", "cpl", "plans", "desig", "cpm", "roslisp", "python")
 """The modules of ``hy_src/cramhy`` that define operators, in order."""
 
 HOOK, FUNCALL = sym("*MACROEXPAND-HOOK*"), sym("FUNCALL")
@@ -50,16 +50,17 @@ def define_operator(package, name, function):
     """Enter a macro written in Hy: ``function`` gets the forms of the call as Python arguments, returns models or forms.
 
     package: the Lisp package in which unqualified symbols of the expansion are read, and that of the macro unless ``name`` says
-    ``package::name``.
+    ``package::name``. A function with a keyword parameter ``environment`` gets the lexical environment of the call too.
     """
     home = find_package_or_error(package)
     owner, _, short = name.upper().rpartition("::")
     owner = find_package_or_error(owner) if owner else home
     symbol = owner.intern(short)
+    looks_around = "environment" in function.__code__.co_varnames[:function.__code__.co_argcount + function.__code__.co_kwonlyargcount]
 
     def expander(form, environment):
         try:
-            expansion = function(*(form.cdr or ()))
+            expansion = function(*(form.cdr or ()), **({"environment": environment} if looks_around else {}))
         except Condition:
             raise
         except (TypeError, ValueError, AttributeError) as problem:

@@ -52,13 +52,17 @@ def user_position(frame=None):
 
 
 def exception_position(exception):
-    """The place of the innermost user frame that ``exception`` passed, or ``None``."""
-    found, traceback = None, exception.__traceback__
+    """The place of the innermost user frame that ``exception`` passed, or ``None``; of macros' own code as in `user_position`."""
+    found, made_by_macro, traceback = None, None, exception.__traceback__
     while traceback is not None:
         if is_user_file(traceback.tb_frame.f_code.co_filename):
-            found = traceback
+            position = frame_position(traceback.tb_frame, traceback.tb_lasti)
+            if position[2] != 0:
+                found = position
+            else:
+                made_by_macro = position
         traceback = traceback.tb_next
-    return found and frame_position(found.tb_frame, found.tb_lasti)
+    return found or made_by_macro
 
 
 def locate(condition, exception):
