@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from ..lisp.condition_types import CaseFailure
 from ..lisp.conditions import error
-from ..lisp.data import lisp_list, list_from, truth
+from ..lisp.data import lisp_list, list_from, one, truth
 from ..lisp.equality import eq, eql
 from ..lisp.packages import keyword
 from .fluents import (
@@ -24,10 +24,11 @@ from .fluents import (
     Fluent,
     Net,
     PulseFluent,
-    ValueFluent,
+    announce,
     check_fluent,
     function_of,
     is_cacheable,
+    make_fluent,
     value,
 )
 from .symbols import sym
@@ -35,22 +36,22 @@ from .symbols import sym
 _QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other
 
 
-def net(operator, formula, arguments):
-    """The net for ``formula`` over those of ``arguments`` that are fluents."""
+def net(operator, formula, arguments, careful=False):
+    """The net for ``formula`` over those of ``arguments`` that are fluents; ``careful``: it calls a function of the user."""
     inputs = tuple(dict.fromkeys(argument for argument in arguments if isinstance(argument, Fluent)))
     kind = CachedNet if all(map(is_cacheable, inputs)) else Net
-    return kind(operator, formula, inputs)
+    return announce(kind(operator, formula, inputs, careful))
 
 
 def _formula(function, arguments):
     if len(arguments) == 2:
         first, second = arguments
         if not isinstance(second, Fluent):
-            return lambda read: function(read(first), second)
+            return lambda: function(first.read(), second)
         if not isinstance(first, Fluent):
-            return lambda read: function(first, read(second))
-        return lambda read: function(read(first), read(second))
-    return lambda read: function(*map(read, arguments))
+            return lambda: function(first, second.read())
+        return lambda: function(first.read(), second.read())
+    return lambda: function(*map(value, arguments))
 
 
 def _lifted(name, operator, quick=None):
@@ -104,17 +105,17 @@ fl_eql = _lift_test("FL-EQL", eql)
 def fl_not(argument):
     """``(not x)``, or a net that is true while the fluent ``argument`` is not."""
     if isinstance(argument, Fluent):
-        return net("FL-NOT", lambda read: None if truth(read(argument)) else True, (argument,))
+        return net("FL-NOT", lambda: None if truth(argument.read()) else True, (argument,))
     return None if truth(argument) else True
 
 
 def fl_and(*arguments):
     """The last value if all are true, else nil; a net if there is a fluent. ``(fl-and)`` is true."""
 
-    def formula(read):
+    def formula():
         result = True
         for argument in arguments:
-            result = read(argument)
+            result = value(argument)
             if not truth(result):
                 return None
         return result
@@ -125,9 +126,9 @@ def fl_and(*arguments):
 def fl_or(*arguments):
     """The first true value, or nil; a net if there is a fluent. Later fluents are not read, hence not consumed."""
 
-    def formula(read):
+    def formula():
         for argument in arguments:
-            result = read(argument)
+            result = value(argument)
             if truth(result):
                 return result
         return None
@@ -138,7 +139,7 @@ def fl_or(*arguments):
 def _now_or_net(operator, formula, arguments):
     if any(isinstance(argument, Fluent) for argument in arguments):
         return net(operator, formula, arguments)
-    return formula(value)
+    return formula()
 
 
 def fl_funcall(function, *arguments):
@@ -146,7 +147,7 @@ def fl_funcall(function, *arguments):
     function = function_of(function)
     for argument in arguments:
         if isinstance(argument, Fluent):
-            return net("FL-FUNCALL", _formula(function, arguments), arguments)
+            return net("FL-FUNCALL", lambda: one(function(*map(value, arguments))), arguments, careful=True)
     return function(*arguments)
 
 
@@ -156,10 +157,10 @@ def fl_apply(function, argument, *more):
     *leading, last = argument, *more
     elements = [] if last is None else list(last)
 
-    def formula(read):
-        return function(*map(read, leading), list_from([read(element) for element in elements]))
+    def formula():
+        return one(function(*map(value, leading), list_from(list(map(value, elements)))))
 
-    return net("FL-APPLY", formula, [*leading, *elements])
+    return net("FL-APPLY", formula, [*leading, *elements], careful=True)
 
 
 _MISSED = {keyword(mode): mode for mode in (NEVER, ONCE, ALWAYS)}
@@ -169,11 +170,11 @@ def fl_pulsed(fluent, *, handle_missed_pulses=None):
     """A fluent of its own that is true while ``fluent`` has pulses that were not consumed; modes :never, :once, :always."""
     check_fluent(fluent)
     if handle_missed_pulses is None:
-        return PulseFluent(fluent)
+        return announce(PulseFluent(fluent))
     mode = _MISSED.get(handle_missed_pulses) or (handle_missed_pulses if handle_missed_pulses in _MISSED.values() else None)
     if mode is None:
         return error(CaseFailure(handle_missed_pulses, "ECASE", lisp_list(*_MISSED)))
-    return PulseFluent(fluent, mode)
+    return announce(PulseFluent(fluent, mode))
 
 
 pulsed = fl_pulsed
@@ -182,7 +183,7 @@ pulsed = fl_pulsed
 def fl_value_changed(fluent, *, test=None, key=None):
     """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
     check_fluent(fluent)
-    return ChangeFluent(fluent, function_of(test) or eql, function_of(key) or (lambda current: current))
+    return announce(ChangeFluent(fluent, function_of(test) or eql, function_of(key) or (lambda current: current)))
 
 
 _parameters = {}
@@ -190,7 +191,7 @@ _parameters = {}
 
 def define_cpl_parameter(name, initial=None):
     """``(def-cpl-parameter name initial)``: a place with a hidden fluent, so that access is observed like a fluent's."""
-    _parameters[name] = ValueFluent(name, initial)
+    _parameters[name] = make_fluent(name=name, value=initial)
     return name
 
 

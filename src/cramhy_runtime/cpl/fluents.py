@@ -6,8 +6,11 @@ and all in the task that assigned. A net is made by applying an operator to a fl
 again; see ``fluent_operators.py``. Waiting is in ``waiting.py``.
 
 One task runs at a time, so there are no locks. Inputs hold their nets weakly: a net that nobody needs disappears, and its input
-forgets it at the next pulse. Source: cpl.md section 2. Repaired: a net whose first computation fails leaves nothing behind on
-its inputs; an error in one observer no longer keeps the others from being told; ``fl-value-changed`` applies its key always.
+forgets it at the next pulse. Methods that users define on ``value``, ``pulse`` and so on are in ``user_methods.py``.
+
+Source: cpl.md section 2. Repaired: a net whose first computation fails leaves nothing behind on its inputs; an error in one
+observer no longer keeps the others from being told; a net whose function lets other tasks run never keeps a value of the past;
+``fl-value-changed`` applies its key always.
 """
 
 from __future__ import annotations
@@ -17,13 +20,16 @@ from weakref import ref
 
 from cramhy_runtime import kernel
 
-from ..lisp.conditions import SimpleTypeError, error
-from ..lisp.data import MultipleValues, Symbol, truth
+from ..lisp.condition_types import Condition
+from ..lisp.conditions import SimpleTypeError, error, program_error
+from ..lisp.data import MultipleValues, Symbol, one, truth
 from ..lisp.equality import eql
 from ..lisp.evaluation import functions
+from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.classes import find_class_or_error, make_instance
-from ..lisp.objects.generic import generic
+from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import keyword
+from ..lisp.printer.printer import princ_to_string
 from .hooks import on_make_fluent_hook
 from .symbols import sym
 
@@ -36,9 +42,15 @@ class Fluent:
     ``value`` reads (and may consume, see `PulseFluent`), ``peek`` reads without side effects.
     """
 
-    __slots__ = ("_name", "number", "pulses", "waiters", "callbacks", "nets", "__weakref__")
+    __slots__ = ("_name", "number", "pulses", "waiters", "callbacks", "nets", "sheltered", "__weakref__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FLUENT"
     prefix = "FLUENT-"
+    careful = False
+    when_subclassed = staticmethod(lambda cls: None)
+
+    def __init_subclass__(cls, **options):
+        super().__init_subclass__(**options)
+        Fluent.when_subclassed(cls)
 
     def __init__(self, name=None):
         self._name = name
@@ -47,8 +59,7 @@ class Fluent:
         self.waiters = ()
         self.callbacks = None
         self.nets = ()
-        if on_make_fluent_hook:
-            on_make_fluent_hook(self, True, None)
+        self.sheltered = False  # while its nets are told, no request to end arrives
 
     @property
     def name(self):
@@ -58,7 +69,8 @@ class Fluent:
         return self._name
 
     def read(self):
-        raise NotImplementedError
+        """For a class of a user that has no method for ``value``."""
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:VALUE", None, self)
 
     peek = read
     value = property(lambda self: self.read(), doc="The current value; reading may consume a pulse.")
@@ -70,6 +82,14 @@ class Fluent:
             self._notify(self.peek())
 
     def _notify(self, value):
+        if self.callbacks or self.sheltered:
+            with kernel.shield():
+                self._tell(value)
+        else:
+            self._tell(value)
+
+    def _tell(self, value):
+        callbacks = self.callbacks and list(self.callbacks.items())
         problem = None
         if self.waiters and truth(value):
             for task in self.waiters:
@@ -84,21 +104,22 @@ class Fluent:
                 try:
                     net.input_pulsed()
                 except BaseException as raised:  # the others must hear of the pulse before it goes on
-                    problem = problem or raised
+                    problem = raised if problem is None else _graver(problem, raised)
             if stale:
                 self.nets = [reference for reference in self.nets if reference() is not None]
-        if self.callbacks:
-            with kernel.shield():
-                for callback in reversed(list(self.callbacks.values())):
-                    try:
-                        callback(value)
-                    except BaseException as raised:
-                        problem = problem or raised
+        if callbacks:
+            for name, callback in reversed(callbacks):
+                try:
+                    _call_back(callback, value, name, self)
+                except BaseException as raised:
+                    problem = raised if problem is None else _graver(problem, raised)
         if problem is not None:
             raise problem
 
     def attach(self, net):
         """Have ``net`` told of pulses, as long as somebody else holds it."""
+        if net.careful:
+            self.sheltered = True
         nets = self.nets
         if not nets:
             self.nets = [ref(net)]
@@ -113,6 +134,32 @@ class Fluent:
 
     def __repr__(self):
         return f"#<FLUENT {getattr(self.name, 'name', self.name)}>"
+
+
+@circumstance(lambda here: f"in the callback {princ_to_string(here['name'])} of {_shown(here['fluent'])}")
+def _call_back(function, value, name, fluent):
+    function(value)
+
+
+def _graver(first, second):
+    """Which of two exceptions of observers goes on: an error before a mere exit, else the first. It mentions the other error."""
+    if not isinstance(second, (Condition, Exception)):
+        return first
+    if not isinstance(first, (Condition, Exception)):
+        return first if isinstance(first, (kernel.Cancelled, kernel.Interrupted, kernel.Abandoned)) else second
+    circumstance.add(first, f"another observer failed, too: {str(second).strip()}")
+    return first
+
+
+def _shown(fluent):
+    return f"the fluent {princ_to_string(fluent.name)}"
+
+
+def _shown_net(net):
+    """The name of a net and of what it is computed from, for the reports of errors."""
+    names = [princ_to_string(fluent.name) for fluent in net.inputs]
+    over = f" over the fluent{'s' * (len(names) > 1)} {' and '.join(names)}" if names else ""
+    return f"the net {princ_to_string(net.name)}{over}"
 
 
 class ValueFluent(Fluent):
@@ -131,19 +178,34 @@ class ValueFluent(Fluent):
 
     peek = read
 
+    def stores(self, new):
+        """Store ``new`` unless the test says that nothing changed; whether it did."""
+        if truth(eql(self.stored, new)) if self.test is None else self._same(new):
+            return False
+        self.stored = new
+        return True
+
     def set(self, new):
         """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
         old = self.stored
         if self.test is None:
             if eql(old, new):
                 return new
-        elif truth(self.test(old, new)):
+        elif self._same(new):
             return new
         self.stored = new
         self.pulses += 1
         if self.waiters or self.nets or self.callbacks:
             self._notify(new)
         return new
+
+    def _same(self, new):
+        """What the user's test says, of the value that is stored when it has said it: it may have let others assign."""
+        while True:
+            old = self.stored
+            same = truth(one(self.test(old, new)))
+            if self.stored is old:
+                return same
 
     value = property(read, set, doc="The stored value; assigning pulses if it changes something.")
 
@@ -152,24 +214,40 @@ class ValueFluent(Fluent):
 
 
 class Net(Fluent):
-    """A fluent computed by ``formula(read)``, where ``read`` fetches an argument's value; ``inputs`` are its fluents."""
+    """A fluent computed by ``formula()`` from ``inputs``, its fluents.
 
-    __slots__ = ("formula", "inputs", "prefix")
+    ``careful`` says that the formula calls a function of the user, which may let other tasks run. Then no request to end arrives
+    while the inputs tell this net of a pulse, and what was computed from values of the past does not count.
+    """
+
+    __slots__ = ("formula", "inputs", "prefix", "careful")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-FLUENT"
 
-    def __init__(self, operator, formula, inputs):
+    def __init__(self, operator, formula, inputs, careful=False):
         self.prefix = "FN-" + operator
         self.formula = formula
         self.inputs = inputs
+        self.careful = careful
         super().__init__()
+        self._begin()
         for fluent in inputs:
             fluent.attach(self)
 
-    def read(self):
-        return self.formula(value)
+    def _begin(self):
+        pass
 
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed")
+    def read(self):
+        return self.formula()
+
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed")
     def peek(self):
-        return self.formula(peek_value)
+        return peeking(self.formula)
+
+    def pulse(self):
+        self.pulses += 1
+        if self.waiters or self.nets or self.callbacks:
+            self._notify(self.peek())
 
     def input_pulsed(self):
         self.pulse()
@@ -178,20 +256,22 @@ class Net(Fluent):
 class CachedNet(Net):
     """A net all of whose inputs are cacheable: computed when an input pulses, and pulsing only when its value changes."""
 
-    __slots__ = ("cached",)
+    __slots__ = ("cached", "turn")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-CACHEABLE-FLUENT"
 
-    def __init__(self, operator, formula, inputs):
-        self.cached = formula(value)  # first: if it fails, the inputs never hear of this net
-        super().__init__(operator, formula, inputs)
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was made: its first value is computed at once")
+    def _begin(self):
+        self.turn = 0
+        self.cached = self.formula()  # before the inputs hear of this net: if it fails, they never do
 
     def read(self):
         return self.cached
 
     peek = read
 
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed anew; it keeps its old value")
     def pulse(self):
-        new = self.formula(value)
+        new = self._recomputed() if self.careful else self.formula()
         old = self.cached
         if eql(old, new):
             return
@@ -201,6 +281,30 @@ class CachedNet(Net):
             self._notify(new)
 
     input_pulsed = pulse
+
+    def _recomputed(self):
+        self.turn = turn = self.turn + 1
+        while True:
+            new = self.formula()
+            if self.turn == turn:
+                return new
+            turn = self.turn  # an input pulsed meanwhile, and what was read of it is out of date
+
+
+_peeking = set()
+"""The tasks of the kernel that read without side effects now."""
+
+
+def peeking(thunk):
+    """Call ``thunk``; whatever it reads, through functions of the user too, it does not consume."""
+    me = kernel.current()
+    if me in _peeking:
+        return thunk()
+    _peeking.add(me)
+    try:
+        return thunk()
+    finally:
+        _peeking.discard(me)
 
 
 NEVER, ONCE, ALWAYS = "NEVER", "ONCE", "ALWAYS"
@@ -228,6 +332,8 @@ class PulseFluent(Fluent):
     def read(self):
         if self.processed >= self.seen:
             return None
+        if _peeking and kernel.current() in _peeking:
+            return True
         if self.missed == ALWAYS:
             self.processed += 1
         else:
@@ -249,20 +355,34 @@ class ChangeFluent(Net):
 
     def __init__(self, parent, test, key):
         self.parent, self.test, self.key = parent, test, key
-        self.remembered = key(value(parent))
-        super().__init__("FL-UPDATED", self._look, (parent,))
+        self.remembered = one(key(value(parent)))
+        super().__init__("FL-UPDATED", self._look, (parent,), careful=True)
 
-    def _look(self, read):
-        current = self.key(read(self.parent))
-        if truth(self.test(current, self.remembered)):
+    def _look(self):
+        current = one(self.key(value(self.parent)))
+        if truth(one(self.test(current, self.remembered))):
             return None
-        if read is value:
+        if kernel.current() not in _peeking:
             self.remembered = current
         return True
 
 
+class FunctionNamed:
+    """Calls whatever function a symbol has at the time."""
+
+    __slots__ = ("symbol",)
+
+    def __init__(self, symbol):
+        self.symbol = symbol
+
+    def __call__(self, *arguments):
+        return self.symbol.function(*arguments)
+
+
 def function_of(designator):
-    """The function that a function or symbol stands for; ``None`` stays ``None``."""
+    """The function that a function or symbol stands for; ``None`` stays ``None``. Of a symbol it is always the present one."""
+    if isinstance(designator, Symbol):
+        return FunctionNamed(designator)
     return None if designator is None else functions.function_of(designator)
 
 
@@ -280,32 +400,65 @@ def peek_value(fluent):
     return fluent.peek() if isinstance(fluent, Fluent) else fluent
 
 
-set_value = generic("(setf CPL-IMPL::VALUE)", "(new-value fluent)", documentation="Assign a value fluent; returns the value.")
-set_value.method(None, ValueFluent)(lambda new, fluent: fluent.set(new))
+def set_value(new, fluent):
+    """``(setf (value fluent) new)``: assign a value fluent; returns the value."""
+    if isinstance(fluent, ValueFluent):
+        return fluent.set(new)
+    return no_applicable_method("(COMMON-LISP:SETF CRAM-LANGUAGE-IMPLEMENTATION:VALUE)", 1, new, fluent)
 
 
 def pulse(fluent):
     """``(pulse fluent)``: tell its observers, though nothing changed. Returns nil."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:PULSE", None, fluent)
     fluent.pulse()
+
+
+CLASS, NAME, VALUE, TEST = map(keyword, ("CLASS", "NAME", "VALUE", "TEST"))
+ALLOW_TRACING, MAX_TRACING_FREQ = keyword("ALLOW-TRACING"), keyword("MAX-TRACING-FREQ")
+_OF_VALUE_FLUENTS = {NAME, VALUE, TEST}
+
+
+def announce(fluent, allow_tracing=True, max_tracing_freq=None):
+    """Run the hook for a new fluent; returns the fluent."""
+    if on_make_fluent_hook:
+        on_make_fluent_hook(fluent, allow_tracing, max_tracing_freq)
+    return fluent
 
 
 def make_fluent(*, class_=None, name=None, value=None, test=None, allow_tracing=True, max_tracing_freq=None, **others):
     """A new fluent, by default a value fluent with ``value``; ``test`` says which assignments change nothing (``eql``)."""
     if class_ is None and not others:
-        return ValueFluent(name, value, test)
-    cls = class_ if isinstance(class_, type) else find_class_or_error(class_ or sym("CPL-IMPL::VALUE-FLUENT"))
-    if cls is ValueFluent and not others:
-        return ValueFluent(name, value, test)
-    initargs = [keyword("NAME"), name, keyword("VALUE"), value]
-    if test is not None:
-        initargs += [keyword("TEST"), test]
-    for key, argument in others.items():
-        initargs += [keyword(key.rstrip("_").replace("_", "-").upper()), argument]
-    return make_instance(cls, *initargs)
+        return announce(ValueFluent(name, value, test), allow_tracing, max_tracing_freq)
+    initargs = {CLASS: class_, NAME: name, VALUE: value, TEST: test}
+    initargs = {key: argument for key, argument in initargs.items() if argument is not None}
+    initargs.update((keyword(key.rstrip("_").replace("_", "-").upper()), argument) for key, argument in others.items())
+    return _fluent_made(initargs, allow_tracing, max_tracing_freq)
+
+
+def fluent_from_initargs(*initargs):
+    """``(make-fluent :name name :value value ...)``: `make_fluent` for Lisp, where any object may name an initarg of a class."""
+    if len(initargs) % 2:
+        return program_error("odd number of &KEY arguments")
+    given = {}
+    for index in range(0, len(initargs), 2):
+        given.setdefault(initargs[index], initargs[index + 1])
+    return _fluent_made(given, given.pop(ALLOW_TRACING, True), given.pop(MAX_TRACING_FREQ, None))
+
+
+def _fluent_made(given, allow_tracing, max_tracing_freq):
+    cls = given.pop(CLASS, None)
+    if cls is None and given.keys() <= _OF_VALUE_FLUENTS:
+        fluent = ValueFluent(given.get(NAME), given.get(VALUE), given.get(TEST))
+    else:
+        fluent = make_instance(find_class_or_error(cls or sym("CPL-IMPL::VALUE-FLUENT")), *itertools.chain(*given.items()))
+    return announce(fluent, allow_tracing, max_tracing_freq)
 
 
 def register_update_callback(fluent, name, function):
     """Call ``function`` with the value at every pulse of ``fluent``. A ``name`` that is taken is an error."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REGISTER-UPDATE-CALLBACK", 1, fluent, name, function)
     callbacks = fluent.callbacks
     if callbacks is None:
         callbacks = fluent.callbacks = {}
@@ -317,8 +470,11 @@ def register_update_callback(fluent, name, function):
 
 def get_update_callback(fluent, name):
     """Two values: the callback registered under ``name`` (a net counts under its own name) and whether there is one."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:GET-UPDATE-CALLBACK", 1, fluent, name)
     if fluent.callbacks and name in fluent.callbacks:
-        return MultipleValues((fluent.callbacks[name], True))
+        callback = fluent.callbacks[name]
+        return MultipleValues((callback.symbol if callback.__class__ is FunctionNamed else callback, True))
     for net in fluent.living_nets():
         if net.name is name:
             return MultipleValues((net.input_pulsed, True))
@@ -327,6 +483,8 @@ def get_update_callback(fluent, name):
 
 def remove_update_callback(fluent, name):
     """``True`` if there was a callback ``name`` and it is gone now, else nil."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REMOVE-UPDATE-CALLBACK", 1, fluent, name)
     if fluent.callbacks and name in fluent.callbacks:
         del fluent.callbacks[name]
         return True

@@ -29,6 +29,7 @@ from . import (
     waiting,
 )
 from . import printing as _printing  # noqa: F401
+from . import user_methods as _user_methods  # noqa: F401
 from .symbols import CPL_IMPL
 
 OPERATORS = {
@@ -44,7 +45,7 @@ SHADOWING = {"<": "FL<", ">": "FL>", "=": "FL=", "+": "FL+", "-": "FL-", "*": "F
 """Names of Common Lisp that CPL replaces by fluent operators."""
 
 FUNCTIONS = {
-    fluents: "value peek-value pulse make-fluent register-update-callback remove-update-callback get-update-callback",
+    fluents: "value peek-value pulse register-update-callback remove-update-callback get-update-callback",
     fluent_operators: "fl-and fl-or fl-funcall fl-value-changed fl-apply",
     waiting: "wait-for sleep*",
     tasks: "task-alive task-dead task-running-p task-dead-p task-done-p task-failed-p task-path status result evaporate join-task "
@@ -98,8 +99,8 @@ def define_faces():
                  "+log-very-verbose+": logging.VERY_VERBOSE, "+log-language+": logging.LANGUAGE}
     define_face(
         "CRAM-LANGUAGE-IMPLEMENTATION", ["CPL-IMPL"], use=["COMMON-LISP"],
-        functions={**FUNCTIONS, **OPERATORS, **hook_functions, "current-task": tasks.current_task_or_dummy, "task": tree.task_at,
-                   "describe-task-tree": tree_report.describe_task_tree_in_lisp},
+        functions={**FUNCTIONS, **OPERATORS, **hook_functions, "make-fluent": fluents.fluent_from_initargs,
+                   "current-task": tasks.current_task_or_dummy, "task": tree.task_at, "describe-task-tree": tree_report.describe_task_tree_in_lisp},
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
                    "*save-tasks*": None, "*record-task-tree*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
                    "timeout-policy": policies.TIMEOUT_POLICY,

@@ -28,7 +28,7 @@ from .current import current_task
 from .failure_types import PlanFailure, envelope
 from .failures import signal_failure
 from .fluent_operators import fl_and, fl_funcall
-from .fluents import ValueFluent, function_of
+from .fluents import function_of, make_fluent
 from .pausing import obey, pause, release, request
 from .statuses import ALIVE, CREATED, DEAD, DONE, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED, SUSPENDED, status_list
 from .symbols import sym
@@ -113,7 +113,7 @@ class Task:
         """The fluent of its status, made when first asked for; callbacks on it see each transition in order."""
         fluent = self._status_fluent
         if fluent is None:
-            fluent = self._status_fluent = ValueFluent(Symbol(f"{self.name}-STATUS"), self.status)
+            fluent = self._status_fluent = make_fluent(name=Symbol(f"{self.name}-STATUS"), value=self.status)
         return fluent
 
     def change_status(self, new):

@@ -8,12 +8,22 @@ often the fluent pulses, and can be evaporated and suspended like the untimed on
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import inf
+
 from cramhy_runtime import kernel
 
-from ..lisp.conditions import error
+from ..lisp.conditions import error, type_error
 from ..lisp.data import truth
+from ..lisp.packages import keyword
+from ..lisp.printer.printer import prin1_to_string
 from .fluents import Fluent
+from .logging import log_event
 from .pausing import pause
+
+TIMEOUT = keyword("TIMEOUT")
+user_wait = None
+"""The generic function ``wait-for``, when users have defined methods on it (``user_methods.py``)."""
 
 
 def wait_for(fluent, *, timeout=None, **ignored):
@@ -21,19 +31,32 @@ def wait_for(fluent, *, timeout=None, **ignored):
 
     Any other object is returned if it is true; nil is an error. A timeout of 0 only tests.
     """
+    if user_wait is not None:
+        return user_wait(fluent) if timeout is None else user_wait(fluent, TIMEOUT, timeout)
+    if isinstance(fluent, Fluent):
+        value = fluent.read()
+        if value is not None and value is not False:
+            return value
+        return _wait(fluent, timeout)
+    return plain_wait_for(fluent)
+
+
+def plain_wait_for(fluent, *, timeout=None, **ignored):
+    """Wait until the value of a fluent is true, at most ``timeout`` seconds; anything else that is true is returned."""
     if not isinstance(fluent, Fluent):
         return fluent if truth(fluent) else error("wait-for called with nil argument.")
     value = fluent.read()
-    if value is not None and value is not False:
-        return value
-    until = None if timeout is None else kernel.now() + timeout
+    return value if truth(value) else _wait(fluent, timeout)
+
+
+def _wait(fluent, timeout):
+    until = None if timeout is None else kernel.now() + in_seconds(timeout)
     if until is not None and timeout <= 0:
         return None
     me = kernel.current()
+    log_event(lambda: ("WAIT-FOR", prin1_to_string(fluent)), "WAIT-FOR")
 
     def why():
-        from ..lisp.printer.printer import prin1_to_string
-
         return f"the fluent {prin1_to_string(fluent)}"
 
     if not fluent.waiters:
@@ -51,6 +74,16 @@ def wait_for(fluent, *, timeout=None, **ignored):
         fluent.waiters.remove(me)
 
 
+def in_seconds(time):
+    """A Lisp real as seconds of the kernel's clock; anything else is a type-error."""
+    if isinstance(time, bool) or not isinstance(time, (int, float, Fraction)):
+        return type_error(time, "REAL")
+    try:
+        return float(time)
+    except OverflowError:
+        return inf if time > 0 else -inf
+
+
 def whenever(fluent, body):
     """Wait for ``fluent``, call ``body``, and so on for ever; ``(return ...)``, the compiler's block, is the way out."""
     while True:
@@ -61,10 +94,11 @@ def whenever(fluent, body):
 
 def sleep_star(seconds):
     """Sleep for ``seconds`` of the kernel's clock; returns nil. Time spent suspended counts as slept."""
-    if not seconds > 0:
+    length = in_seconds(seconds)
+    if not length > 0:
         kernel.yield_()
         return
-    until = kernel.now() + float(seconds)
+    until = kernel.now() + length
     while pause(lambda: f"the time {until:g} s (sleep {seconds})", until) or kernel.now() < until:
         pass
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..cpl.fluents import ValueFluent
+from ..cpl.fluents import make_fluent
 from ..cpl.tree import with_task_tree_node
 from ..lisp.data import lisp_list, one
 from ..lisp.evaluation.functions import function_of
@@ -47,5 +47,5 @@ def with_designators(body, definitions=None):
 
 def with_equate_fluent(designator, name, body):
     """Values of ``body(fluent)`` with a new fluent that is pulsed whenever the chain of ``designator`` is equated."""
-    fluent = ValueFluent(name)
+    fluent = make_fluent(name=name)
     return with_equate_callback(designator, lambda successor: fluent.pulse(), lambda: body(fluent))

@@ -19,7 +19,7 @@ from cramhy_runtime import kernel
 from ..cpl.branches import Branches, nobody_lives
 from ..cpl.failure_types import PlanFailure, SimplePlanFailure, opened
 from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
-from ..cpl.fluents import ValueFluent
+from ..cpl.fluents import make_fluent
 from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_variables import inherit
 from ..cpl.current import current_task
@@ -101,7 +101,7 @@ class AbstractProcessModule:
         self.caller = self._fluent("CALLER")
 
     def _fluent(self, what, initial=None):
-        return ValueFluent(Symbol(f"{self.name.name}-{what}"), initial)
+        return make_fluent(name=Symbol(f"{self.name.name}-{what}"), value=initial)
 
 
 class ProcessModule(AbstractProcessModule):

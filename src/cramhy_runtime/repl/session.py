@@ -26,7 +26,7 @@ from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.lisp.files.namestrings import parse_native
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
 from cramhy_runtime.lisp.files.pathnames import DEFAULTS
-from cramhy_runtime.lisp.evaluation.places_in_source import locate
+from cramhy_runtime.lisp.evaluation.places_in_source import circumstance, locate
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
@@ -190,6 +190,7 @@ def signalled_here(condition):
     """Note the place of a condition while its stack is still there; for debuggers."""
     if getattr(condition, "position", None) is None:
         condition.position = signalling_position()
+    circumstance.note(condition)
 
 
 def condition_of(exception):

@@ -71,6 +71,57 @@ def locate(condition, exception):
         position = exception_position(exception)
         if position is not None:
             condition.position = position
+    circumstance.note(condition, exception)
+
+
+class Circumstances:
+    """What the runtime was about when an error arose, where the user's text does not say it: "while the net ... was computed".
+
+    ``@circumstance(tell)`` marks a function of the runtime: errors below it are shown with the line ``tell(its variables)``. That
+    costs nothing until there is an error, since the function is found on the stack.
+    """
+
+    def __init__(self):
+        self._tellers = {}
+
+    def __call__(self, tell):
+        def mark(function):
+            self._tellers[function.__code__] = tell
+            return function
+
+        return mark
+
+    def add(self, condition, line):
+        """Show ``line`` with ``condition``."""
+        lines = getattr(condition, "circumstances", None)
+        if lines is None:
+            lines = condition.circumstances = []
+        if line not in lines:
+            lines.append(line)
+
+    def note(self, condition, exception=None):
+        """Add the lines for the frames that ``exception`` passed, or for the running ones, to ``condition``, innermost first."""
+        for frame in reversed(_passed(exception)) if exception is not None else _running(sys._getframe(1)):
+            tell = self._tellers.get(frame.f_code)
+            if tell is not None:
+                self.add(condition, tell(frame.f_locals))
+
+
+def _passed(exception):
+    frames, traceback = [], exception.__traceback__
+    while traceback is not None:
+        frames.append(traceback.tb_frame)
+        traceback = traceback.tb_next
+    return frames
+
+
+def _running(frame):
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
+
+circumstance = Circumstances()
 
 
 def source_position():

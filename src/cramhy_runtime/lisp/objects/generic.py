@@ -336,11 +336,12 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
     function = find_generic_function(name)
     if function is None:
         old = symbol.setf_function if setf else symbol.function
-        if not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
+        opening = getattr(old, "opening", None)
+        if opening is None and not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
             _refuse_ordinary(symbol)
         if not setf:
             check_symbol(symbol, "proclaiming ~S as a function", symbol)
-        function = GenericFunction(name, lambda_list)
+        function = GenericFunction(name, lambda_list) if opening is None else opening.open()
         if setf:
             symbol.setf_function = function
         else:

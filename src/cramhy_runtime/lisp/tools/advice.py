@@ -45,6 +45,7 @@ def explanation(condition):
     if also:
         more = len(also) - SHOWN_PLACES
         lines.append(f"  also at {', '.join(map(describe, also[:SHOWN_PLACES]))}{f' and {more} more' if more > 0 else ''}")
+    lines += [f"  {line}" for line in getattr(condition, "circumstances", None) or ()]
     lines += _expansion(condition, position)
     hint = hint_for(condition)
     if hint:
