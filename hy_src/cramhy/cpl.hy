@@ -72,7 +72,10 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 ;; ---------------------------------------------------------------------------------------------------------- 2: fluents
 
 (defoperator whenever [spec #* body]
-  `(block nil (%whenever ~spec.car (lambda [] ~@body))))
+  (setv #(fluent #* options) spec)
+  (unless (or (not options) (and (= (len options) 2) (is (get options 0) (sym ":WAIT-STATUS"))))
+    (raise (ValueError "WHENEVER takes a fluent and the keyword :WAIT-STATUS, which means nothing.")))
+  `(block nil (%whenever ~(if options `(prog1 ~fluent ~(get options 1)) fluent) (lambda [] ~@body))))
 
 (defoperator def-cpl-parameter [name [value None] [documentation None]]
   `(progn

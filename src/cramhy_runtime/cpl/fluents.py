@@ -21,15 +21,16 @@ from weakref import ref
 from cramhy_runtime import kernel
 
 from ..lisp.condition_types import Condition
-from ..lisp.conditions import SimpleTypeError, error, program_error
+from ..lisp.conditions import SimpleTypeError, error, from_python, program_error
 from ..lisp.data import MultipleValues, Symbol, one, truth
 from ..lisp.equality import eql
 from ..lisp.evaluation import functions
-from ..lisp.evaluation.places_in_source import circumstance
+from ..lisp.evaluation.places_in_source import circumstance, locate
 from ..lisp.objects.classes import find_class_or_error, make_instance
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import keyword
 from ..lisp.printer.printer import princ_to_string
+from .failure_types import CompositeFailure
 from .hooks import on_make_fluent_hook
 from .symbols import sym
 
@@ -142,12 +143,17 @@ def _call_back(function, value, name, fluent):
 
 
 def _graver(first, second):
-    """Which of two exceptions of observers goes on: an error before a mere exit, else the first. It mentions the other error."""
+    """Which of two exceptions of observers goes on: an error before a mere exit, else the first. It takes the other error along."""
     if not isinstance(second, (Condition, Exception)):
         return first
     if not isinstance(first, (Condition, Exception)):
         return first if isinstance(first, (kernel.Cancelled, kernel.Interrupted, kernel.Abandoned)) else second
-    circumstance.add(first, f"another observer failed, too: {str(second).strip()}")
+    condition, other = from_python(first), from_python(second)
+    locate(other, second)
+    if isinstance(condition, CompositeFailure):
+        circumstance.add(condition, f"Another observer failed, too: {other}")
+    else:
+        condition.beside = [*getattr(condition, "beside", ()), ("Another observer failed, too", other)]
     return first
 
 
