@@ -73,7 +73,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 (defoperator whenever [spec #* body]
   (setv #(fluent #* options) spec)
-  (unless (or (not options) (and (= (len options) 2) (is (get options 0) (sym ":WAIT-STATUS"))))
+  (when (and options (or (!= (len options) 2) (is-not (get options 0) (sym ":WAIT-STATUS"))))
     (raise (ValueError "WHENEVER takes a fluent and the keyword :WAIT-STATUS, which means nothing.")))
   `(block nil (%whenever ~(if options `(prog1 ~fluent ~(get options 1)) fluent) (lambda [] ~@body))))
 

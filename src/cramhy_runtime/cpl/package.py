@@ -100,7 +100,8 @@ def define_faces():
     define_face(
         "CRAM-LANGUAGE-IMPLEMENTATION", ["CPL-IMPL"], use=["COMMON-LISP"],
         functions={**FUNCTIONS, **OPERATORS, **hook_functions, "make-fluent": fluents.fluent_from_initargs,
-                   "current-task": tasks.current_task_or_dummy, "task": tree.task_at, "describe-task-tree": tree_report.describe_task_tree_in_lisp},
+                   "current-task": tasks.current_task_or_dummy, "task": tree.task_at,
+                   "describe-task-tree": tree_report.describe_task_tree_in_lisp},
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
                    "*save-tasks*": None, "*record-task-tree*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
                    "timeout-policy": policies.TIMEOUT_POLICY,
