@@ -22,7 +22,7 @@ Where the parts are:
 
 * `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `outside`
   other threads and calls that block
-* `tasks`      a task, its end, the request to end
+* `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
 * `timers`, `clocks`, `budget` (what checkpoints count), `reports` (what people read), `errors`
 * `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
 * `active`     the functions below, which act on the kernel that is active
@@ -59,17 +59,18 @@ from .active import (
     unpark,
     yield_,
 )
+from .cleanup import cleanup
 from .clocks import VirtualClock, WallClock
 from .depth import allow_deep_recursion
-from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, TimeLimit
+from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, TimeLimit, WaitEnded
 from .reports import describe_frame, unhandled
 from .scheduler import Kernel
 from .tasks import Task
 from .timers import Timer
 
 __all__ = [
-    "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer",
-    "VirtualClock", "WallClock", "active", "aside", "allow_deep_recursion", "call_at", "call_every", "checkpoint", "current",
-    "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle", "shield",
-    "sleep", "slice_over", "spawn", "start", "stop", "unhandled", "unpark", "yield_",
+    "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer", "VirtualClock",
+    "WaitEnded", "WallClock", "active", "allow_deep_recursion", "aside", "call_at", "call_every", "checkpoint", "cleanup", "current",
+    "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle",
+    "shield", "sleep", "slice_over", "spawn", "start", "stop", "unhandled", "unpark", "yield_",
 ]  # fmt: skip

@@ -74,14 +74,10 @@ class Endings:
         cleaning = {task for task in self.tasks if task is not main and task.cancel_request is not None}
         for task in self.tasks:  # oldest first, so a parent comes before its children
             if task in cleaning:
-                self._abandon(task)
+                task.abandon()
             elif task.parent in cleaning:
                 task.cancel("the cleanup of its parent was abandoned")
                 cleaning.add(task)
-
-    def _abandon(self, task):
-        task.abandoned = task.attention = True
-        self.rouse(task)
 
     def _alarm(self, exception, pierces_shield):
         """Have EXCEPTION raised in the main task, before anything else runs."""
@@ -130,7 +126,7 @@ class Endings:
         self._let_unwind()
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
-            self._abandon(task)
+            task.abandon()
         self._let_unwind()
         for task in self.tasks[1:]:
             if task.carrier is not None:

@@ -21,6 +21,10 @@ class Cancelled(BaseException):
         return "cancelled" if self.reason is None else f"cancelled: {self.reason}"
 
 
+class WaitEnded(Cancelled):
+    """Somebody ended the wait that a task's cleanup was stuck in (`Task.end_wait`). Unwinds to the end of that cleanup form."""
+
+
 class Interrupted(BaseException):
     """The user asked the main task to stop (Ctrl-C)."""
 

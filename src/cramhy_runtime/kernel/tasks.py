@@ -35,7 +35,7 @@ class Task:
         "kernel", "id", "name", "parent", "local", "dynamic", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
         "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered",
-        "swallowed", "_exception", "claimed", "when_refused",
+        "swallowed", "_exception", "claimed", "when_refused", "cleanup",
         "__weakref__",
     )  # fmt: skip
 
@@ -57,6 +57,7 @@ class Task:
         self.timed = False
         self.preempted = False
         self.shielded = 0
+        self.cleanup = None  # the innermost `cleanup` block it is in
         self.alarms = None
         self.abandoned = False
         self.fn = fn
@@ -107,6 +108,23 @@ class Task:
             self.kernel.rouse(self)
             if self is self.kernel.current:
                 budget.end()
+
+    def end_wait(self, exception):
+        """Have EXCEPTION, or what the function EXCEPTION returns on the task's stack, raised where it is parked, in shields too.
+
+        Does nothing, and returns False, if the task does not wait: what it computes is never disturbed.
+        """
+        if self.state is not PARKED:
+            return False
+        self.alarms = [*(self.alarms or ()), Alarm(exception, True)]
+        self.attention = True
+        self.kernel.rouse(self)
+        return True
+
+    def abandon(self):
+        """Give up its cleanup: `Abandoned` is raised at every park point and checkpoint from now on, in shields too."""
+        self.abandoned = self.attention = True
+        self.kernel.rouse(self)
 
     def interject(self, fn):
         """Have FN called on the task's own stack at its next park point or checkpoint; FN may park. Wakes it if it is parked.
@@ -163,7 +181,7 @@ class Task:
                 if alarm.pierces_shield or not self.shielded:
                     self.alarms.remove(alarm)
                     self._look_again()
-                    raise alarm.exception
+                    raise alarm.exception() if callable(alarm.exception) else alarm.exception
         if self.cancel_request is not None and not self.cancelled_delivered and not self.shielded:
             self.delivered = exception = self._cancellation()
             self.cancelled_delivered = True
@@ -225,7 +243,7 @@ class Task:
 
 
 class Alarm:
-    """Something for the main task, besides a cancellation: an interrupt, a deadlock, the time limit."""
+    """Something to be raised besides a cancellation: an interrupt, a deadlock, the time limit, the end of a wait."""
 
     __slots__ = ("exception", "pierces_shield")
 

@@ -261,10 +261,10 @@ class ExitGenerator:
             statements, _ = self.captured(lambda: self.gen(node.body, inner))
             before = self.scope.exits_set
             cleanup, _ = self.captured(lambda: self.gen(node.cleanup, EFFECT))
-            if self.scope.exits_set != before:  # the cleanup must not forget the exit that it was entered by
+            cleanup = [expression(word("with"), List([word("_"), self.call("cleanup")]), *(cleanup or [NONE]))]
+            if self.scope.exits_set != before:  # the cleanup must not forget the exit that it was entered by, nor may its end
                 saved = self.temporary("Lsaved")
                 cleanup = [self.setting(saved, word("Lexit")), *cleanup, self.setting("Lexit", word(saved))]
-            shielded = expression(word("with"), List([word("_"), self.call("shield")]), *(cleanup or [NONE]))
-            self.emit(word("try"), *(statements or [NONE]), expression(word("finally"), shielded))
+            self.emit(word("try"), *(statements or [NONE]), expression(word("finally"), *cleanup))
 
         return self.by_statements(node, destination, produce)

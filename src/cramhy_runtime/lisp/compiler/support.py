@@ -291,7 +291,7 @@ NAMESPACE = {
     "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
     "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
     "LCons": Cons, "Lnew_object": object.__new__, "Lstr": str, "LtextA": princ_atom, "LtextS": prin1_atom, "LtextD": decimal,
-     "LUnaryGeneric": UnaryGeneric, "LFirstOfTwo": FirstOfTwo, "LFunction": FunctionType, "Lshield": kernel.shield,
+     "LUnaryGeneric": UnaryGeneric, "LFirstOfTwo": FirstOfTwo, "LFunction": FunctionType, "Lcleanup": kernel.cleanup,
     "Llist_from": list_from, "Lunsupplied": UNSUPPLIED, "Lcatch": catch, "Lthrow": throw, "Lprogv": progv, "Lvalue_list": value_list,
     "Lunbound": UNBOUND, "Lchecked": checked, "Lint": int, "Lbudget": budget, "Lkey_parser": key_parser,
     "Lintern": intern, "Lgensym": Symbol, "Llist": lisp_list, "Ldotted": dotted, "Ldouble": DoubleFloat, "Lratio": Fraction,
