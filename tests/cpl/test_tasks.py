@@ -101,14 +101,18 @@ def test_a_second_request_does_not_interrupt_cleanup():
         try:
             cpl.sleep(100)
         finally:
-            cpl.sleep(1)
+            for _ in range(3000):  # three slices long
+                kernel.checkpoint()
             done.append("complete")
 
     def body():
         task = started(worker)
         cpl.sleep(1)
         cpl.evaporate(task, sync=None)
-        cpl.sleep(0.5)
+        kernel.yield_()
+        cpl.evaporate(task, sync=None)
+        kernel.yield_()
+        assert done == []
         cpl.evaporate(task)
 
     plan(body)

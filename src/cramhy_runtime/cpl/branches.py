@@ -18,9 +18,10 @@ from ..lisp.conditions import SimpleWarning, error, warn
 from .failure_types import CompositeFailure, PlanFailure, opened
 from .failures import signal_failure
 from .current import inside_plan
+from .ending import end_tasks
 from .pausing import pause
 from .statuses import DEAD, FAILED
-from .tasks import Task, end_tasks
+from .tasks import Task
 
 
 class Branches:
@@ -35,9 +36,13 @@ class Branches:
         self.failed = self.done = 0
         self.waiter = None
         self.ready = None
-        for task in tasks:
-            task.ended = self.ended
-            task.execute()
+        try:
+            for task in tasks:
+                task.ended = self.ended
+                task.execute()
+        except BaseException:
+            self.end()
+            raise
 
     def add(self, task):
         """Start one more branch."""

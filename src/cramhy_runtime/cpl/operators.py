@@ -23,9 +23,10 @@ from .failure_types import CompositeFailure, opened
 from .failures import attempt, composite_failure
 from .hooks import on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook
 from .current import inside_plan
+from .ending import close_plan
 from .statuses import DEAD, DONE, FAILED
 from .orderings import apply_orderings
-from .tasks import Task, ToplevelTask, end_tasks
+from .tasks import Task, ToplevelTask
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
 from .tree_report import note_stopped
 from .watching import watch
@@ -98,7 +99,7 @@ def _run_top_level(body, name, tree):
     except BaseException as exception:
         if isinstance(exception, kernel.Interrupted | kernel.Deadlock | kernel.TimeLimit):
             note_stopped(task, exception)
-        end_tasks([task], f"{name.name if name is not None else 'NIL'} aborted.")
+        close_plan(task, f"{name.name if name is not None else 'NIL'} aborted.")
         if task.status is FAILED and isinstance(exception, kernel.Cancelled | kernel.Interrupted):
             exception.add_note(f"While the plan was ended, its cleanup failed: {task.result}")
         raise

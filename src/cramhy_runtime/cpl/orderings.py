@@ -13,7 +13,8 @@ from ..lisp.conditions import error, handler_bind, type_error
 from .fluent_operators import fl_pulsed
 from .fluents import ValueFluent
 from .statuses import CREATED
-from .tasks import Task, task_dead
+from .task_readers import task_dead
+from .tasks import AbstractTask
 
 HOW_TO_NAME = "In (:ORDER before after) a step is a task: the name of a tag in the WITH-TAGS around, (task path) or (sub-task path)."
 
@@ -28,7 +29,7 @@ def apply_orderings(orderings):
     for before, after in orderings:
         if after.constraints is None:
             after.constraints = []
-        if isinstance(before, Task):
+        if isinstance(before, AbstractTask):
             after.constraints.append(task_dead(before))
             after.predecessors = [*predecessors(after), before]
         else:
@@ -45,9 +46,9 @@ def _advise(condition):
 
 
 def _check(before, after):
-    if not isinstance(after, Task):
+    if not isinstance(after, AbstractTask):
         return type_error(after, "TASK", f"\n({HOW_TO_NAME})")
-    if not isinstance(before, Task) and before.__class__ is not ValueFluent:
+    if not isinstance(before, AbstractTask) and before.__class__ is not ValueFluent:
         return type_error(before, "(OR TASK VALUE-FLUENT)", f"\n({HOW_TO_NAME} The first may be a value fluent.)")
     return None
 
@@ -56,7 +57,7 @@ def _refuse_rings(orderings):
     """Signal an error when with ``orderings`` a task would wait for itself, through others or at once."""
     waits_for = {}
     for before, after in orderings:
-        if isinstance(before, Task):
+        if isinstance(before, AbstractTask):
             waits_for.setdefault(after, list(predecessors(after))).append(before)
     for start in waits_for:
         ring = _way_back(start, waits_for)

@@ -22,6 +22,7 @@ from . import (
     readers,
     statuses,
     suspension,
+    task_readers,
     task_variables,
     tasks,
     tree,
@@ -48,8 +49,9 @@ FUNCTIONS = {
     fluents: "value peek-value pulse register-update-callback remove-update-callback get-update-callback",
     fluent_operators: "fl-and fl-or fl-funcall fl-value-changed fl-apply",
     waiting: "wait-for sleep*",
-    tasks: "task-alive task-dead task-running-p task-dead-p task-done-p task-failed-p task-path status result evaporate join-task "
-           "list-saved-tasks child-tasks parent-task task-constraints execute",
+    tasks: "evaporate join-task execute",
+    task_readers: "task-alive task-dead task-running-p task-dead-p task-done-p task-failed-p task-path status result "
+                  "list-saved-tasks child-tasks parent-task task-constraints",
     suspension: "suspend wake-up",
     task_variables: "tv-closure",
     failures: "fail composite-failures envelop-error",
@@ -89,10 +91,11 @@ MACROS_AND_MARKERS = """fluent value-fluent whenever def-cpl-parameter current-t
 
 def define_faces():
     """Declare the packages. COMMON-LISP must be filled."""
-    for name, getter in (("*CURRENT-TASK*", current.current_task), ("*CURRENT-PATH*", tree.current_path),
-                         ("*TASK-TREE*", tree.current_tree)):
+    for name, getter, setter in (("*CURRENT-TASK*", current.current_task, None), ("*CURRENT-PATH*", tree.current_path, None),
+                                 ("*TASK-TREE*", tree.current_tree, None),
+                                 ("*TASKS*", task_readers.list_saved_tasks, task_readers.save_tasks)):
         if not CPL_IMPL.present(name):
-            task_variables.define_task_state(CPL_IMPL, name, getter)
+            task_variables.define_task_state(CPL_IMPL, name, getter, setter)
     hook_functions = {hook.name.name: hook.function for hook in vars(hooks).values() if isinstance(hook, hooks.Hook)}
     constants = {"+alive+": statuses.ALIVE, "+dead+": statuses.DEAD, "+done+": statuses.DONE}
     log_lists = {"+log-all+": logging.TAGS, "+log-default+": logging.DEFAULT, "+log-verbose+": logging.VERBOSE,
@@ -103,11 +106,12 @@ def define_faces():
                    "current-task": tasks.current_task_or_dummy, "task": tree.task_at,
                    "describe-task-tree": tree_report.describe_task_tree_in_lisp},
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
-                   "*save-tasks*": None, "*record-task-tree*": None, "*tasks*": None, "*log-output*": None, "*log-right-margin*": 130,
+                   "*save-tasks*": None, "*record-task-tree*": None, "*cleanup-time-limit*": None,
+                   "*log-output*": None, "*log-right-margin*": 130,
                    "timeout-policy": policies.TIMEOUT_POLICY,
                    **{name: statuses.status_list(members) for name, members in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
-        export=MACROS_AND_MARKERS + " *current-task* *current-path* *task-tree*", internal=INTERNAL)
+        export=MACROS_AND_MARKERS + " *current-task* *current-path* *task-tree* *tasks*", internal=INTERNAL + " abstract-task")
     not_reexported = {name.upper() for name in IMPLEMENTATION_ONLY.split()}
     shared = " ".join(name for name in CPL_IMPL.external if name not in not_reexported)
     define_face(

@@ -9,18 +9,12 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from .current import current_task
 from .failures import assert_no_nlx
 from .statuses import CREATED, DEAD, RUNNING, SUSPENDED
 
 
-def pause(why, until=None):
-    """Park as ``kernel.park`` does, and obey requests to suspend that arrived meanwhile."""
-    woken = kernel.park(why, until)
-    task = getattr(kernel.current().local, "plan_task", None)
-    if task is not None and task.held:
-        obey(task)
-    return woken
+pause = kernel.park
+"""``pause(why, until=None)`` waits; the kernel calls `obey` there when it was asked to (`request`)."""
 
 
 class Unwind(BaseException):
@@ -31,11 +25,11 @@ class Unwind(BaseException):
 
 
 def request(task):
-    """Ask ``task`` to suspend itself at its next waiting point."""
+    """Ask ``task`` to suspend itself at its next waiting point; one that is not started yet, at its first."""
     if task.status in DEAD or task.held:
         return
     task.held = True
-    if task.kernel_task is not None and task.status is RUNNING and task is not current_task():
+    if task.kernel_task is not None:
         task.kernel_task.interject(lambda: obey(task))
 
 
@@ -45,50 +39,47 @@ def release(task):
         task.held = False
         if task.status is SUSPENDED:
             task.kernel_task.kernel.unpark(task.kernel_task)
+        else:
+            task.tell_observers()
 
 
 def obey(task):
     """Suspend the current task, which is ``task``, if that is still wanted; returns after the wake-up."""
-    me = kernel.current()
-    if task.unschedulable or me.cancelled_delivered or not task.held:
+    if task.unschedulable or task.kernel_task.cancelled_delivered:
         return
-    if task.retry_level:
-        raise Unwind(task)
-    me.local.obeying = True
-    try:
-        _suspend(task)
-    finally:
-        me.local.obeying = False
-    for block in getattr(me.local, "blocks", ()):
-        block.remind()  # what was to end a part of this task waited for the wake-up
+    while task.held:
+        if task.retry_level:
+            raise Unwind(task)
+        task.unschedulable += 1  # a request that comes meanwhile is seen when this one is over
+        local = task.kernel_task.local
+        local.obeying = True
+        try:
+            _be_suspended(task)
+        finally:
+            task.unschedulable -= 1
+            local.obeying = False
+        for block in getattr(local, "blocks", ()):
+            block.remind()  # what was to end a part of this task waited for the wake-up
 
 
-def _suspend(task):
-    _run_handlers(task)
+def _be_suspended(task):
+    for handler in reversed(task.suspension_handlers or ()):
+        assert_no_nlx("ON-SUSPENSION", handler)
     children = list(task.children)
     for child in children:
         request(child)
-    _await(children, (SUSPENDED, CREATED, *DEAD), "suspension")
+    for child in children:
+        child.park_until(AT_REST, lambda child=child: f"the suspension of {child.name}", lambda child=child: not child.held)
     task.change_status(SUSPENDED)
     while task.held:
         kernel.park(lambda: "its wake-up: it is suspended")
-    for child in task.children:
+    children = list(task.children)
+    for child in children:
         release(child)
-    _await(list(task.children), (RUNNING, CREATED, *DEAD), "wake-up")
+    for child in children:
+        child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}", lambda child=child: child.held)
     task.change_status(RUNNING)
 
 
-def _run_handlers(task):
-    handlers = task.suspension_handlers
-    if handlers:
-        task.unschedulable += 1
-        try:
-            for handler in reversed(handlers):
-                assert_no_nlx("ON-SUSPENSION", handler)
-        finally:
-            task.unschedulable -= 1
-
-
-def _await(children, statuses, what):
-    for child in children:
-        child.park_until(statuses, lambda child=child: f"the {what} of {child.name}", kernel.park)
+AT_REST = (SUSPENDED, *DEAD)
+AWAKE = (CREATED, RUNNING, *DEAD)

@@ -8,7 +8,7 @@ from ..lisp.printer.printer import define_printer, prin1_to_string, princ_to_str
 from ..lisp.tools.describing import describe_facts, describe_object
 from .fluents import Fluent, ValueFluent
 from .symbols import sym
-from .tasks import Task, ToplevelTask
+from .tasks import AbstractTask, ToplevelTask
 from .tree import TaskTreeNode
 
 VERBOSITY = sym("CPL-IMPL::*TASK-PPRINT-VERBOSITY*")
@@ -41,7 +41,7 @@ def print_node(node, stream):
 
 
 define_printer(Fluent, print_fluent)
-define_printer(Task, print_task)
+define_printer(AbstractTask, print_task)
 define_printer(TaskTreeNode, print_node)
 
 
@@ -54,7 +54,7 @@ def describe_fluent(fluent, stream):
         ("Fluents computed from it", list_from(fluent.living_nets())), ("Callbacks", list_from(list(fluent.callbacks or ())))])
 
 
-@describe_object.method(Task, None)
+@describe_object.method(AbstractTask, None)
 def describe_task(task, stream):
     """What it does now, what came of it, and its place in the tree of tasks."""
     facts = [("Name", task.name), ("Status", task.status), ("Parent", task.parent), ("Children", list_from(list(task.children)))]

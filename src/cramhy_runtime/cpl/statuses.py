@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from ..lisp.data import list_from
+from ..lisp.data import Cons, list_from
 from ..lisp.packages import keyword
+from ..lisp.types.types import define_type
+from .symbols import sym
 
 CREATED, RUNNING, WAITING, SUSPENDED = map(keyword, ("CREATED", "RUNNING", "WAITING", "SUSPENDED"))
 SUCCEEDED, FAILED, EVAPORATED = map(keyword, ("SUCCEEDED", "FAILED", "EVAPORATED"))
 ALIVE = (CREATED, RUNNING, WAITING, SUSPENDED)
 DEAD = (FAILED, SUCCEEDED, EVAPORATED)
 DONE = (SUCCEEDED, EVAPORATED)
+ALL = (CREATED, RUNNING, SUSPENDED, SUCCEEDED, FAILED, EVAPORATED)
+"""Those that occur, the type ``status-indicator``; ``:waiting`` is never given."""
 
 NEXT = {
     CREATED: (RUNNING, EVAPORATED),
@@ -21,3 +25,7 @@ NEXT = {
 def status_list(statuses):
     """``statuses`` as a Lisp list."""
     return list_from(statuses)
+
+
+define_type(sym("CPL-IMPL::STATUS-INDICATOR"), lambda specifier, environment: Cons(sym("MEMBER"), status_list(ALL)),
+            "The statuses that a task can have.")

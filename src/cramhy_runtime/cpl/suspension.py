@@ -1,11 +1,13 @@
 """Suspension: stopping a branch with everything below it, and letting it go on.
 
-A request to suspend is obeyed where the task waits (in ``wait-for``, ``sleep``, joins and parallel forms) and at the end of its
-body. The order is that of cpl.md 3.5: leave ``retry-after-suspension``, run the ``on-suspension`` forms, suspend the children and
-wait for that, then become ``:suspended``. Waking goes down the tree first as well.
+A request to suspend is obeyed where the task waits (in ``wait-for``, ``sleep``, joins and parallel forms), in loops, and at the end
+of its body. The order is that of cpl.md 3.5: leave ``retry-after-suspension``, run the ``on-suspension`` forms, suspend the children
+and wait for that, then become ``:suspended``. Waking goes down the tree first as well.
 
 Repaired: both requests are idempotent. Suspending a suspended task and waking a running one do nothing, where the original kills
-the task; one wake-up undoes any number of suspensions. ``with-task-suspended`` on a dead task runs its body at once.
+the task; one wake-up undoes any number of suspensions. Neither waits for a task that is dead, or that nobody has started yet: that
+one obeys when it is started. ``with-task-suspended`` on a dead task runs its body at once; on one that is not started it waits, since
+its body may rely on the status, and takes the request back when it is left before.
 """
 
 from __future__ import annotations
@@ -14,19 +16,27 @@ from contextlib import contextmanager
 
 from cramhy_runtime import kernel
 
+from ..lisp.objects.generic import generic
 from .current import current_task, inside_plan
-from .pausing import Unwind, obey
-from .tasks import check_reason
+from .pausing import AT_REST, Unwind, obey, request
+from .tasks import AbstractTask, check_reason
+
+suspend = generic("CPL-IMPL::SUSPEND", "(task &key reason sync)", documentation="""
+Suspend ``task`` and all below it; with ``sync`` (the default) wait until it is suspended or dead.""")
 
 
-def suspend(task, *, reason=None, sync=True):
-    """Suspend ``task`` and all below it; with ``sync`` wait until it is suspended or dead."""
+@suspend.method(AbstractTask)
+def _suspend(task, *, reason=None, sync=True):
     check_reason(reason)
     task.suspend(reason, sync)
 
 
-def wake_up(task, *, reason=None, sync=True):
-    """Let ``task`` and all below it go on; with ``sync`` wait until it is running or dead."""
+wake_up = generic("CPL-IMPL::WAKE-UP", "(task &key reason sync)", documentation="""
+Let ``task`` and all below it go on; with ``sync`` (the default) wait until it is running or dead.""")
+
+
+@wake_up.method(AbstractTask)
+def _wake_up(task, *, reason=None, sync=True):
     check_reason(reason)
     task.wake_up(reason, sync)
 
@@ -75,8 +85,11 @@ def retry_after_suspension(body):
 def task_suspended(task, reason=None):
     """While the block runs ``task`` is suspended; it is woken again on every exit."""
     inside_plan("WITH-TASK-SUSPENDED")
-    suspend(task, reason=reason)
     try:
+        suspend(task, reason=reason)
+        while task.status not in AT_REST:  # not started yet, or somebody else woke it before it came to rest
+            request(task)
+            task.park_until(AT_REST, lambda: f"the suspension of {task.name}", lambda: not task.held)
         yield task
     finally:
         with kernel.shield():
@@ -114,7 +127,18 @@ def without_scheduling(body):
 
 
 def with_scheduling(body):
-    """Values of ``body()``. Kept for programs that name it: requests are obeyed wherever ``without-scheduling`` is not."""
-    return body()
-
-
+    """Values of ``body()``; within ``without-scheduling``, requests are obeyed again meanwhile. Elsewhere it changes nothing."""
+    task = current_task()
+    if task is None or not task.unschedulable:
+        return body()
+    me, levels = task.kernel_task, task.unschedulable
+    task.unschedulable = 0
+    me.shielded -= levels
+    try:
+        obey(task)
+        if me.attention:
+            kernel.slice_over()  # which delivers what was held back
+        return body()
+    finally:
+        task.unschedulable = levels
+        me.shielded += levels

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from ..lisp.data import Symbol
+from ..lisp.data import UNBOUND, Symbol
 from ..lisp.dynamic import Bindings, special
 from ..lisp.packages import find_package, sym
 
@@ -21,12 +21,12 @@ _declared = {}  # the user's: symbol -> init function or None; bound in every ta
 
 
 class TaskStateSymbol(Symbol):
-    """A variable whose value is computed from the current task by ``getter``; assignments are ignored."""
+    """A variable whose value is computed by ``getter``, from the current task say; ``setter`` gets what is assigned, if there is one."""
 
-    __slots__ = ("getter",)
+    __slots__ = ("getter", "setter")
 
-    def __init__(self, name, package, getter):
-        self.getter = getter
+    def __init__(self, name, package, getter, setter):
+        self.getter, self.setter = getter, setter
         super().__init__(name, package)
         self.special = True
 
@@ -36,13 +36,14 @@ class TaskStateSymbol(Symbol):
 
     @value.setter
     def value(self, new):
-        pass
+        if self.setter is not None and new is not UNBOUND:
+            self.setter(new)
 
 
-def define_task_state(package, name, getter):
-    """Make ``name`` in ``package`` a variable that reads the current task's state. To be called before the name is interned."""
+def define_task_state(package, name, getter, setter=None):
+    """Make ``name`` in ``package`` a variable that reads the state of tasks. To be called before the name is interned."""
     package = find_package(package)
-    symbol = package.internal[name] = TaskStateSymbol(name, package, getter)
+    symbol = package.internal[name] = TaskStateSymbol(name, package, getter, setter)
     return symbol
 
 

@@ -8,8 +8,8 @@ form that starts tasks waits for their death before it returns or lets an except
 and reaches the task that waits for it (law 3). Source: cpl.md section 3. Repaired: children are awaited on failure and
 evaporation too, in which the original only tells them to end; a cleanup form of the parent cannot be overrun by a child.
 
-How a task parks and obeys is in ``pausing.py``, who may ask it to in ``suspension.py``; how parallel forms wait and decide is in
-``branches.py``.
+How a task parks and obeys is in ``pausing.py``, who may ask it to in ``suspension.py``, how cleanup is brought to an end in
+``ending.py``; how parallel forms wait and decide is in ``branches.py``, and what can be asked of a task in ``task_readers.py``.
 """
 
 from __future__ import annotations
@@ -21,16 +21,18 @@ from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
 from ..lisp.conditions import error, from_python, type_error
-from ..lisp.data import NO_VALUES, Symbol, list_from, truth
+from ..lisp.data import NO_VALUES, Symbol, truth
 from ..lisp.dynamic import special
 from ..lisp.evaluation.places_in_source import locate
+from ..lisp.objects.generic import generic
 from .current import current_task
+from .ending import end_tasks, end_waits, limit_cleanup
 from .failure_types import PlanFailure, envelope
 from .failures import signal_failure
-from .fluent_operators import fl_and, fl_funcall
+from .fluent_operators import fl_and
 from .fluents import function_of, make_fluent
-from .pausing import obey, pause, release, request
-from .statuses import ALIVE, CREATED, DEAD, DONE, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED, SUSPENDED, status_list
+from .pausing import AT_REST, AWAKE, obey, pause, release, request
+from .statuses import CREATED, DEAD, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED
 from .symbols import sym
 from .task_variables import inherit, inherited_bindings
 from .waiting import wait_for
@@ -46,8 +48,8 @@ recorded = deque(maxlen=10)
 """The newest plans that began while ``*record-task-tree*`` was true."""
 
 
-class Task:
-    """A branch of a plan: ``body`` is called without arguments in a task of its own once `execute` has started it.
+class AbstractTask:
+    """What `Task` and `ToplevelTask` share: ``body`` is called without arguments in a task of its own once `execute` has started it.
 
     ``path`` is its place in the task tree; ``constraints`` are fluents that must all be true before the body starts.
     ``ended``, if set, is called with the task when it is dead. From Lisp, ``(make-instance 'task :thread-fun f)`` also starts it,
@@ -57,9 +59,13 @@ class Task:
     __slots__ = ("_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
                  "constraints", "ended", "started_at", "ended_at", "observers", "held", "unschedulable", "suspension_handlers",
                  "retry_level", "depth", "__weakref__", "__dict__")
-    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::ABSTRACT-TASK"
     record = None
     """The list of all tasks of its plan, dead ones too, if they are recorded (``tree_report.py``)."""
+    awaited = None
+    """The tasks whose death it waits for, or a function that returns them, while it does (``ending.py``)."""
+    asked_to_end = False  # by a program, not only by the form that it belongs to
+    cleanup_limit = None
 
     def __init__(self, body=None, name=None, path=None, *, thread_fun=None, run_thread=True):
         self._name = name
@@ -86,7 +92,7 @@ class Task:
         if thread_fun is not None:
             self.body = function_of(thread_fun)
             if truth(run_thread):
-                self.execute()
+                execute(self)
 
     # ---------------------------------------------------------------------------------------------------- names and status
 
@@ -109,11 +115,16 @@ class Task:
         return self.status in DEAD
 
     @property
+    def unexecuted(self):
+        """True until `execute` has been called."""
+        return self.kernel_task is None and self.started_at is None
+
+    @property
     def status_fluent(self):
         """The fluent of its status, made when first asked for; callbacks on it see each transition in order."""
         fluent = self._status_fluent
         if fluent is None:
-            fluent = self._status_fluent = make_fluent(name=Symbol(f"{self.name}-STATUS"), value=self.status)
+            fluent = self._status_fluent = make_fluent(name=Symbol(f"{self.name}-STATUS{next(_count)}"), value=self.status)
         return fluent
 
     def change_status(self, new):
@@ -124,13 +135,25 @@ class Task:
         if self._status_fluent is not None:
             self._status_fluent.set(new)
         if self.observers:
-            for observer in self.observers:
-                observer.kernel.unpark(observer)
+            self.tell_observers()
+
+    def tell_observers(self):
+        """Have those who wait in `park_until` look again."""
+        for observer in self.observers or ():
+            observer.kernel.unpark(observer)
 
     # ------------------------------------------------------------------------------------------------------------- life
 
     def execute(self):
-        """Start the task as a child of the current one. It runs when the current task parks."""
+        """Start the task as a child of the current one. It runs when the current task parks.
+
+        One that was evaporated before is dead already, and stays so.
+        """
+        if self.status is EVAPORATED and self.unexecuted:
+            self.started_at = self.ended_at
+            if self.ended is not None:
+                self.ended(self)
+            return self
         if self.body is None:
             error("Tried to execute task ~S which has no thread-fun.", self)
         if self.kernel_task is not None or self.status is not CREATED:
@@ -153,6 +176,8 @@ class Task:
         self.kernel_task = kernel.spawn(self._live, bindings, name=self.name if self._name is None else "task")
         self.kernel_task.name = _KernelName(self)
         self.kernel_task.when_refused = self._refused
+        if self.held:
+            self.kernel_task.interject(lambda: obey(self))
         self.started_at = kernel.now()
         if truth(SAVE_TASKS.value):
             saved_tasks.append(self)
@@ -204,6 +229,8 @@ class Task:
 
     def _outcome(self, exception):
         """The status and result of a task that ``exception`` ended."""
+        while isinstance(exception, kernel.WaitEnded) and exception.__context__ is not None:
+            exception = exception.__context__  # what was on its way out when the wait in its cleanup was ended
         if isinstance(exception, (kernel.Cancelled, kernel.Abandoned)):
             return EVAPORATED, NO_VALUES
         if isinstance(exception, PlanFailure):
@@ -233,11 +260,16 @@ class Task:
                 self.change_status(status)
         else:
             self.change_status(status)
+        if self.cleanup_limit is not None:
+            self.cleanup_limit.end()
         if self.ended is not None:
             self.ended(self)
 
     def evaporate(self, reason=None):
-        """Ask the task to end. It unwinds from its next waiting point or checkpoint; nobody waits for that here."""
+        """Ask the task to end. It unwinds from its next waiting point or checkpoint; nobody waits for that here.
+
+        Forms ask like this. The function `evaporate` is for programs; asking a second time, it ends waits in the cleanup.
+        """
         if self.status in DEAD:
             return
         kernel_task = self.kernel_task
@@ -246,7 +278,12 @@ class Task:
                 kernel_task.cancel(reason)
             self._die(EVAPORATED, NO_VALUES)  # it never ran, so nothing is to be cleaned up
             return
-        kernel_task.cancel(reason)
+        kernel_task.cancel(lambda: self._begin_to_end(reason))
+
+    def _begin_to_end(self, reason):
+        if kernel.current() is self.kernel_task:
+            self.cleanup_limit = limit_cleanup(self)
+        return kernel.Cancelled(reason)
 
     def suspend(self, reason=None, sync=True):
         """Ask the task, and all below it, to stand still; with ``sync`` wait until they do."""
@@ -255,13 +292,13 @@ class Task:
             if truth(sync):
                 obey(self)
         elif truth(sync):
-            self.park_until((SUSPENDED, CREATED, *DEAD), lambda: f"the suspension of {self.name}")
+            self.park_until(AT_REST, lambda: f"the suspension of {self.name}", lambda: not self.held or self.unexecuted)
 
     def wake_up(self, reason=None, sync=True):
         """Let the task, and all below it, go on; with ``sync`` wait until they do."""
         release(self)
         if truth(sync) and self is not current_task():
-            self.park_until((RUNNING, CREATED, *DEAD), lambda: f"the wake-up of {self.name}")
+            self.park_until(AWAKE, lambda: f"the wake-up of {self.name}", lambda: self.held)
 
     def join(self):
         """Wait until the task is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
@@ -272,18 +309,15 @@ class Task:
             signal_failure(self.result)
         return self.result
 
-    def park_until(self, statuses, why, wait=None):
-        """Wait until its status is among ``statuses``. To be called in another task.
-
-        ``wait(why)`` is `pause`, so that the waiting task can be suspended, unless another function is given.
-        """
+    def park_until(self, statuses, why, given_up=None):
+        """Wait until its status is among ``statuses``, or until ``given_up()``. To be called in another task."""
         me = kernel.current()
-        while self.status not in statuses:
+        while self.status not in statuses and (given_up is None or not given_up()):
             if self.observers is None:
                 self.observers = []
             self.observers.append(me)
             try:
-                (wait or pause)(why)
+                pause(why)
             finally:
                 self.observers.remove(me)
 
@@ -291,7 +325,14 @@ class Task:
         return f"<{type(self).__name__} {self.name} {self.status!r}>"
 
 
-class ToplevelTask(Task):
+class Task(AbstractTask):
+    """A branch of a plan, below the task that executes it."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TASK"
+
+
+class ToplevelTask(AbstractTask):
     """The root of a plan: the task that runs the body of ``top-level``. It has no parent."""
 
     __slots__ = ()
@@ -327,81 +368,16 @@ def current_task_or_dummy():
     return task
 
 
-def end_tasks(tasks, reason=None):
-    """Evaporate ``tasks`` and wait until they are dead; a request to end the current task waits for that too."""
-    for task in tasks:
-        task.evaporate(reason)
-    with kernel.shield():
-        for task in tasks:
-            task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}", kernel.park)
+# ------------------------------------------------------------------------------------------------------------- requests
 
 
-# ----------------------------------------------------------------------------------------------------- readers and requests
-
-
-def status(task):
-    """``(status task)``: the fluent of its status."""
-    return task.status_fluent
-
-
-def result(task):
-    """``(result task)``: its values when it succeeded, the condition when it failed, no values otherwise."""
-    if isinstance(task, Task):
-        return task.result
-    return task.result_fluent  # a process module
-
-
-def task_alive(task):
-    """A fluent that is true while the task is not dead; the true value is a list tail, as ``member`` gives it."""
-    return _status_net(task, ALIVE)
-
-
-def task_dead(task):
-    """A fluent that is true when the task is dead."""
-    return _status_net(task, DEAD)
-
-
-def _status_net(task, statuses):
-    return fl_funcall(lambda now: status_list(statuses[statuses.index(now):]) if now in statuses else None, status(task))
-
-
-def task_running_p(task):
-    """True while the task is alive, created and suspended included."""
-    return True if task.alive else None
-
-
-def task_dead_p(task):
-    return True if task.dead else None
-
-
-def task_done_p(task):
-    return True if task.status in DONE else None
-
-
-def task_failed_p(task):
-    return True if task.status is FAILED else None
-
-
-def task_path(task):
-    return task.path
-
-
-def child_tasks(task):
-    """Its living children, newest first (a Lisp list)."""
-    return list_from(list(reversed(task.children)))
-
-
-def parent_task(task):
-    return task.parent
-
-
-def task_constraints(task):
-    return list_from(task.constraints or [])
-
-
-def list_saved_tasks():
-    """The tasks executed while ``*save-tasks*`` was true, in order of execution."""
-    return list_from(saved_tasks)
+def execute(task):
+    """``(execute task)``: start ``task`` as a child of the current task; a toplevel task, which has no parent, outside of plans."""
+    if isinstance(task, ToplevelTask) and current_task() is not None:
+        nested = types.SimpleError("top-level calls cannot be nested.")
+        nested.hint = "A TOPLEVEL-TASK has no parent, so it cannot be started inside of a plan: make a TASK."
+        error(nested)
+    task.execute()
 
 
 def check_reason(reason):
@@ -409,21 +385,30 @@ def check_reason(reason):
         type_error(reason, "(OR NULL STRING)")
 
 
-def evaporate(task, *, reason=None, sync=True):
-    """Ask ``task`` to end and, with ``sync``, wait until it is dead. Evaporation is no condition: no handler catches it."""
+evaporate = generic("CPL-IMPL::EVAPORATE", "(task &key reason sync)", documentation="""
+Ask ``task`` to end and, with ``sync`` (the default), wait until it is dead. Evaporation is no condition: no handler catches it.
+
+A second such request ends the wait that the cleanup of the task, or of a task below it, is stuck in.""")
+
+
+@evaporate.method(AbstractTask)
+def _evaporate(task, *, reason=None, sync=True):
     check_reason(reason)
     task.evaporate(reason)
-    if truth(sync) and task is not current_task():
+    if task.asked_to_end:
+        end_waits(task)
+    task.asked_to_end = True
+    if task is current_task():
+        if truth(sync):
+            kernel.checkpoint()
+    elif truth(sync):
         task.park_until(DEAD, lambda: f"the evaporation of {task.name}")
-    elif task is current_task():
-        kernel.checkpoint()
 
 
-def execute(task):
-    """Start ``task`` as a child of the current task."""
-    task.execute()
+join_task = generic("CPL-IMPL::JOIN-TASK", "(task)", documentation="""
+Wait until ``task`` is dead: its values; for a failed one its condition is signalled here; evaporated: no values.""")
 
 
-def join_task(task):
-    """``(join-task task)``: see `Task.join`."""
+@join_task.method(AbstractTask)
+def _join_task(task):
     return task.join()

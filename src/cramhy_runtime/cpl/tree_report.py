@@ -33,7 +33,7 @@ from .current import current_task
 from .failure_types import opened
 from .statuses import ALIVE, CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
 from .symbols import CPL_IMPL
-from .tasks import RECORD, Task, recorded
+from .tasks import RECORD, AbstractTask, recorded
 from .tree import CALL, TaskTreeNode, flatten_task_tree, named_tree
 
 LONGEST = 60
@@ -100,7 +100,7 @@ def _report(of, depth, dead):
         if mine:
             return "No plan runs now. The last one that was recorded:", Forest(mine[-1:]).lines(depth, dead)
         return f"No plan runs now. Plans that begin while {RECORD.name.lower()} is true are kept for this report.", []
-    if isinstance(of, Task):
+    if isinstance(of, AbstractTask):
         return None, Forest([of]).lines(depth, dead)
     tree = of if isinstance(of, TaskTreeNode) else named_tree(of) if isinstance(of, Symbol) else None
     if tree is None:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..lisp.data import list_from
+from .ending import end_tasks
 from .pausing import pause
 from .statuses import DEAD, DONE, FAILED
-from .tasks import end_tasks
 
 
 def watch(tasks, watcher):
@@ -24,10 +24,10 @@ def watch(tasks, watcher):
         changed = True
         me.kernel.unpark(me)
 
-    for task in tasks:
-        task.status_fluent.callbacks = {"watcher": note}
-        task.execute()
     try:
+        for task in tasks:
+            task.status_fluent.callbacks = {"watcher": note}
+            task.execute()
         while True:
             while not changed:
                 pause(lambda: "a change of its children")

@@ -17,6 +17,7 @@ from collections import deque
 from cramhy_runtime import kernel
 
 from ..cpl.branches import Branches, nobody_lives
+from ..cpl.ending import awaiting_death
 from ..cpl.failure_types import PlanFailure, SimplePlanFailure, opened
 from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
 from ..cpl.fluents import make_fluent
@@ -25,6 +26,7 @@ from ..cpl.task_variables import inherit
 from ..cpl.current import current_task
 from ..cpl.pausing import pause
 from ..cpl.statuses import EVAPORATED
+from ..cpl.task_readers import result, status
 from ..cpl.tasks import Task
 from ..cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.waiting import wait_for
@@ -139,7 +141,7 @@ class ProcessModule(AbstractProcessModule):
         if request in self.queue:
             self.queue.remove(request)
             return
-        with kernel.shield():
+        with awaiting_death(lambda: request.branches.tasks if request.branches is not None else ()):
             request.cancel()
             request.waiter = kernel.current()
             while not request.finished:
@@ -286,6 +288,10 @@ def sym_of_class(module):
 
 
 # ----------------------------------------------------------------------------------------------------------------- executing
+
+
+status.method(AbstractProcessModule)(lambda module: module.status_fluent)
+result.method(ProcessModule)(lambda module: module.result_fluent)
 
 
 @pm_execute.method(Symbol, None)

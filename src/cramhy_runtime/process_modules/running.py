@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
+from ..cpl.ending import end_tasks
 from ..cpl.failure_types import opened
 from ..cpl.operators import par
 from ..cpl.pausing import pause
 from ..cpl.statuses import DEAD, FAILED
-from ..cpl.tasks import ToplevelTask, end_tasks
+from ..cpl.tasks import ToplevelTask
 from ..cpl.tree import TaskTreeNode
 from ..lisp.conditions import error
 from ..lisp.data import Cons
