@@ -5,8 +5,11 @@ A branch becomes a function of no arguments, and the operator a call of a functi
 What the operators mean stands there, and in the sections of cpl.md that the comments name."
 
 (require cramhy.operators [defoperator])
-(import cramhy.operators *
-        cramhy_runtime.lisp.conditions [CompileError]
+(import itertools
+        cramhy.operators *
+        cramhy_runtime.cpl.retry_counters [counter-variable]
+        cramhy_runtime.lisp.conditions [CompileError SimpleWarning]
+        cramhy_runtime.lisp.evaluation.compilation_unit [mention-type warn-of]
         cramhy_runtime.lisp.printer.printer [prin1-to-string])
 
 (setv package "CRAM-LANGUAGE-IMPLEMENTATION")
@@ -105,32 +108,72 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 ;; --------------------------------------------------------------------------------------------------------- 4: failures
 
-(defn handler [clause again]
-  "(list (type function) ...) for a clause (type (variable) . body): one for each type of an (or ...)."
-  (setv #(type variables #* body) clause)
-  (setv types (if (and (listp type) (= (symbol-name type.car) "OR")) (elements type.cdr) [type]))
-  (setv #(declarations forms) (split-declarations body))
-  (lfor each types
-    `(list (quote ~each)
-           (lambda [~@(elements variables) ~again]
-             ~@declarations
-             (flet [[retry [] (funcall ~again)]] ~@forms)))))
+(defn wrong [form operator part why]
+  "The error of a part of a call that has not the shape it must have."
+  (setv problem (CompileError "~A: ~S is malformed: ~A" operator part why))
+  (setv problem.hint form)
+  (error problem))
+
+(defn failure-types [clause]
+  "The types of the conditions that a clause of `with-failure-handling` handles."
+  (defn no-clause [why]
+    (wrong "A clause is written (plan-failure (failure) form*) or ((or type*) (failure) form*)."
+           "WITH-FAILURE-HANDLING" clause why))
+  (when (not (and (listp clause) (listp clause.cdr) (or (is clause.cdr.car None) (listp clause.cdr.car))))
+    (no-clause "a clause is a list of a type, a parameter list and forms."))
+  (setv named clause.car parameters (elements clause.cdr.car) unions (and (listp named) (is named.car (sym "OR"))))
+  (setv types (if unions (elements named.cdr) [named]))
+  (for [each types]
+    (when (not (is-symbol each))
+      (no-clause (if unions "OR takes names of condition types." "its type must be a name or (OR name*).")))
+    (mention-type each))
+  (setv required (list (itertools.takewhile (fn [name] (not (.startswith (symbol-name name) "&"))) parameters)))
+  (when (or (> (len required) 1) (not parameters))
+    (no-clause "its parameter list must take one argument, the condition."))
+  types)
+
+(defn handlers [clauses again]
+  "(list (list type function) ...) for the clauses: one for each type of an (or ...), and one for types named twice, the last."
+  (setv found {})
+  (for [clause (elements clauses)]
+    (setv types (failure-types clause) #(_ variables #* body) clause)
+    (setv #(declarations forms) (split-declarations body))
+    (setv body `(~@declarations (flet [[retry [] (funcall ~again)]] ~@forms)))
+    (setv condition (gensym "CONDITION"))
+    (for [each types]
+      (when (in each found)
+        (.pop found each)
+        (warn-of SimpleWarning "WITH-FAILURE-HANDLING has two clauses for ~S. The last one counts." each))
+      (setv (get found each)
+            (if (and (is variables.cdr None) (not (.startswith (symbol-name variables.car) "&")))
+                `(lambda [~variables.car ~again] ~@body)
+                `(lambda [~condition ~again] (funcall (lambda ~variables ~@body) ~condition))))))
+  (lfor #(each function) (.items found) `(list (quote ~each) ~function)))
 
 (defoperator with-failure-handling [clauses #* body]
   (setv again (gensym "RETRY"))
+  (when (not (or (is clauses None) (listp clauses)))
+    (wrong "It is written (with-failure-handling ((plan-failure (failure) form*)) form*)." "WITH-FAILURE-HANDLING" clauses
+           "the first part is a list of clauses."))
   `(block nil
      (%with-failure-handling
-       (list ~@(sum (lfor clause (elements clauses) (handler clause again)) []))
+       (list ~@(handlers clauses again))
        (lambda [~again] (flet [[retry [] (funcall ~again)]] ~@body)))))
 
 (defoperator with-retry-counters [counters #* body]
-  (setv pairs (lfor #(name initial) (elements counters) #(name initial (gensym name.name))))
-  (setv table (list-from (lfor #(name _ variable) pairs (Cons name variable))))
-  `(let [~@(lfor #(_ initial variable) pairs [variable `(%make-retry-counter (lambda [] ~initial))])]
-     (macrolet [[do-retry [name &rest forms]
-                  (list* 'when (list '%use-retry (%counter-variable name '~table)) forms)]
-                [get-counter [name] (list '%counter-value (%counter-variable name '~table))]
-                [reset-counter [name] (list '%reset-retry-counter (%counter-variable name '~table))]]
+  (setv names [])
+  (for [counter (elements counters)]
+    (when (not (and (listp counter) (is-symbol counter.car) (listp counter.cdr) (is counter.cdr.cdr None)))
+      (wrong "It is written (with-retry-counters ((counter 2)) form*)." "WITH-RETRY-COUNTERS" counter
+             "a counter is a list of a name and a form that gives its first value."))
+    (when (in counter.car names)
+      (wrong "Give every counter a name of its own." "WITH-RETRY-COUNTERS" counter "there is a counter of this name already."))
+    (.append names counter.car))
+  `(let [~@(lfor #(name initial) (elements counters) [(counter-variable name) `(%make-retry-counter (lambda [] ~initial))])]
+     (macrolet [[do-retry [counter &body forms &environment here]
+                  (list* 'when (list '%use-retry (%retry-counter counter here)) forms)]
+                [get-counter [counter &environment here] (list '%counter-value (%retry-counter counter here))]
+                [reset-counter [counter &environment here] (list '%reset-retry-counter (%retry-counter counter here))]]
        ~@body)))
 
 ;; --------------------------------------------------------------------------------------------------------- 9: policies

@@ -20,7 +20,7 @@ class Script:
     def __init__(self, text):
         self.lines = text.splitlines()
 
-    def line(self, prompt):
+    def line(self, prompt, interrupted=None):
         from cramhy_runtime.lisp.streams import streams
 
         if not self.lines:

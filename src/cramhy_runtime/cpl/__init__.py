@@ -15,8 +15,8 @@
     cpl.top_level(lambda: cpl.par(watch, open_it))      # True, after two seconds of virtual time
 
 Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``, ``suspension`` ·
-``failure_types``, ``failures`` · ``operators``, ``watching`` · ``tree``, ``tree_report``, ``tags``, ``plans``, ``policies`` · ``hooks``,
-``logging``, ``printing`` · ``package``, the Lisp faces. Reference: cpl.md.
+``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``watching`` · ``tree``, ``tree_report``,
+``tags``, ``plans``, ``policies`` · ``hooks``, ``logging``, ``printing`` · ``package``, the Lisp faces. Reference: cpl.md.
 """
 
 from .failure_types import (
@@ -32,7 +32,7 @@ from .failure_types import (
                             envelope,
                             opened,
 )
-from .failures import RetryCounter, fail, with_failure_handling
+from .failures import fail, with_failure_handling
 from .fluent_operators import fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed
 from .fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
 from .operators import (
@@ -48,6 +48,7 @@ from .operators import (
                             try_in_order,
                             with_task,
 )
+from .retry_counters import RetryCounter
 from .suspension import on_suspension, retry_after_suspension, suspend, wake_up, with_task_suspended, without_scheduling
 from .task_variables import define_task_variable
 from .current import current_task

@@ -4,8 +4,8 @@
 non-local exit, have the body tried again with ``retry``, or decline by returning. What nobody takes unwinds the task and is
 signalled once more, the same object, in the task that waits for it (`signal_failure`). Source: cpl.md section 4.
 
-``*debug-on-lisp-errors*`` behaves as nil: an error in a task goes to its parent in an envelope, and ``top-level`` opens it. A task
-that is being evaporated cannot be brought back by a handler that was there before: such handlers are passed over.
+An error in a task goes to its parent in an envelope, and ``top-level`` opens it; `debugging` says when the debugger comes first. A
+task that is being evaporated cannot be brought back by a handler that was there before: such handlers are passed over.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
-from ..lisp import conditions
 from ..lisp.conditions import error, handler_bind, handler_case, make_condition, matches, signal_condition
-from ..lisp.data import list_from, one, truth
-from ..lisp.dynamic import binding
+from ..lisp.data import lisp_list, list_from
+from ..lisp.late import late
+from ..lisp.packages import is_symbol, symbol_name
+from .debugging import BREAK_ON_PLAN_FAILURES, break_on
 from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure
 from .hooks import (
     on_fail,
@@ -25,12 +26,8 @@ from .hooks import (
     on_with_failure_handling_handled,
     on_with_failure_handling_rethrown,
 )
-from .logging import log_event
+from .logging import active_tags, log_event
 from .symbols import sym
-from .task_variables import inherit
-
-BREAK_ON_PLAN_FAILURES = inherit(sym("CPL-IMPL::*BREAK-ON-PLAN-FAILURES*"), None)
-DEBUG_ON_LISP_ERRORS = inherit(sym("CPL-IMPL::*DEBUG-ON-LISP-ERRORS*"), True)
 
 
 def fail(*arguments):
@@ -38,17 +35,30 @@ def fail(*arguments):
 
     Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.``
     """
-    condition = make_condition(arguments[0], arguments[1:], SimplePlanFailure) if arguments else SimplePlanFailure("Plan failure.")
-    log_event(lambda: ("FAIL", f"{condition}"), "FAIL")
+    condition = _designated(*arguments) if arguments else SimplePlanFailure("Plan failure.")
+    if active_tags:
+        log_event("FAIL", lambda: ("FAIL", f"{condition}"))
     if on_fail:
         on_fail(arguments[0] if arguments else None)
     if getattr(kernel.current().local, "plan_task", None) is None or not isinstance(condition, PlanFailure):
         return error(condition)
-    if truth(BREAK_ON_PLAN_FAILURES.value) and matches(condition, BREAK_ON_PLAN_FAILURES.value):
-        with binding(conditions.DEBUGGER_HOOK, None):
-            conditions.with_simple_restart(sym("CONTINUE"), "Continue failure signalling.",
-                                           lambda: conditions.invoke_debugger(condition))
+    if BREAK_ON_PLAN_FAILURES.value:
+        break_on(condition)
     return signal_failure(condition)
+
+
+def _designated(datum, *arguments):
+    """The condition that the arguments of ``fail`` stand for (cpl.md 4.2); Python code may give a class instead of its name."""
+    if isinstance(datum, types.Condition):
+        if arguments:
+            unused = types.SimpleError("The assertion ~S failed with ~S = ~S.", lisp_list(sym("NULL"), sym("REST")), sym("REST"),
+                                       list_from(arguments))
+            unused.hint = "FAIL signals a condition object as it is. What it holds is given to MAKE-CONDITION, or to FAIL with a class."
+            return error(unused)
+        return datum
+    if isinstance(datum, (str, type)) or is_symbol(datum) or datum.__class__.__name__ == "LispString":
+        return make_condition(datum, arguments, SimplePlanFailure)
+    return error(types.CaseFailure(datum, "ETYPECASE", lisp_list(sym("CONDITION"), sym("SYMBOL"), sym("STRING"))))
 
 
 def signal_failure(condition):
@@ -115,7 +125,7 @@ def with_failure_handling(clauses, body):
     """
     handling = Handling(clauses)
     if on_with_failure_handling_begin or on_with_failure_handling_end:
-        return _observed(handling, body)
+        return observed([_type_name(specifier) for specifier, _ in clauses], lambda: _attempts(handling, body), handling)
     return _attempts(handling, body)
 
 
@@ -132,14 +142,23 @@ def _attempts(handling, body):
         kernel.checkpoint()
 
 
-def _observed(handling, body):
-    names = [specifier.__name__ if isinstance(specifier, type) else getattr(specifier, "name", str(specifier))
-             for specifier, _ in handling.clauses]
-    handling.id = on_with_failure_handling_begin.first(list_from(names))
+def observed(types, thunk, handling=None):
+    """The values of ``thunk``, with the hooks of a failure-handling form for ``types``, a list of names, around it.
+
+    ``handling``, if given, keeps the id that the first hook gave. In the original ``top-level`` is such a form too.
+    """
+    run_id = on_with_failure_handling_begin.first(list_from(types))
+    if handling is not None:
+        handling.id = run_id
     try:
-        return _attempts(handling, body)
+        return thunk()
     finally:
-        on_with_failure_handling_end(handling.id)
+        on_with_failure_handling_end(run_id)
+
+
+def _type_name(specifier):
+    name = late.class_name(specifier) if isinstance(specifier, type) else specifier
+    return symbol_name(name) if is_symbol(name) else types.shown(name)
 
 
 def attempt(thunk):
@@ -166,28 +185,6 @@ class _Failed:
 def composite_failure(failures):
     """Fail with a ``composite-failure`` of the conditions ``failures``, a Python list in order."""
     return fail(CompositeFailure(failures=list_from(failures)))
-
-
-class RetryCounter:
-    """One counter of ``with-retry-counters``; ``initial`` is the function of its initial-value form."""
-
-    __slots__ = ("initial", "left")
-
-    def __init__(self, initial):
-        self.initial = initial
-        self.left = one(initial())
-
-    def use(self):
-        """``do-retry``: true, and one less left, as long as the counter is above zero; then nil."""
-        if self.left > 0:
-            self.left -= 1
-            return True
-        return None
-
-    def reset(self):
-        """``reset-counter``: evaluate the initial-value form again and store its value, which is returned."""
-        self.left = one(self.initial())
-        return self.left
 
 
 def assert_no_returning(forms, thunk):

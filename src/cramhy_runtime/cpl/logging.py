@@ -25,7 +25,7 @@ LANGUAGE = "FAIL PAR PURSUE TRY-ALL TRY-IN-ORDER WITH-PARALLEL-CHILDS WITH-TAGS"
 
 LOG_OUTPUT = sym("CPL-IMPL::*LOG-OUTPUT*")
 RIGHT_MARGIN = sym("CPL-IMPL::*LOG-RIGHT-MARGIN*")
-_active = set()
+active_tags = set()
 
 
 def tag_list(names):
@@ -33,9 +33,10 @@ def tag_list(names):
     return list_from([keyword(name) for name in names])
 
 
-def log_event(event, *tags):
+def log_event(tag, event):
     """Log ``event()``, a pair (context, text), if one of ``tags`` is active."""
-    if _active and not _active.isdisjoint(tags):
+    tags = [tag]
+    if active_tags and not active_tags.isdisjoint(tags):
         context, display = event()
         task = current_task()
         name = task.name if task else str(kernel.current().name)
@@ -58,20 +59,20 @@ def shortened(name, width=20):
 
 def log_enable(tags):
     """Activate ``tags``, a list of keywords; returns the list of active ones in table order."""
-    _active.update(_checked(tags))
+    active_tags.update(_checked(tags))
     return list_active_log_tags()
 
 
 def log_disable(tags):
-    _active.difference_update(_checked(tags))
+    active_tags.difference_update(_checked(tags))
     return list_active_log_tags()
 
 
 def log_set(tags):
     """Make ``tags`` the active ones."""
     names = _checked(tags)
-    _active.clear()
-    _active.update(names)
+    active_tags.clear()
+    active_tags.update(names)
     return list_active_log_tags()
 
 
@@ -87,8 +88,8 @@ def list_available_log_tags():
 
 
 def list_active_log_tags():
-    return tag_list(name for name in TAGS if name in _active)
+    return tag_list(name for name in TAGS if name in active_tags)
 
 
 def logging_enabled_p(*tags):
-    return None if _active.isdisjoint(tag.name for tag in tags) else True
+    return None if active_tags.isdisjoint(tag.name for tag in tags) else True

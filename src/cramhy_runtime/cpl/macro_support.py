@@ -6,11 +6,23 @@ what the functions of this room take. Nothing else happens here.
 
 from __future__ import annotations
 
-from ..lisp.conditions import CompileError, error
-from ..lisp.data import Symbol, list_from, python_list
+from ..lisp.data import Symbol, python_list
 from ..lisp.faces import define_face
 from ..lisp.objects.classes import find_class
-from . import failures, fluent_operators, logging, operators, plans, policies, suspension, tags, task_variables, tree, waiting
+from . import (
+    failures,
+    fluent_operators,
+    logging,
+    operators,
+    plans,
+    policies,
+    retry_counters,
+    suspension,
+    tags,
+    task_variables,
+    tree,
+    waiting,
+)
 from .symbols import sym
 
 
@@ -66,20 +78,11 @@ def with_policy(policy, arguments, forms, body):
 
 def log_line(context, display, tags_):
     """Log one line, made by the functions ``context`` and ``display``, if one of the tags is active."""
-    logging.log_event(lambda: (context(), display()), *(tag.name for tag in python_list(tags_)))
-
-
-def counter_variable(name, table):
-    """At expansion time: the hidden variable of the retry counter ``name``; ``table`` is a list of (name . variable)."""
-    for entry in python_list(table):
-        if entry.car is name:
-            return entry.cdr
-    known = list_from([entry.car for entry in python_list(table)])
-    return error(CompileError("There is no retry counter ~S here; WITH-RETRY-COUNTERS defines ~S.", name, known))
+    pass
 
 
 FUNCTIONS = {
-    "counter-variable": counter_variable,
+    "retry-counter": retry_counters.known_counter,
     "assert-no-returning": failures.assert_no_returning, "assert-no-nlx": failures.assert_no_nlx,
     "top-level": operators.top_level,
     "named-top-level": lambda name, body: operators.named_top_level(body, name),
@@ -94,7 +97,7 @@ FUNCTIONS = {
     "define-task-variable": lambda name, value, documentation, init: task_variables.define_task_variable(
         name, value, documentation=documentation, init_function=init),
     "with-failure-handling": with_failure_handling,
-    "make-retry-counter": failures.RetryCounter, "use-retry": lambda counter: counter.use(),
+    "make-retry-counter": retry_counters.RetryCounter, "use-retry": lambda counter: counter.use(),
     "counter-value": lambda counter: counter.left, "reset-retry-counter": lambda counter: counter.reset(),
     "enter-with-tags": tags.enter_with_tags, "make-tag-task": tags.make_tag_task, "prepare-tag": tags.prepare_tag,
     "execute-tag": tags.execute_tag,

@@ -20,8 +20,15 @@ from ..lisp.data import Cons, list_from, one, truth
 from ..lisp.dynamic import binding
 from .branches import branch_tasks, run, run_forms, run_one
 from .failure_types import CompositeFailure, opened
-from .failures import attempt, composite_failure
-from .hooks import on_finishing_named_top_level, on_preparing_named_top_level, on_top_level_cleanup_hook, on_top_level_setup_hook
+from .failures import attempt, composite_failure, observed
+from .hooks import (
+    on_finishing_named_top_level,
+    on_preparing_named_top_level,
+    on_top_level_cleanup_hook,
+    on_top_level_setup_hook,
+    on_with_failure_handling_begin,
+    on_with_failure_handling_end,
+)
 from .current import inside_plan
 from .ending import close_plan
 from .statuses import DEAD, DONE, FAILED
@@ -50,7 +57,7 @@ def named_top_level(body, name=None):
                        "DEF-CRAM-FUNCTION.")
         error(nested)
     if name is None and not (on_preparing_named_top_level or on_top_level_setup_hook or on_finishing_named_top_level
-                             or on_top_level_cleanup_hook):
+                             or on_top_level_cleanup_hook or on_with_failure_handling_begin or on_with_failure_handling_end):
         return _run_top_level(body, None, TaskTreeNode())
     if name is None:
         return _observed_top_level(body, None, TaskTreeNode())
@@ -81,7 +88,7 @@ def _observed_top_level(body, name, tree):
                 pairs += (symbol, value)
     with binding(*pairs) if pairs else nullcontext():
         try:
-            return _run_top_level(body, name, tree)
+            return observed(["PLAN-FAILURE", "ERROR"], lambda: _run_top_level(body, name, tree))
         finally:
             on_finishing_named_top_level(run_id)
             on_top_level_cleanup_hook(name)

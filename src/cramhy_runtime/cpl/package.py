@@ -105,7 +105,7 @@ def define_faces():
         functions={**FUNCTIONS, **OPERATORS, **hook_functions, "make-fluent": fluents.fluent_from_initargs,
                    "current-task": tasks.current_task_or_dummy, "task": tree.task_at,
                    "describe-task-tree": tree_report.describe_task_tree_in_lisp},
-        variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": True,
+        variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": None,
                    "*save-tasks*": None, "*record-task-tree*": None, "*cleanup-time-limit*": None,
                    "*log-output*": None, "*log-right-margin*": 130,
                    "timeout-policy": policies.TIMEOUT_POLICY,

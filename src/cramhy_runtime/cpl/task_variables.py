@@ -14,7 +14,7 @@ from cramhy_runtime import kernel
 
 from ..lisp.data import UNBOUND, Symbol
 from ..lisp.dynamic import Bindings, special
-from ..lisp.packages import find_package, sym
+from ..lisp.packages import find_package
 
 _inherited = set()  # the language's own: inherited when bound
 _declared = {}  # the user's: symbol -> init function or None; bound in every task
@@ -73,15 +73,9 @@ def inherited_bindings(task, parent):
                 stack.append([symbol, symbol.value])
     for symbol, init_function in _declared.items():
         stack.append([symbol, symbol.value if init_function is None else init_function(task, parent, symbol.value)])
-    stack.append([DEBUGGER_HOOK, end_the_task])
     bindings = Bindings()
     bindings.stack = stack
     return bindings
-
-
-def end_the_task(condition, hook):
-    """The debugger hook of tasks: an error ends the task and reaches its parent (``*debug-on-lisp-errors*`` as nil)."""
-    raise condition
 
 
 def tv_closure(task, parent, continuation):
@@ -104,5 +98,3 @@ def tv_closure(task, parent, continuation):
 
     return call
 
-
-DEBUGGER_HOOK = sym("*DEBUGGER-HOOK*")

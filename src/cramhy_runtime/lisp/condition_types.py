@@ -50,8 +50,8 @@ class Condition(BaseException):
     lisp_name = "CONDITION"
     initargs: dict = {}
     restarts = ()
+    signalled = False  # whether handlers were asked; one that Python code just raised is offered to those that it passes
     context = ""
-    signalled = False
 
     def __init__(self, *arguments, **slots):
         super().__init__(*arguments)

@@ -38,6 +38,7 @@ EVERYBODY = ("every handler on its way",)
 """The mark of an exception that a handler raised: whoever was to be asked was asked when it left the handler."""
 
 _debugger = None
+_root = None
 
 
 def install_debugger(function):
@@ -45,6 +46,12 @@ def install_debugger(function):
     global _debugger
     old, _debugger = _debugger, function
     return old
+
+
+def install_root(handler):
+    """Have ``handler(condition)`` called for an error that all handlers declined, before any debugger: the root of a plan's task."""
+    global _root
+    _root = handler
 
 
 # ---------------------------------------------------------------------------------------------------------------- handlers
@@ -176,7 +183,8 @@ def enter_case(specifiers):
 
 def foreign_case(exception, case):
     """Offer an exception of foreign code to the ``case`` that it passes, and let it go on."""
-    if not isinstance(exception, types.Condition):
+    asked = exception.signalled if isinstance(exception, types.Condition) else getattr(exception, "__lisp_asked__", None) is EVERYBODY
+    if not asked:
         _offer(from_python(exception), case, _handlers.value[1])
     raise exception
 
@@ -260,6 +268,8 @@ def error(datum, *arguments):
     """``cl:error``: signal, then enter the debugger. Never returns normally."""
     condition = make_condition(datum, arguments)
     signal_condition(condition)
+    if _root is not None:
+        _root(condition)
     invoke_debugger(condition)
 
 
@@ -292,15 +302,21 @@ def style_warn(control, *arguments):
     warn(types.SimpleStyleWarning(control, *arguments))
 
 
-def invoke_debugger(condition):
-    """Call ``*debugger-hook*``, then the installed debugger; without one raise ``condition`` itself."""
+def enter_debugger(condition):
+    """Call ``*debugger-hook*``, then the installed debugger. Returns when neither leaves by a restart, as where nobody is asked."""
     hook = DEBUGGER_HOOK.value
     if truth(hook):
         with binding(DEBUGGER_HOOK, None):
             (hook.function if isinstance(hook, Symbol) else hook)(condition, hook)
     if _debugger is not None:
         _debugger(condition)
+
+
+def invoke_debugger(condition):
+    """``cl:invoke-debugger``; without a debugger, ``condition`` itself is raised."""
+    enter_debugger(condition)
     condition.restarts = compute_restarts(condition)
+    condition.signalled = True
     raise condition
 
 
@@ -397,7 +413,14 @@ def compute_restarts(condition=None):
     while clusters is not None:
         cluster, clusters = clusters
         found += [restart for restart in cluster if restart.belongs_to(condition)]
-    return found
+    return found + [restart for restart in _everywhere if restart.belongs_to(condition)]
+
+
+def offer_everywhere(restart):
+    """Make ``restart`` the outermost one, of all stacks; its test says where it can be used."""
+    _everywhere.append(restart)
+
+
 
 
 def with_condition_restarts(condition, restarts, thunk):
@@ -561,6 +584,8 @@ def signal_exception(exception):
         return
     condition = from_python(exception)
     signal_condition(condition)
+    if _root is not None:
+        _root(condition)
     if _debugger is not None or truth(DEBUGGER_HOOK.value):
         invoke_debugger(condition)
     try:

@@ -12,6 +12,7 @@ import select
 import sys
 
 from cramhy_runtime import kernel
+from cramhy_runtime.cpl import current_task
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.streams import streams
 from cramhy_runtime.lisp.tools.advice import explanation
@@ -38,6 +39,11 @@ def report(condition, file=None):
     print("\n".join([f"cramhy: {condition_type(condition)}", explanation(condition), *backtrace.lines(condition)]), file=file or sys.stderr)
 
 
+def at_the_prompt():
+    """Whether the task that runs is the one that reads and evaluates forms."""
+    return kernel.current() is kernel.active().main
+
+
 class Input:
     """Where lines come from: a terminal, with editing if possible, or a pipe."""
 
@@ -54,8 +60,8 @@ class Input:
             except ImportError:
                 pass  # the terminal's own line editing will do
 
-    def line(self, prompt):
-        """The next line without its end; ``None`` at the end of input."""
+    def line(self, prompt, interrupted=lambda: False):
+        """The next line without its end; ``None`` at the end of input, or when ``interrupted()`` on a terminal."""
         streams.CONSOLE_OUTPUT.fresh_line()
         sys.stdout.flush()
         if self.editor is not None:
@@ -69,6 +75,8 @@ class Input:
         streams.CONSOLE_OUTPUT.column = 0
         while self.interactive:
             ready, _, _ = select.select([sys.stdin], [], [], 0.1)
+            if interrupted():
+                return None
             if self.turn != mine:  # Ctrl-C broke this call off, but its thread waits on: the line is for the next call
                 return None
             if ready:
@@ -140,11 +148,21 @@ class Console:
 
     def wait_for_line(self, prompt):
         # In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait.
+        if not at_the_prompt():
+            return self.wait_for_line_in_a_task(prompt)
         if self.session.virtual:
             with session.keyboard_interrupts():
                 kernel.settle()  # Ctrl-C that came too late for the last form is for the prompt
                 return self.input.line(prompt)
         return kernel.run_blocking(self.input.line, prompt)
+
+    def wait_for_line_in_a_task(self, prompt):
+        """In the debugger of a plan's task, which keeps the baton: all others wait for the user. Ctrl-C ends the whole form."""
+        interrupted = kernel.active().interrupt_waits
+        line = self.input.line(prompt, interrupted)
+        if line is None and interrupted():
+            kernel.yield_()  # the main task hears of it, and evaporates the plan with this task
+        return line
 
     # ---------------------------------------------------------------------------------------------------------- evaluating
 
@@ -182,8 +200,8 @@ class Console:
 
     def debug(self, condition):
         """The debugger: on top of the stack that signalled ``condition``. It is left by a restart."""
-        if kernel.current() is not kernel.active().main:
-            return  # a task of a plan: the failure goes up to its parent, and from top-level to here
+        if not at_the_prompt() and current_task() is None:
+            return  # a task of the machine's: what it fails with is reported
         signalled_here(condition)
         restarts = conditions.compute_restarts(condition)
         if not restarts:

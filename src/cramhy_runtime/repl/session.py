@@ -160,7 +160,8 @@ class Session:
                 values = all_values(evaluator.evaluate(form))
             else:
                 values = all_values(evaluator.evaluate(form, reader.filename, reader.positions))
-            kernel.settle()
+            if kernel.current() is kernel.active().main:  # and not the debugger of a plan's task
+                kernel.settle()
         except (kernel.Interrupted, kernel.Abandoned):
             raise Interruption from None
         except Condition as condition:

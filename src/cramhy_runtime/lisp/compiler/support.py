@@ -14,7 +14,7 @@ from types import FunctionType
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import TICKS, budget
 
-from ..conditions import (HandlerExit, SimpleControlError, caught, enter_case, error, foreign_case, program_error,
+from ..conditions import (Condition, HandlerExit, SimpleControlError, caught, enter_case, error, foreign_case, program_error,
                           unbound_variable)
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
@@ -287,7 +287,7 @@ NAMESPACE = {
     "Lone": one, "Ltruth": truth, "Lnot": not_, "Lvalue": value_of, "Lfdefinition": fdefinition, "Lsetf_function": setf_function,
     "Lundefined": undefined, "Lcallable": called_function, "Lall_values": all_values, "Lspread": spread, "Lcell": Cell, "Lbind": bind,
     "Lunbind": unbind, "Lblock": BlockExit, "LHandlerExit": HandlerExit, "Lenter_case": enter_case,
-    "Lforeign_case": foreign_case, "Lcaught": caught, "LException": Exception, "Lcheckpoint": kernel.checkpoint,
+    "Lforeign_case": foreign_case, "Lcaught": caught, "LException": (Exception, Condition), "Lcheckpoint": kernel.checkpoint,
     "LBlockExit": BlockExit, "Lblock_value": block_value, "Lend_block": end_block,
     "Lreturn_from": return_from, "Lrefill": kernel.refill, "Lcounting": counting, "Litems": items, "LMultipleValues": MultipleValues,
     "LCons": Cons, "Lnew_object": object.__new__, "Lstr": str, "LtextA": princ_atom, "LtextS": prin1_atom, "LtextD": decimal,
