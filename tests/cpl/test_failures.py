@@ -212,7 +212,7 @@ def test_hooks_of_failure_handling_begin_and_end_once():
     finally:
         hooks.on_with_failure_handling_begin.remove("test")
         hooks.on_with_failure_handling_end.remove("test")
-    assert events == [["PLAN-FAILURE"], "id"]
+    assert events == [["PLAN-FAILURE", "ERROR"], ["PLAN-FAILURE"], "id", "id"]  # top-level is such a form too
 
 
 def test_a_counter_allows_exactly_so_many_retries_and_can_be_reset():
