@@ -229,3 +229,11 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 (defoperator logging-enabled-p [#* tags]
   `(%logging-enabled (quote ~tags)))
+
+(defoperator log-block [begin-hook parameters end-hook #* body]
+  "The body between two hooks; the second gets the first result of the first, and whether the body called `log-succeed` last."
+  (setv id (gensym "ID") succeeded (gensym "SUCCEEDED"))
+  `(let [[~id (first (~begin-hook ~@(elements parameters)))] [~succeeded nil]]
+     (flet [[log-succeed [] (setq ~succeeded t)]
+            [log-fail [] (setq ~succeeded nil)]]
+       (unwind-protect (progn ~@body) (~end-hook ~id ~succeeded)))))

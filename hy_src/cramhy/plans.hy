@@ -5,7 +5,8 @@ task tree and `expand-plan` show it."
 
 (require cramhy.operators [defoperator])
 (import cramhy.operators *
-        cramhy_runtime.lisp.conditions [style-warn]
+        cramhy_runtime.lisp.conditions [SimpleStyleWarning style-warn]
+        cramhy_runtime.lisp.evaluation.compilation-unit [current :as compilation-unit]
         cramhy_runtime.cpl.tags [check-tag]
         cramhy_runtime.cpl.walker [tag-names])
 
@@ -17,14 +18,13 @@ task tree and `expand-plan` show it."
 
 (defoperator with-tags [#* body environment]
   (setv names (tag-names body environment))
-  `(progn
-     (%enter-with-tags)
-     (let [~@(lfor name names [name `(%make-tag-task (quote ~name))])]
-       (macrolet [[tag-form [name form]
-                    (list 'progn
-                          (list 'setq name (list '%prepare-tag name))
-                          (list '%execute-tag name (list* 'lambda nil (cdr form)) (list 'quote (cons :tag form))))]]
-         ~@body))))
+  `(let [~@(lfor name names [name `(%make-tag-task (quote ~name))])]
+     ~@(if names [] ['(%enter-with-tags)])
+     (macrolet [[tag-form [name form]
+                  (list 'progn
+                        (list 'setq name (list '%prepare-tag name))
+                        (list '%execute-tag name (list* 'lambda nil (cdr form)) (list 'quote (cons :tag form))))]]
+       ~@body)))
 
 (defn expand-tag [form environment]
   "The meaning of (:tag name . body): a keyword is no operator, so this is entered by hand."
@@ -69,7 +69,8 @@ task tree and `expand-plan` show it."
   (plan-function name lambda-list body '%top-level-cram-function-call "TOP-LEVEL-PLAN"))
 
 (defn deprecated [old new form]
-  (style-warn (+ "Use of deprecated form " old ". Please use " new " instead."))
+  (setv text (+ "Use of deprecated form " old ". Please use " new " instead.") unit (compilation-unit))
+  (if (is unit None) (style-warn text) (.tell unit SimpleStyleWarning text))
   form)
 
 (defoperator def-plan [name lambda-list #* body]

@@ -33,7 +33,7 @@ from .current import inside_plan
 from .ending import close_plan
 from .statuses import DEAD, DONE, FAILED
 from .orderings import apply_orderings
-from .tasks import Task, ToplevelTask
+from .tasks import Task, ToplevelTask, evaporate
 from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
 from .tree_report import note_stopped
 from .watching import watch
@@ -247,6 +247,11 @@ def with_parallel_childs(name, thunks, watcher):
     """
     inside_plan(name or "WITH-PARALLEL-CHILDS")
     return watch(branch_tasks(name or "WITH-PARALLEL-CHILDS", thunks), watcher)
+
+
+def unwind_and_teardown(*, reason="Manual teardown."):
+    """``(unwind-and-teardown)``: end the current task here; it unwinds, and is evaporated."""
+    evaporate(inside_plan("UNWIND-AND-TEARDOWN"), reason=reason)
 
 
 def mapcar_clean(function, first, *more):

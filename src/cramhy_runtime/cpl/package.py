@@ -2,12 +2,14 @@
 
 CRAM-LANGUAGE is what users use instead of COMMON-LISP: all of Common Lisp, eleven of its names replaced by fluent-aware ones, and
 the plan language. Which symbol is which Python function stands in the tables below. Macros are only exported here; they are
-defined in ``hy_src/cramhy/cpl.hy``.
+defined in ``hy_src/cramhy/cpl.hy`` and ``plans.hy``.
 """
 
 from __future__ import annotations
 
+from ..lisp.data import Cons
 from ..lisp.faces import define_face
+from ..lisp.types.types import define_type
 from . import (
     current,
     failures,
@@ -16,9 +18,12 @@ from . import (
     hooks,
     logging,
     macro_support,
+    markers,
     operators,
+    plan_tree,
     plans,
     policies,
+    printing,
     readers,
     statuses,
     suspension,
@@ -28,10 +33,10 @@ from . import (
     tree,
     tree_report,
     waiting,
+    walker,
 )
-from . import printing as _printing  # noqa: F401
 from . import user_methods as _user_methods  # noqa: F401
-from .symbols import CPL_IMPL
+from .symbols import CPL_IMPL, sym
 
 OPERATORS = {
     "FL<": fluent_operators.fl_lt, "FL>": fluent_operators.fl_gt, "FL=": fluent_operators.fl_equals,
@@ -57,13 +62,18 @@ FUNCTIONS = {
     failures: "fail composite-failures envelop-error",
     tree: "make-task sub-task task-tree-node clear-tasks stale-task-tree-node-p flatten-task-tree filter-task-tree "
           "get-top-level-task-tree remove-top-level-task-tree task-tree-node-effective-code task-tree-node-parameters "
-          "task-tree-node-status-fluent task-tree-node-result task-tree-node-children goal-task-tree-node-p "
-          "goal-task-tree-node-pattern replace-task-code register-task-code",
-    readers: "name parameters code-sexp code-function code-task code-parameters task-tree-node-path task-tree-node-code "
-             "task-tree-node-parent task-tree-node-p make-task-tree-node",
+          "task-tree-node-status-fluent task-tree-node-result goal-task-tree-node-p goal-task-tree-node-pattern "
+          "goal-task-tree-node-parameter-bindings goal-task-tree-node-goal replace-task-code register-task-code",
+    readers: "name parameters policy-name policy-parameters policy-init policy-check policy-recover policy-clean-up "
+             "make-code copy-code code-p code-sexp code-function code-task code-parameters "
+             "make-task-tree-node copy-task-tree-node task-tree-node-p task-tree-node-path task-tree-node-code "
+             "task-tree-node-code-replacements task-tree-node-parent task-tree-node-children "
+             "make-plan-tree-node copy-plan-tree-node plan-tree-node-p plan-tree-node-sexp plan-tree-node-path plan-tree-node-parent "
+             "plan-tree-node-children",
+    plan_tree: "expand-plan find-plan-node",
     plans: "register-goal describe-goal",
     policies: "named-policy",
-    operators: "mapcar-clean",
+    operators: "mapcar-clean unwind-and-teardown",
     logging: "log-enable log-disable log-set list-available-log-tags list-active-log-tags",
 }
 
@@ -72,11 +82,19 @@ IMPLEMENTATION_ONLY = """fl< fl> fl= fl+ fl- fl* fl/ fl-eq fl-eql fl-not fl-puls
     list-active-log-tags log-enable log-disable log-set name *save-tasks* *tasks* list-saved-tasks"""
 """Exported by CPL-IMPL but not by CPL (cpl.md 1.4)."""
 
-INTERNAL = """fl-member child-tasks parent-task task-constraints execute remove-top-level-task-tree replace-task-code register-task-code
+REACHED_FOR = """fl-member child-tasks parent-task task-constraints execute remove-top-level-task-tree replace-task-code register-task-code
+    named-top-level with-parallel-childs with-task log-block unwind-and-teardown policy-setf policy-get policy-name policy-parameters
+    policy-init policy-check policy-recover policy-clean-up make-code copy-code code-p copy-task-tree-node
+    task-tree-node-code-replacements make-plan-tree-node copy-plan-tree-node plan-tree-node-p plan-type plan-lambda-list plan-sexp
+    *task-tree-node-print-path* *task-tree-node-print-code* *task-tree-node-print-children* *task-tree-node-print-identity*
     on-preparing-named-top-level on-finishing-named-top-level on-begin-execute-tag-task on-finish-execute-tag-task
     on-preparing-task-execution on-finishing-task-execution on-with-failure-handling-begin on-with-failure-handling-end
     on-with-failure-handling-handled on-with-failure-handling-rethrown on-with-policy-begin on-with-policy-end"""
-"""Reached for with ``::`` by other CRAM code (cpl.md 1.5); present, not exported."""
+"""What other CRAM code reaches for with ``::`` (cpl.md 1.5): exported here, but not by CPL, whose users may have such names too."""
+
+WALKER = """plan-tree-node plan-tree-node-sexp plan-tree-node-parent plan-tree-node-children plan-tree-node-path find-plan-node
+    expand-plan"""
+"""What CRAM-WALKER exports together with the plan language (cpl.md 12)."""
 
 MACROS_AND_MARKERS = """fluent value-fluent whenever def-cpl-parameter current-task task toplevel-task status-indicator
     define-task-variable without-scheduling with-scheduling retry-after-suspension on-suspension plan-failure simple-plan-failure
@@ -85,8 +103,7 @@ MACROS_AND_MARKERS = """fluent value-fluent whenever def-cpl-parameter current-t
     code with-task-tree-node replaceable-function def-cram-function def-top-level-cram-function def-plan def-top-level-plan
     declare-goal def-goal goal goal-context succeed with-policy with-named-policy with-policies with-named-policies make-policy
     define-policy timeout-policy policy-condition policy-not-found policy-failure policy-init-failed policy-check-condition-met
-    goal-task-tree-node-parameter-bindings goal-task-tree-node-goal plan-tree-node plan-tree-node-sexp plan-tree-node-parent
-    plan-tree-node-children plan-tree-node-path find-plan-node expand-plan logging-enabled-p log-event"""
+    plan-tree-node logging-enabled-p log-event"""
 
 
 def define_faces():
@@ -108,18 +125,26 @@ def define_faces():
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": None,
                    "*save-tasks*": None, "*record-task-tree*": None, "*cleanup-time-limit*": None,
                    "*log-output*": None, "*log-right-margin*": 130,
+                   **printing.SWITCHES,
                    "timeout-policy": policies.TIMEOUT_POLICY,
                    **{name: statuses.status_list(members) for name, members in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
-        export=MACROS_AND_MARKERS + " *current-task* *current-path* *task-tree* *tasks*", internal=INTERNAL + " abstract-task")
-    not_reexported = {name.upper() for name in IMPLEMENTATION_ONLY.split()}
+        export=f"{MACROS_AND_MARKERS} {REACHED_FOR} *current-task* *current-path* *task-tree* *tasks*", internal="abstract-task")
+    for name, writer in readers.WRITERS.items():
+        CPL_IMPL.intern(name).setf_function = writer
+    real_statuses = statuses.status_list((*statuses.NEXT, *statuses.DEAD))
+    define_type(CPL_IMPL.intern("STATUS-INDICATOR"), lambda form, env: Cons(sym("MEMBER"), real_statuses))
+    not_reexported = {name.upper() for name in f"{IMPLEMENTATION_ONLY} {REACHED_FOR}".split()}
     shared = " ".join(name for name in CPL_IMPL.external if name not in not_reexported)
     define_face(
         "CRAM-LANGUAGE", ["CPL"], use=["COMMON-LISP"], shadow=[*SHADOWING, "SLEEP"], imports={"CPL-IMPL": shared},
         functions={**{name: OPERATORS[operator] for name, operator in SHADOWING.items()},
                    "SLEEP": waiting.sleep_star, "PULSED": fluent_operators.fl_pulsed},
         reexport=["COMMON-LISP"])
+    define_face("CRAM-WALKER", ["WALKER"], use=["COMMON-LISP"], imports={"CPL-IMPL": WALKER},
+                functions={"walk-with-tag-handler": walker.walk_with_tag_handler})
     macro_support.define()
+    markers.define()
     define_face("CRAM-USER", ["CPL-USER"], use=["CRAM-LANGUAGE"])
 
 

@@ -10,7 +10,7 @@ Repaired: the original looks the properties of plans up under a symbol of the wr
 
 from __future__ import annotations
 
-from ..lisp.data import Cons, MultipleValues, lisp_list
+from ..lisp.data import Cons, MultipleValues, lisp_list, list_from, python_list
 from ..lisp.equality import equal
 from ..lisp.packages import keyword
 from .plans import TOP_LEVEL, plan_property
@@ -29,6 +29,15 @@ class PlanTreeNode:
     def __init__(self, sexp=None, path=None, parent=None):
         self.sexp, self.path, self.parent = sexp, path, parent
         self.nodes = []
+
+    @property
+    def children(self):
+        """Its children as a Lisp list."""
+        return list_from(self.nodes)
+
+    @children.setter
+    def children(self, children):
+        self.nodes = python_list(children)
 
     def below(self, part, sexp):
         """A new child for the path part ``part``."""

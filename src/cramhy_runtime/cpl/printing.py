@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from ..lisp.data import Symbol, list_from, truth
+from ..lisp.packages import keyword
 from ..lisp.printer.pretty import logical_block, pprint_newline
-from ..lisp.printer.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable, write
+from ..lisp.printer.printer import address, define_printer, prin1_to_string, princ_to_string, print_as_symbols, print_unreadable, write
 from ..lisp.tools.describing import describe_facts, describe_object
 from .fluents import Fluent, ValueFluent
+from .plan_tree import PlanTreeNode
 from .symbols import sym
+from .task_variables import TaskStateSymbol
 from .tasks import AbstractTask, ToplevelTask
 from .tree import TaskTreeNode
 
@@ -35,14 +38,53 @@ def print_task(task, stream):
     print_unreadable(task, stream, text, identity=True)
 
 
-def print_node(node, stream):
-    """``#<TASK-TREE-NODE :PATH path :CHILD-COUNT n {address}>``."""
-    print_unreadable(node, stream, f"TASK-TREE-NODE :PATH {prin1_to_string(node.path)} :CHILD-COUNT {len(node.children)}", identity=True)
+SWITCHES = {"*task-tree-node-print-path*": keyword("FULL"), "*task-tree-node-print-code*": None,
+            "*task-tree-node-print-children*": keyword("COUNT"), "*task-tree-node-print-identity*": True}
+"""What of a task tree node is printed: its path, ``:full``, ``:one`` for the last part, or nil; its code; its children, ``:full``,
+``:count`` or nil; its address."""
 
+
+def print_node(node, stream):
+    """``#<TASK-TREE-NODE :PATH path :CHILD-COUNT n {address}>``, on several lines if one is too short (`SWITCHES`)."""
+    path, code, children, identity = (sym(f"CPL-IMPL::{name.upper()}").value for name in SWITCHES)
+    parts = []
+    if truth(path):
+        parts.append((":PATH", node.path if path is not ONE or node.path is None else node.path.car))
+    if truth(code):
+        parts.append((":CODE", node.effective_code))
+    if truth(children):
+        full = children is FULL
+        parts.append((":CHILDREN", list_from([child for child in reversed(node.children.values())])) if full
+                     else (":CHILD-COUNT", len(node.children)))
+
+    with logical_block(stream, "#<", ">") as out:
+        _write_parts(out, "TASK-TREE-NODE", parts)
+        if truth(identity):
+            out.write(f" {{{address(node)}}}")
+
+
+def print_plan_node(node, stream):
+    """``#(PLAN-TREE-NODE :SEXP form :PATH path :CHILDREN (node...))``."""
+    with logical_block(stream, "#(", ")") as out:
+        _write_parts(out, "PLAN-TREE-NODE", [(":SEXP", node.sexp), (":PATH", node.path), (":CHILDREN", node.children)])
+
+
+def _write_parts(out, name, parts):
+    out.write(name)
+    for label, value in parts:
+        out.write(" ")
+        pprint_newline("linear", out)
+        out.write(label + " ")
+        write(value, out, True)
+
+
+FULL, ONE = keyword("FULL"), keyword("ONE")
 
 define_printer(Fluent, print_fluent)
 define_printer(AbstractTask, print_task)
+print_as_symbols(TaskStateSymbol)
 define_printer(TaskTreeNode, print_node)
+define_printer(PlanTreeNode, print_plan_node)
 
 
 @describe_object.method(Fluent, None)

@@ -1,8 +1,14 @@
-"""Reader functions with the Lisp names of slots: the name of anything that has one, the parts of codes and tree nodes."""
+"""The structures of the plan language as Lisp sees them: constructors, copiers, readers and writers of codes, tree nodes and policies.
+
+In CRAM these are ``defstruct``s; here they are Python classes, so that the machine can use their slots at full speed, and the
+functions that ``defstruct`` would have made stand in this module. `WRITERS` are those for ``setf``.
+"""
 
 from __future__ import annotations
 
-from .tree import TaskTreeNode
+from ..lisp.conditions import type_error
+from .plan_tree import PlanTreeNode
+from .tree import Code, TaskTreeNode
 
 
 def name(thing):
@@ -10,9 +16,49 @@ def name(thing):
     return thing.name
 
 
+# ---------------------------------------------------------------------------------------------------------------- policies
+
+
 def parameters(policy):
     """The parameter names of a policy."""
     return policy.parameters
+
+
+policy_name, policy_parameters = name, parameters
+
+
+def policy_init(policy):
+    return policy.init
+
+
+def policy_check(policy):
+    return policy.check
+
+
+def policy_recover(policy):
+    return policy.recover
+
+
+def policy_clean_up(policy):
+    return policy.clean_up
+
+
+# ------------------------------------------------------------------------------------------------------------------- codes
+
+
+def make_code(*, sexp=None, function=None, task=None, parameters=None):
+    """What runs at a node of the task tree."""
+    return Code(sexp, function, task, parameters)
+
+
+def copy_code(code):
+    copy = Code(code.sexp, code.function, code.task, code.parameters)
+    copy.called_with = code.called_with
+    return copy
+
+
+def code_p(thing):
+    return True if isinstance(thing, Code) else None
 
 
 def code_sexp(code):
@@ -31,6 +77,26 @@ def code_parameters(code):
     return code.parameters
 
 
+# --------------------------------------------------------------------------------------------------- nodes of the task tree
+
+
+def make_task_tree_node(*, code=None, code_replacements=None, parent=None, children=None, path=None):
+    """A node that belongs to no tree yet; ``children`` is an alist from path part to node, the newest first."""
+    node = TaskTreeNode(path, parent, code)
+    node.code_replacements, node.children_alist = code_replacements, children
+    return node
+
+
+def copy_task_tree_node(node):
+    """A node of the same contents; codes and children are shared."""
+    return make_task_tree_node(code=node.code, code_replacements=node.code_replacements, parent=node.parent,
+                               children=node.children_alist, path=node.path)
+
+
+def task_tree_node_p(thing):
+    return True if isinstance(thing, TaskTreeNode) else None
+
+
 def task_tree_node_path(node):
     return node.path
 
@@ -39,14 +105,72 @@ def task_tree_node_code(node):
     return node.code
 
 
+def task_tree_node_code_replacements(node):
+    """The codes that replace its own, the newest first."""
+    return node.code_replacements
+
+
 def task_tree_node_parent(node):
     return node.parent
 
 
-def task_tree_node_p(thing):
-    return True if isinstance(thing, TaskTreeNode) else None
+def task_tree_node_children(node):
+    """The children as an alist from path part to node, the newest first."""
+    return node.children_alist
 
 
-def make_task_tree_node(*, path=None, parent=None, code=None):
-    """``make-task-tree-node``: a node that belongs to no tree yet."""
-    return TaskTreeNode(path, parent, code)
+# --------------------------------------------------------------------------------------------------- nodes of the plan tree
+
+
+def make_plan_tree_node(*, sexp=None, path=None, parent=None, children=None):
+    node = PlanTreeNode(sexp, path, parent)
+    node.children = children
+    return node
+
+
+def copy_plan_tree_node(node):
+    return make_plan_tree_node(sexp=node.sexp, path=node.path, parent=node.parent, children=node.children)
+
+
+def plan_tree_node_p(thing):
+    return True if isinstance(thing, PlanTreeNode) else None
+
+
+def plan_tree_node_sexp(node):
+    return node.sexp
+
+
+def plan_tree_node_path(node):
+    return node.path
+
+
+def plan_tree_node_parent(node):
+    return node.parent
+
+
+def plan_tree_node_children(node):
+    """The nodes below it, in the order of the text."""
+    return node.children
+
+
+# ----------------------------------------------------------------------------------------------------------------- writers
+
+
+def _writer(cls, slot):
+    def write(value, thing):
+        if not isinstance(thing, cls):
+            return type_error(thing, cls.lisp_name.partition("::")[2])
+        setattr(thing, slot, value)
+        return value
+
+    return write
+
+
+WRITERS = {
+    **{f"CODE-{slot}": _writer(Code, slot.lower()) for slot in ("SEXP", "FUNCTION", "TASK", "PARAMETERS")},
+    **{f"TASK-TREE-NODE-{slot}": _writer(TaskTreeNode, slot.lower().replace("-", "_"))
+       for slot in ("CODE", "CODE-REPLACEMENTS", "PARENT", "PATH")},
+    "TASK-TREE-NODE-CHILDREN": _writer(TaskTreeNode, "children_alist"),
+    **{f"PLAN-TREE-NODE-{slot}": _writer(PlanTreeNode, slot.lower()) for slot in ("SEXP", "PATH", "PARENT", "CHILDREN")},
+}
+"""Name of a reader → function of a value and an object, for ``(setf (reader object) value)``."""

@@ -8,7 +8,7 @@ and a step can be replaced for the next run. Repetition of a part goes to siblin
 from __future__ import annotations
 
 from ..lisp.conditions import error, type_error
-from ..lisp.data import Cons, lisp_list, list_from, truth
+from ..lisp.data import Cons, lisp_list, list_from, python_list, truth
 from ..lisp.packages import keyword
 from .branches import run_one
 from .hooks import on_finishing_task_execution, on_preparing_task_execution
@@ -51,6 +51,24 @@ class TaskTreeNode:
     @property
     def effective_code(self):
         return self.replacements[0] if self.replacements else self.code
+
+    @property
+    def code_replacements(self):
+        """The codes that replace its own, a Lisp list, the newest first."""
+        return list_from(self.replacements)
+
+    @code_replacements.setter
+    def code_replacements(self, codes):
+        self.replacements = python_list(codes)
+
+    @property
+    def children_alist(self):
+        """Its children as an alist from path part to node, the newest first."""
+        return list_from([Cons(child.path.car, child) for child in reversed(self.children.values())])
+
+    @children_alist.setter
+    def children_alist(self, alist):
+        self.children = {_key(pair.car): pair.cdr for pair in reversed(python_list(alist))}
 
     def child(self, part, make=True):
         """The node below this one for the path part ``part`` (a Lisp list), made if there is none and ``make``."""
@@ -271,11 +289,6 @@ def task_tree_node_status_fluent(node):
 
 def task_tree_node_result(node):
     return node.code.task.result if node.code and node.code.task else None
-
-
-def task_tree_node_children(node):
-    """The children as an alist from path part to node, the newest first."""
-    return list_from([Cons(child.path.car, child) for child in reversed(node.children.values())])
 
 
 def flatten_task_tree(tree):

@@ -76,6 +76,13 @@ _ATOMS = {
 """The text of an atom (object, whether escaped), by class: what needs neither line breaks nor a stream."""
 
 
+
+
+def print_as_symbols(cls):
+    """Let instances of ``cls``, a subclass of `Symbol`, be printed as symbols are."""
+    _ATOMS[cls] = symbol_text
+
+
 atom_text = _ATOMS.get
 """The function (object, whether escaped) that gives the text of an atom of a class; ``None`` for other classes."""
 

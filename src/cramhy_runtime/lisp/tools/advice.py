@@ -119,6 +119,9 @@ def _variable(symbol):
 
 
 def _function(symbol):
+    if symbol.compiler_data and "advice" in symbol.compiler_data:  # a name that its package explains itself
+        return symbol.compiler_data["advice"]
+
     def defined(other):
         return not isinstance(other.function, UndefinedFunction) or other.macro is not None
 
