@@ -94,7 +94,7 @@ task tree and `expand-plan` show it."
 (defoperator def-goal [head #* body]
   (setv name head.car pattern head.cdr bindings (gensym "BINDINGS") values (gensym "VALUES") body-block (gensym "GOAL"))
   (setv #(documentation declarations forms) (documentation-and-body body))
-  `(%register-goal (quote ~name) (quote ~pattern)
+  `(%define-goal (quote ~name) (quote ~pattern)
      (lambda [~bindings]
        (block ~body-block
          (flet [[succeed [&rest ~values] (return-from ~body-block (values-list ~values))]]

@@ -104,7 +104,7 @@ FUNCTIONS = {
     "with-tree-node": with_tree_node,
     "cram-function-call": cram_function_call, "top-level-cram-function-call": top_level_cram_function_call,
     "define-plan": plans.define_plan,
-    "declare-goal": plans.declare_goal, "goal-call": plans.call_goal, "register-goal": plans.register_goal,
+    "declare-goal": plans.declare_goal, "goal-call": plans.call_goal, "define-goal": plans.define_goal,
     "policy-get": lambda store, symbol: store.get(symbol), "policy-set": lambda store, symbol, value: store.set(symbol, value),
     "make-policy": make_policy, "define-policy": define_policy, "with-policy": with_policy, "named-policy": policies.named_policy,
     "log-line": log_line, "logging-enabled": lambda tags_: logging.logging_enabled_p(*python_list(tags_)),

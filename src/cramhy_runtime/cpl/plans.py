@@ -112,8 +112,13 @@ def declare_goal(name):
     return name
 
 
-def register_goal(name, pattern, function, documentation=None, sexp=None):
-    """Add a body for calls that match ``pattern``; an equal pattern is replaced in place, with a style warning.
+def register_goal(name, pattern, goal_fun, doc_string=None):
+    """``(register-goal name pattern goal-fun)``: add a body for calls that match ``pattern``; ``goal_fun`` takes the bindings."""
+    return define_goal(name, pattern, goal_fun, doc_string)
+
+
+def define_goal(name, pattern, function, documentation=None, sexp=None):
+    """What ``def-goal`` does. A pattern equal to a known one replaces that in its place, with a style warning.
 
     ``function`` takes the list of bindings. ``sexp``: the form that is recorded at the nodes of its calls.
     """
