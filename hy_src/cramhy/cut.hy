@@ -96,3 +96,29 @@
 (defoperator with-file-cache [variable file value #* body]
   "`variable` is the value of the form `value`, computed again only when the file has changed."
   `(let [[~variable (%file-value ~file (lambda [] ~value))]] ~@body))
+
+(defoperator with-lock-held [spec #* body]
+  "`((lock &key whostate) form...)`; `whostate` is for people who look at the original's threads."
+  `(%with-lock-held ~spec.car (lambda [] ~@body)))
+
+(defoperator with-hash-table-locked [spec #* body]
+  `(%with-hash-table-locked ~spec.car (lambda [] ~@body)))
+
+(defoperator with-synchronization-barrier [spec #* body]
+  "`((variable n &key name recyclable) form...)`: `variable` is a new barrier, which is broken when the form is left."
+  `(%with-synchronization-barrier (make-synchronization-barrier ~@(elements spec.cdr)) (lambda [~spec.car] ~@body)))
+
+(defoperator with-synchronization-barriers [specs #* body]
+  "`(((variable n ...)...) form...)`"
+  (setv form `(progn ~@body))
+  (for [spec (reversed (elements specs))]
+    (setv form `(with-synchronization-barrier ~spec ~form)))
+  form)
+
+(defoperator choose [tag #* options]
+  "`(choose tag :parameters (x y) :generators (form-x form-y) :body form)`: a tag that computes each parameter by its generator."
+  (setv options (dict (zip (lfor key (cut options 0 None 2) key.name) (cut options 1 None 2))))
+  (setv parameters (elements (.get options "PARAMETERS")) generators (elements (.get options "GENERATORS")))
+  (when (!= (len parameters) (len generators))
+    (error "~S has ~D parameters and ~D generators; each parameter needs one." tag (len parameters) (len generators)))
+  `(:tag ~tag (let* [~@(lfor #(parameter generator) (zip parameters generators) [parameter generator])] ~(.get options "BODY"))))

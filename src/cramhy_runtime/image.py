@@ -31,6 +31,7 @@ def boot():
     from cramhy_runtime.lisp.systems import asdf, importer, ros_load, systems, uiop, unit_tests
     from cramhy_runtime.lisp.faces import define_face
     from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+    from cramhy_runtime.lisp.tools import advice
 
     kernel.allow_deep_recursion()
     if kernel.active() is None:
@@ -48,6 +49,7 @@ def boot():
     define_face("CRAMHY", functions={"within-limit": unit_tests.within_limit})
     importer.install()
     kernel.describe_frame = places_in_source.describe_frame
+    kernel.unhandled = advice.tell_unhandled
     evaluator.PACKAGE.value = COMMON_LISP_USER
 
 

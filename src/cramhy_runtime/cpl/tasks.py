@@ -60,6 +60,8 @@ class AbstractTask:
                  "constraints", "ended", "started_at", "ended_at", "observers", "held", "unschedulable", "suspension_handlers",
                  "retry_level", "depth", "__weakref__", "__dict__")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::ABSTRACT-TASK"
+    threads = ()
+    """The kernel's tasks that its body spawned by ``cut:spawn-thread``."""
     record = None
     """The list of all tasks of its plan, dead ones too, if they are recorded (``tree_report.py``)."""
     awaited = None
@@ -208,9 +210,19 @@ class AbstractTask:
                 end_tasks(list(self.children), "Parent succeeded." if status is SUCCEEDED else "Parent aborted.")
             except BaseException as exception:  # the user gave up waiting for cleanup
                 status, result = self._outcome(exception)
+        if self.threads:
+            self._end_threads()
         if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
         self._die(status, result)
+
+    def _end_threads(self):
+        """End the threads that the body left running, and wait for that. Errors of theirs are reported by the kernel."""
+        for thread in self.threads:
+            thread.cancel(f"the end of {self.name}")
+        with kernel.shield():
+            for thread in self.threads:
+                thread.join(lambda thread=thread: f"the cleanup of the thread {thread.name}", claim=False)
 
     def _refused(self, exception):
         """The system gives no stack for it: it fails before its first step."""

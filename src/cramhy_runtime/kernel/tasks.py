@@ -138,10 +138,11 @@ class Task:
             if self is self.kernel.current:
                 budget.end()
 
-    def join(self, why=None):
-        """Park until the task is dead; returns its result, or None if it has none.
+    def join(self, why=None, until=None, claim=True):
+        """Park until the task is dead, or the clock reaches UNTIL; returns its result, or None if it has none.
 
-        Does not raise what ended it: that is in `exception`, for the joiner to decide.
+        Does not raise what ended it: that is in `exception`, for the joiner to decide. With CLAIM false the joiner only
+        waits, and an exception that nobody looks at is reported as if it had not.
         """
         kernel = self.kernel
         me = kernel.current
@@ -152,11 +153,13 @@ class Task:
                 self.joiners = []
             self.joiners.append(me)
             try:
-                kernel.park(why or self._why_joined)
+                kernel.park(why or self._why_joined, until)
             finally:
                 if self.state is not DEAD:
                     self.joiners.remove(me)
-        self.claimed = True
+            if until is not None and self.state is not DEAD and kernel.now() >= until:
+                return None
+        self.claimed = self.claimed or claim
         return self.result
 
     def _why_joined(self):

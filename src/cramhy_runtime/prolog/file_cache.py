@@ -1,7 +1,4 @@
-"""Values that were computed from files, as long as the files do not change; and what CRAM-UTILITIES takes from SBCL's threads.
-
-Source: cpl.md 13.3.
-"""
+"""Values that were computed from files, as long as the files do not change; and forms in a string. Source: cpl.md 13.3."""
 
 from __future__ import annotations
 
@@ -9,7 +6,6 @@ import os
 
 from cramhy_runtime.lisp.conditions import error
 from cramhy_runtime.lisp.data import one
-from cramhy_runtime.lisp.packages import sym
 
 _values: dict = {}
 
@@ -52,23 +48,3 @@ def execute_string(string, *, filename=None, cleanup=True):
 
     load_text(str(string), filename and str(filename) or "<string>")
     return True
-
-
-THREADS = """current-thread all-threads thread-name spawn-thread spawn-threads run-in-thread kill-thread thread-alive-p join-thread
-make-lock make-recursive-lock make-condition-variable condition-variable-wait condition-variable-wait-with-timeout
-condition-variable-signal condition-variable-broadcast make-synchronized-hash-table thread-local-binding-p make-semaphore
-wait-on-semaphore try-semaphore signal-semaphore semaphore-count semaphore-name make-mailbox send-message receive-message
-receive-message-no-hang receive-pending-messages list-mailbox-messages mailbox-count mailbox-empty-p mailbox-name mailboxp"""
-
-
-def _no_threads(name):
-    def call(*arguments):
-        return error("~S: cramhy has no threads besides the tasks of plans. Use par, pursue or with-task for what runs beside, fluents and "
-                     "wait-for for waiting; data needs no locks, because one task runs at a time.", sym(f"CRAM-UTILITIES::{name.upper()}"))
-
-    return call
-
-
-def without_threads():
-    """Lisp names of SBCL's thread functions → functions that say what to use instead."""
-    return {name: _no_threads(name) for name in THREADS.split()}

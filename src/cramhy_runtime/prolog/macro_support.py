@@ -5,7 +5,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import list_from, python_list
 from cramhy_runtime.lisp.faces import define_face
 
-from . import facts, file_cache, lazy_lists, natives, patterns, rete
+from . import barriers, facts, file_cache, lazy_lists, locks, natives, patterns, rete
 
 
 class FactCollector:
@@ -73,4 +73,6 @@ define_face("CRAMHY", functions={
     "delay-thunk": lazy_lists.delay, "lazy-dolist": lazy_lists.lazy_dolist, "values-of-variables": values_of_variables,
     "strict-values-of-variables": strict_values_of_variables, "values-of-pattern": values_of_pattern,
     "file-value": file_cache.file_value,
+    "with-lock-held": locks.with_lock_held, "with-hash-table-locked": locks.with_hash_table_locked,
+    "with-synchronization-barrier": barriers.with_synchronization_barrier,
 })

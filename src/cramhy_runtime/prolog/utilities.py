@@ -1,4 +1,4 @@
-"""The small functions of ``cram-utilities``: time stamps, comparing, names, data pools, queues, copies.
+"""The small functions of ``cram-utilities``: time stamps, comparing, names, data pools, copies.
 
 Source: prolog.md 13.2, cpl.md 13.3.
 """
@@ -10,11 +10,22 @@ import re
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, warn
-from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from, one, python_list, truth
+from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, type_error, warn
+from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, Symbol, lisp_list, list_from, one, python_list, truth
+from cramhy_runtime.lisp.dynamic import special
 from cramhy_runtime.lisp.equality import eql
 from cramhy_runtime.lisp.evaluation.functions import function_of, identity
+from cramhy_runtime.lisp.evaluation.universal_time import CONSTANTS, get_internal_run_time
+from cramhy_runtime.lisp.objects.structures import StructureObject, copy_structure
+from cramhy_runtime.lisp.packages import find_package, keyword
+from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+from cramhy_runtime.lisp.symbols.package_functions import find_symbol
+from cramhy_runtime.lisp.symbols.symbols import fboundp
 
+from .symbols import sym
+
+REAL, RUN = keyword("REAL"), keyword("RUN")
+INTERNAL_UNITS = CONSTANTS["INTERNAL-TIME-UNITS-PER-SECOND"]
 
 
 def _or_default(designator, default):
@@ -36,38 +47,55 @@ style_warn = conditions.style_warn
 
 
 def copy_object(obj):
-    """A deep copy of an instance, slot by slot; lists, numbers and other objects are returned as they are."""
-    if not hasattr(obj, "__dict__") or isinstance(obj, (type, BaseException)) or callable(obj):
-        return obj
-    copy = obj.__class__.__new__(obj.__class__)
-    copy.__dict__.update({name: copy_object(value) for name, value in obj.__dict__.items()})
-    return copy
+    """A copy of an instance whose bound slots are copied in turn; a structure's slots are shared; other objects are themselves.
+
+    An instance that is met again, in itself or in another slot, is copied once, so that circles and sharing are as before.
+    """
+    copies = {}
+
+    def copy_of(thing):
+        if isinstance(thing, StructureObject):
+            return copy_structure(thing)
+        if not hasattr(thing, "__dict__") or isinstance(thing, type | BaseException) or callable(thing):
+            return thing
+        copy = copies.get(id(thing))
+        if copy is None:
+            copy = copies[id(thing)] = thing.__class__.__new__(thing.__class__)
+            copy.__dict__.update({name: copy_of(value) for name, value in thing.__dict__.items()})
+        return copy
+
+    return copy_of(obj)
 
 
 # --------------------------------------------------------------------------------------------------------------------- time
 
-_timestamp_function = [None]
+TIMESTAMP_FUNCTION = special(sym("CUT::*TIMESTAMP-FUNCTION*"))
+"""``cut:*timestamp-function*``: the function that gives time stamps; nil for the kernel's clock."""
 
 
 def current_timestamp(what_time=None):
-    """Seconds as a double, from the function set by `set_timestamp_function`; with an argument always the clock of the kernel."""
-    function = None if what_time is not None else _timestamp_function[0]
+    """Seconds as a double, from ``*timestamp-function*``; with ``:real`` the kernel's clock, with ``:run`` the time that was computed."""
+    if what_time is RUN:
+        return DoubleFloat(get_internal_run_time() / INTERNAL_UNITS)
+    if what_time not in (None, REAL):
+        return type_error(what_time, "(MEMBER :REAL :RUN)")
+    function = TIMESTAMP_FUNCTION.value if what_time is None else None
     return DoubleFloat(kernel.now()) if function is None else one(function_of(function)())
 
 
 def set_timestamp_function(fn):
-    _timestamp_function[0] = fn
+    TIMESTAMP_FUNCTION.value = fn
     return fn
 
 
 def set_default_timestamp_function():
-    _timestamp_function[0] = None
+    TIMESTAMP_FUNCTION.value = None
 
 
 def microsecond_timestamp_function(*, relative=None):
-    """A function that gives seconds; ``relative``: since now."""
-    start = kernel.now() if truth(relative) else 0.0
-    return lambda: DoubleFloat(kernel.now() - start)
+    """A function that gives seconds to the microsecond, since 1970 or, with ``relative``, since now."""
+    start = kernel.now() if truth(relative) else -kernel.active().epoch
+    return lambda: DoubleFloat(round(kernel.now() - start, 6))
 
 
 def current_string_timestamp():
@@ -187,47 +215,16 @@ def delete_pool_value(pool, number):
     pool.table.pop(number, None)
 
 
-# -------------------------------------------------------------------------------------------------------------------- queues
+# ------------------------------------------------------------------------------------------------------------------ features
 
 
-class Queue:
-    """First in, first out."""
+def function_bound_feature(name, package=None):
+    """A feature expression that holds if a function ``name`` is defined: for ``#+#.(cut:function-bound-feature "F" "PKG")``.
 
-    def __init__(self, name, items):
-        self.name, self.items = name, items
-
-
-def make_queue(*, name=None, initial_contents=None):
-    return Queue(name, python_list(initial_contents))
-
-
-def enqueue(value, queue):
-    queue.items.append(value)
-    return value
-
-
-def dequeue(queue):
-    """Values: the oldest value and true, or ``nil`` and ``nil``."""
-    return MultipleValues((queue.items.pop(0), True)) if queue.items else MultipleValues((None, None))
-
-
-def list_queue_contents(queue):
-    return list_from(queue.items)
-
-
-def queue_count(queue):
-    return len(queue.items)
-
-
-def queue_empty_p(queue):
-    return None if queue.items else True
-
-
-def queue_name(queue):
-    return queue.name
-
-
-def queuep(obj):
-    return True if isinstance(obj, Queue) else None
-
-
+    ``name`` is a symbol, or a string and ``package`` the package in which it is looked up.
+    """
+    symbol = name
+    if not isinstance(name, Symbol):
+        home = PACKAGE.value if package is None else find_package(str(getattr(package, "name", package)))
+        symbol = one(find_symbol(str(name), home)) if home is not None else None
+    return lisp_list(keyword("OR") if symbol is None or fboundp(symbol) is None else keyword("AND"))

@@ -7,14 +7,15 @@ were forgotten, a function of another package, a typing mistake.
 from __future__ import annotations
 
 from ..condition_types import Condition
-from ..conditions import types
+from ..conditions import from_python, types
 from ..data import Symbol, UNBOUND, UndefinedFunction
 from ..dynamic import binding
-from ..evaluation.places_in_source import describe, excerpt
+from ..evaluation.places_in_source import describe, excerpt, locate
 from ..packages import all_packages, near_names, sym, symbol_name
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
 from ..printer.printer import princ_to_string
+from ..streams.streams import ERROR_OUTPUT, output_stream
 
 COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
 SHOWN_PLACES = 3
@@ -51,6 +52,16 @@ def explanation(condition):
     if hint:
         lines += [f"  {line}" for line in hint.splitlines()]
     return "\n".join(lines)
+
+
+def tell_unhandled(task, exception):
+    """``kernel.unhandled``: tell of an error that ended ``task`` when nobody waited for it, on ``*error-output*``."""
+    condition = from_python(exception)
+    locate(condition, exception)
+    output = output_stream(ERROR_OUTPUT.value)
+    output.fresh_line()
+    output.write(f"An error ended {task.name}, and nobody waited for it:\n{explanation(condition)}\n")
+    output.flush()
 
 
 def _expansion(condition, position):
