@@ -1,4 +1,4 @@
-"""The rest of CRAM-UTILITIES: dispatch on strings and lists, values kept for files, and what it takes from SBCL's threads (cpl.md 13.3)."""
+"""The rest of CRAM-UTILITIES: dispatch on strings and lists, values kept for files (cpl.md 13.3)."""
 
 import pytest
 
@@ -38,7 +38,6 @@ def test_a_value_is_computed_again_only_when_its_file_changes(value, tmp_path):
 
 @pytest.mark.parametrize("form, text", [
     ("(cut:destructure-case '(:go) ((:turn a) a))", "destructure-case failed: (:GO)"),
-    ("(cut:spawn-thread 'list)", "CRAM-UTILITIES:SPAWN-THREAD: cramhy has no threads besides the tasks of plans. Use par, pursue"),
     ('(cut:cached-file-value "/no/such/file")', "The file /no/such/file cannot be looked at"),
 ])
 def test_what_is_wrong(value, form, text):

@@ -1,0 +1,27 @@
+"""Lisp text evaluated in a session, on both back ends."""
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.repl.session import Session
+
+
+class Lisp:
+    """``lisp(text)``: the values of the last form of ``text`` as they print, with spaces between them."""
+
+    def __init__(self, backend):
+        self.session = Session(time="virtual", backend=backend, turtlesim=False)
+        self.session.package = "CRAM-USER"
+
+    def __call__(self, text):
+        return " ".join(map(prin1_to_string, self.session.evaluate_text(text)))
+
+
+@pytest.fixture
+def lisp(request):
+    yield Lisp(request.node.callspec.params["fresh_kernel"])
+    kernel.stop()
+    PACKAGE.value = COMMON_LISP_USER
