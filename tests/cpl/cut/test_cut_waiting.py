@@ -155,7 +155,8 @@ def test_waiting_for_ever_is_a_deadlock_that_says_for_what(lisp):
     with pytest.raises(kernel.Deadlock) as caught:
         lisp("""(top-level (let ((l (cut:make-lock :name "l")) (s (cut:make-semaphore :name "s")) (m (cut:make-mailbox)))
           (par (cut:with-lock-held (l) (cut:wait-on-semaphore s :n 2)) (cut:with-lock-held (l) 1) (cut:receive-message m)
-               (cut:enter-barrier (cut:make-synchronization-barrier 3 :name "b")) (cut:condition-variable-wait (cut:make-condition-variable))
+               (cut:enter-barrier (cut:make-synchronization-barrier 3 :name "b"))
+               (cut:condition-variable-wait (cut:make-condition-variable))
                (cut:join-thread (cut:spawn-thread "w" (lambda () (wait-for (make-fluent))))))))""")
     text = str(caught.value)
     for reason in ("2 of the semaphore s", "the lock l, which [PAR-CHILD-#1/6]-", "a message in the mailbox", "2 more at the barrier b",
