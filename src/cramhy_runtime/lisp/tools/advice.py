@@ -6,6 +6,8 @@ were forgotten, a function of another package, a typing mistake.
 
 from __future__ import annotations
 
+from cramhy_runtime import kernel
+
 from ..condition_types import Condition
 from ..conditions import from_python, types
 from ..data import Symbol, UNBOUND, UndefinedFunction
@@ -55,9 +57,14 @@ def explanation(condition):
 
 
 def tell_unhandled(task, exception):
-    """``kernel.unhandled``: tell of an error that ended ``task`` when nobody waited for it, on ``*error-output*``."""
+    """``kernel.unhandled``: tell of an error that ended ``task`` when nobody waited for it, on ``*error-output*``.
+
+    One that no Lisp text has to do with is told as Python does.
+    """
     condition = from_python(exception)
     locate(condition, exception)
+    if getattr(condition, "position", None) is None:
+        return kernel.reports.unhandled(task, exception)
     output = output_stream(ERROR_OUTPUT.value)
     output.fresh_line()
     output.write(f"An error ended {task.name}, and nobody waited for it:\n{explanation(condition)}\n")
