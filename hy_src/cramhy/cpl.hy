@@ -100,11 +100,14 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   `(%with-scheduling (lambda [] ~@body)))
 
 (defoperator define-task-variable [name [value None] [documentation None] #* options]
-  (setv options (dict (zip (lfor key (cut options 0 None 2) key.name) (cut options 1 None 2))))
-  `(progn
-     (declaim (special ~name))
-     (%define-task-variable (quote ~name) ~value ~documentation ~(.get options "INIT-FUNCTION"))
+  (setv table (keyword-options "DEFINE-TASK-VARIABLE" options ["TYPE" "INIT-FUNCTION" "IGNORE-PACKAGE-LOCKS"]))
+  (setv type (.get table "TYPE"))
+  (setv form `(progn
+     (defvar ~name ~value ~@(if documentation [documentation] []))
+     ~@(if type [`(declaim (type ~type ~name))] [])
+     (%define-task-variable (quote ~name) ~(.get table "INIT-FUNCTION"))
      (quote ~name)))
+  (if (.get table "IGNORE-PACKAGE-LOCKS") `(sb-ext:without-package-locks ~form) form))
 
 ;; --------------------------------------------------------------------------------------------------------- 4: failures
 

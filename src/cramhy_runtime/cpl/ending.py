@@ -72,7 +72,7 @@ def end_tasks(tasks, reason=None):
 def end_waits(task, because=None):
     """End the wait that the cleanup of ``task``, or of tasks whose death it awaits, is stuck in; returns whether there was one.
 
-    ``because``, a clause such as "nothing can bring that about", makes a warning of it in the task that waits.
+    ``because``, a clause such as "Nothing can bring that about", makes a warning of it in the task that waits.
     """
     if task.awaited is not None:
         others = task.awaited() if callable(task.awaited) else task.awaited
@@ -85,7 +85,7 @@ def end_waits(task, because=None):
     why, place = me.describe_why(), where(me.kernel.frame_of(me))
 
     def told():
-        warn(SimpleWarning("The cleanup of ~a waited for ~a~@[, at ~a~]. ~@(~a~): the rest of this cleanup form is left out, and outer "
+        warn(SimpleWarning("The cleanup of ~a waited for ~a~@[, at ~a~]. ~a: the rest of this cleanup form is left out, and outer "
                            "ones run.", task.name, why, place or None, because))
         return kernel.WaitEnded(because)
 
@@ -115,7 +115,7 @@ class CleanupLimit:
         task = self.task
         if task.dead or task.awaited is not None or (self.block is None and task.kernel_task.cleanup is not None):
             return  # those that it waits for, and the blocks, have limits of their own; a timer for nothing would hide a deadlock
-        ended = end_waits(task, f"the time of *CLEANUP-TIME-LIMIT*, {self.seconds:g} s, is over")
+        ended = end_waits(task, f"The time of *CLEANUP-TIME-LIMIT*, {self.seconds:g} s, is over")
         self._look_after(self.seconds if ended else LATER)
 
     def go_on(self):
@@ -163,7 +163,7 @@ def close_plan(task, reason):
             raise
         except (kernel.Deadlock, kernel.TimeLimit) as problem:
             hopeless = isinstance(problem, kernel.Deadlock)
-            if not end_waits(task, "nothing can bring that about any more" if hopeless else "the time limit of the run was reached"):
+            if not end_waits(task, "Nothing can bring that about any more" if hopeless else "The time limit of the run was reached"):
                 break
     for below in _with_descendants(task):
         below.kernel_task.abandon()

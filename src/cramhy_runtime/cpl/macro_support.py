@@ -94,8 +94,7 @@ FUNCTIONS = {
     "cpl-parameter": fluent_operators.define_cpl_parameter, "parameter-value": fluent_operators.parameter_value,
     "on-suspension": suspension.on_suspension, "retry-after-suspension": suspension.retry_after_suspension,
     "without-scheduling": suspension.without_scheduling, "with-scheduling": suspension.with_scheduling,
-    "define-task-variable": lambda name, value, documentation, init: task_variables.define_task_variable(
-        name, value, documentation=documentation, init_function=init),
+    "define-task-variable": lambda name, init: task_variables.define_task_variable(name, name.value, init_function=init),
     "with-failure-handling": with_failure_handling,
     "make-retry-counter": retry_counters.RetryCounter, "use-retry": lambda counter: counter.use(),
     "counter-value": lambda counter: counter.left, "reset-retry-counter": lambda counter: counter.reset(),

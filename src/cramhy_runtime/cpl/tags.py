@@ -17,7 +17,6 @@ from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
 from .symbols import sym
 from .current import inside_plan
-from .statuses import CREATED
 from .tree import current_path, make_task
 
 TAGGED = sym("CPL-IMPL::TAGGED")
@@ -37,7 +36,7 @@ def make_tag_task(name, path=None):
 
 def prepare_tag(task):
     """``task`` if it was not executed yet, else a new task at the next iteration path."""
-    if task.status is CREATED and task.kernel_task is None:
+    if task.unexecuted:
         return task
     part = task.path.car
     return make_task(name=lambda: f"[TAG-{part.cdr.car.name}]", path=Cons(lisp_list(part.car, part.cdr.car), task.path.cdr))

@@ -14,6 +14,7 @@ from cramhy_runtime import kernel
 
 from ..lisp.data import UNBOUND, Symbol
 from ..lisp.dynamic import Bindings, special
+from ..lisp.evaluation.functions import function_of
 from ..lisp.packages import find_package
 
 _inherited = set()  # the language's own: inherited when bound
@@ -53,13 +54,13 @@ def inherit(symbol, initial):
     return symbol
 
 
-def define_task_variable(symbol, global_value=None, *, documentation=None, init_function=None):
+def define_task_variable(symbol, global_value=None, *, init_function=None):
     """``(define-task-variable name value)``: every task gets its own binding of ``symbol``, from its parent's value.
 
     ``init_function(task, parent, value)`` computes the initial value in the parent; ``parent`` is nil for a top-level.
     """
     special(symbol, global_value)
-    _declared[symbol] = init_function.function if isinstance(init_function, Symbol) else init_function
+    _declared[symbol] = None if init_function is None else function_of(init_function)
     return symbol
 
 

@@ -144,7 +144,7 @@ def _next_free(part, above):
 
 def _taken(node):
     code = node.effective_code
-    return code is not None and code.task is not None and code.task.status is not CREATED
+    return code is not None and code.task is not None and not code.task.unexecuted
 
 
 def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None):
