@@ -118,6 +118,8 @@ def undisturbed():
         task.unschedulable -= 1
         if task.held and not task.unschedulable:
             obey(task)
+    if task.kernel_task.attention:
+        kernel.slice_over()  # which delivers what was held back
 
 
 def without_scheduling(body):
