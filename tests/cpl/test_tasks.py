@@ -1,5 +1,8 @@
 """Tasks: status, evaporation, suspension, task variables: cpl.md section 16, invariants 40 to 64."""
 
+import gc
+import weakref
+
 import pytest
 
 from cramhy_runtime import cpl, kernel
@@ -456,3 +459,19 @@ def test_the_main_task_may_be_interrupted_and_the_plan_cleans_up():
     with pytest.raises(kernel.Interrupted):
         plan(lambda: cpl.par(body, lambda: (cpl.sleep(1), kernel.interrupt())))
     assert done == [2]
+
+
+def test_a_dead_task_goes_without_the_garbage_collector():
+    gc.collect()
+    gc.disable()
+    try:
+        seen = []
+
+        def branch():
+            seen.append(weakref.ref(cpl.current_task()))
+
+        cpl.top_level(lambda: cpl.par(branch, lambda: cpl.pursue(branch, lambda: cpl.sleep(10))))
+        kernel.settle()
+        assert [reference() for reference in seen] == [None, None]
+    finally:
+        gc.enable()

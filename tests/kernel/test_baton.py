@@ -195,11 +195,20 @@ def test_current_is_the_task_that_runs(k):
     assert kernel.current() is k.main
 
 
-def test_locals_belong_to_their_task(k):
+def test_what_is_kept_with_a_task_belongs_to_it(k):
     kernel.current().local.place = "main"
     task = kernel.spawn(lambda: hasattr(kernel.current().local, "place"))
     assert task.join() is False
     assert kernel.current().local.place == "main"
+
+
+def test_a_name_given_as_a_function_is_made_when_somebody_asks(k):
+    asked = []
+    task = kernel.spawn(kernel.park, "a bell", name=lambda: asked.append(True) or "late")
+    kernel.yield_()
+    assert asked == []
+    assert task.name == "late" and "late" in repr(task)
+    task.cancel()
 
 
 def test_join_gives_the_result(k):

@@ -10,12 +10,13 @@ from ..lisp.conditions import error
 
 def current_task():
     """The plan task that runs, or ``None`` outside of plans."""
-    return getattr(kernel.current().local, "plan_task", None)
+    return kernel.current().owner
 
 
 def inside_plan(form):
     """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
-    task = getattr(kernel.current().local, "plan_task", None) if kernel.active() is not None else None
+    active = kernel.active()
+    task = None if active is None else active.current.owner
     if task is None:
         outside = types.SimpleError("'~a' form not inside a plan.", form)
         outside.hint = f"Plan forms run inside of a plan: write (top-level ({str(form).lower()} ...))."

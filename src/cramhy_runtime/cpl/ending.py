@@ -39,7 +39,7 @@ class awaiting_death(shield):  # noqa: N801 (reads as a statement)
     def __init__(self, tasks):
         super().__init__(kernel.current())
         self.tasks = tasks
-        self.plan_task = getattr(self._task.local, "plan_task", None)
+        self.plan_task = self._task.owner
 
     def __enter__(self):
         self._task.shielded += 1
@@ -137,7 +137,7 @@ def limit_cleanup(task, block=None):
 
 def _block_begins(block, kernel_task):
     if CLEANUP_TIME_LIMIT.value is not None:
-        task = getattr(kernel_task.local, "plan_task", None)
+        task = kernel_task.owner
         if task is not None:
             block.limit = limit_cleanup(task, block)
 

@@ -40,7 +40,7 @@ def fail(*arguments):
         log_event("FAIL", lambda: ("FAIL", f"{condition}"))
     if on_fail:
         on_fail(arguments[0] if arguments else None)
-    if getattr(kernel.current().local, "plan_task", None) is None or not isinstance(condition, PlanFailure):
+    if kernel.current().owner is None or not isinstance(condition, PlanFailure):
         return error(condition)
     if BREAK_ON_PLAN_FAILURES.value:
         break_on(condition)
@@ -124,7 +124,7 @@ def with_failure_handling(clauses, body):
     ``retry()`` tries the body again. The block named nil for ``return`` is the compiler's; Python handlers call ``retry.leave``.
     """
     handling = Handling(clauses)
-    if on_with_failure_handling_begin or on_with_failure_handling_end:
+    if on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods:
         return observed([_type_name(specifier) for specifier, _ in clauses], lambda: _attempts(handling, body), handling)
     return _attempts(handling, body)
 

@@ -51,13 +51,14 @@ def top_level(body):
 def named_top_level(body, name=None):
     """``(named-top-level (:name name) body...)``: as `top_level`, with a task tree that is kept under ``name``."""
     me = kernel.current()
-    if getattr(me.local, "plan_task", None) is not None:
+    if me.owner is not None:
         nested = types.SimpleError("top-level calls cannot be nested.")
         nested.hint = ("This form runs inside a plan already: leave TOP-LEVEL away here, or make what is called a plan function with "
                        "DEF-CRAM-FUNCTION.")
         error(nested)
-    if name is None and not (on_preparing_named_top_level or on_top_level_setup_hook or on_finishing_named_top_level
-                             or on_top_level_cleanup_hook or on_with_failure_handling_begin or on_with_failure_handling_end):
+    if name is None and not (on_preparing_named_top_level.methods or on_top_level_setup_hook.methods
+                             or on_finishing_named_top_level.methods or on_top_level_cleanup_hook.methods
+                             or on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
         return _run_top_level(body, None, TaskTreeNode())
     if name is None:
         return _observed_top_level(body, None, TaskTreeNode())

@@ -90,7 +90,7 @@ define_printer(PlanTreeNode, print_plan_node)
 @describe_object.method(Fluent, None)
 def describe_fluent(fluent, stream):
     """What it is called and worth, how often it pulsed, and who observes it."""
-    waiting = [getattr(task.local, "plan_task", None) or Symbol(str(task.name)) for task in fluent.waiters]
+    waiting = [task.owner or Symbol(str(task.name)) for task in fluent.waiters]
     return describe_facts(fluent, stream, "fluent", [
         ("Name", fluent.name), ("Value", fluent.peek()), ("Pulses", fluent.pulses), ("Waiting tasks", list_from(waiting)),
         ("Fluents computed from it", list_from(fluent.living_nets())), ("Callbacks", list_from(list(fluent.callbacks or ())))])

@@ -65,15 +65,21 @@ def define_task_variable(symbol, global_value=None, *, init_function=None):
 
 
 def inherited_bindings(task, parent):
-    """The bindings that the new ``task`` starts with, computed in the task that starts it. ``None`` when there are none."""
-    stack = []
+    """The bindings that the new ``task`` starts with, computed in the task that starts it; ``None`` when there are none."""
     current = kernel.current().dynamic
+    if current is None and not _declared:
+        return None
+    stack = []
     if current is not None:
         for symbol in dict.fromkeys(entry[0] for entry in current.stack):
             if symbol in _inherited:
                 stack.append([symbol, symbol.value])
     for symbol, init_function in _declared.items():
         stack.append([symbol, symbol.value if init_function is None else init_function(task, parent, symbol.value)])
+    return bindings_of(stack) if stack else None
+
+
+def bindings_of(stack):
     bindings = Bindings()
     bindings.stack = stack
     return bindings
@@ -81,7 +87,7 @@ def inherited_bindings(task, parent):
 
 def tv_closure(task, parent, continuation):
     """A function that binds the task variables, as seen here and now, and calls ``continuation``."""
-    bindings = inherited_bindings(task, parent)
+    bindings = inherited_bindings(task, parent) or bindings_of([])
 
     def call(*arguments):
         here = kernel.current()

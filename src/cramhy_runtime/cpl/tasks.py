@@ -174,13 +174,13 @@ class AbstractTask:
                 self.tree = parent.tree
             if self.path is None:
                 self.path, self.node = parent.path, parent.node
-        bindings = inherited_bindings(self, parent)
-        self.kernel_task = kernel.spawn(self._live, bindings, name=self.name if self._name is None else "task")
-        self.kernel_task.name = _KernelName(self)
-        self.kernel_task.when_refused = self._refused
+        if self._name is None:
+            self.name  # names are numbered in the order in which tasks start
+        self.kernel_task = task = kernel.spawn(self._live, inherited_bindings(self, parent), name=self._name_as_text)
+        task.when_refused = self._refused
         if self.held:
-            self.kernel_task.interject(lambda: obey(self))
-        self.started_at = kernel.now()
+            task.interject(lambda: obey(self))
+        self.started_at = task.kernel.clock.now()
         if truth(SAVE_TASKS.value):
             saved_tasks.append(self)
         return self
@@ -190,11 +190,15 @@ class AbstractTask:
         if self.parent is None:
             error("No current task active (*CURRENT-TASK* is NIL).")
 
+    def _name_as_text(self):
+        return self.name
+
     def _live(self, bindings):
-        me = kernel.current()
-        me.local.plan_task = self
-        me.dynamic = bindings
-        bindings.enter()
+        me = self.kernel_task
+        me.owner = self
+        if bindings is not None:
+            me.dynamic = bindings
+            bindings.enter()
         try:
             self.change_status(RUNNING)
             if self.constraints:
@@ -274,8 +278,9 @@ class AbstractTask:
             self.change_status(status)
         if self.cleanup_limit is not None:
             self.cleanup_limit.end()
-        if self.ended is not None:
-            self.ended(self)
+        ended, self.ended = self.ended, None
+        if ended is not None:
+            ended(self)
 
     def evaporate(self, reason=None):
         """Ask the task to end. It unwinds from its next waiting point or checkpoint; nobody waits for that here.
@@ -354,18 +359,6 @@ class ToplevelTask(AbstractTask):
         if truth(RECORD.value):
             self.record = [self]
             recorded.append(self)
-
-
-class _KernelName:
-    """The name of a task, made only when the kernel reports something."""
-
-    __slots__ = ("task",)
-
-    def __init__(self, task):
-        self.task = task
-
-    def __str__(self):
-        return self.task.name
 
 
 # ------------------------------------------------------------------------------------------------------ the current task

@@ -199,7 +199,7 @@ def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp
     ``called_with`` are noted at the node (`Code`).
     """
     _tree_or_error()
-    observed = on_preparing_task_execution or on_finishing_task_execution
+    observed = on_preparing_task_execution.methods or on_finishing_task_execution.methods
     run_id = on_preparing_task_execution.first(name, log_parameters, log_pattern, lambda_list, parameters) if observed else None
     label = name if callable(name) else (lambda: f"[{name}]")
     task = _task_of(_next_free(path_part, _current_node()), label, sexp, function, parameters, called_with)

@@ -112,7 +112,7 @@ def _report(of, depth, dead):
 
 def living_plans():
     """The tasks of all ``top-level`` forms that run now, the oldest first."""
-    tasks = [getattr(task.local, "plan_task", None) for task in kernel.active().tasks]
+    tasks = [task.owner for task in kernel.active().tasks]
     return [task for task in tasks if task is not None and task.parent is None]
 
 

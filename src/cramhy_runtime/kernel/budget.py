@@ -2,7 +2,7 @@
 
 Erlang counts reductions, we count checkpoints. The count, and never the wall clock, decides when a busy task is
 preempted, so the order of a run depends on the program alone (law 5). There is one counter for the process, because
-one task runs at a time (law 4); whoever gets the baton gets a full slice.
+one task runs at a time (law 4); whoever gets the baton gets a full slice, and the ticks that others left.
 
 `budget.end()` ends the slice at the next checkpoint. It is short and may be called by a signal handler.
 
@@ -52,21 +52,32 @@ class Budget:
 budget = Budget()
 
 HEADROOM = 100  # levels that a hand-over and modest callbacks need
-_STAIRS = int
-for _ in range(HEADROOM):
-    _STAIRS = (_STAIRS,)
+STEPS = 40  # levels that a hand-over needs when there is nothing to call
 
-need_headroom = partial(isinstance, None, _STAIRS)
-"""Raise RecursionError now if a hand-over would: a task that is out of stack must learn of it before it touches the queue, for a
-half-done hand-over is a lost task. `isinstance` goes down one level of Python's limit for each level of its tuple, in a few nanoseconds."""
 
-if sys.version_info >= (3, 12):  # where calls of C functions and frames of Python are counted apart
-    _down_the_stairs = need_headroom
+def room(levels):
+    """A function that raises RecursionError now if a hand-over would: a task that is out of stack must learn of it before it touches
+    the queue, for a half-done hand-over is a lost task.
 
-    def need_headroom(levels=sys.getrecursionlimit, frame=sys._getframe):
-        _down_the_stairs()
+    `isinstance` goes down one level of Python's limit for each level of its tuple, in some nanoseconds.
+    """
+    stairs = int
+    for _ in range(levels):
+        stairs = (stairs,)
+    down_the_stairs = partial(isinstance, None, stairs)
+    if sys.version_info < (3, 12):
+        return down_the_stairs
+
+    def also_for_frames(limit=sys.getrecursionlimit, frame=sys._getframe):  # calls of C functions and of Python's are counted apart
+        down_the_stairs()
         try:
-            frame(levels() - HEADROOM)
+            frame(limit() - levels)
         except ValueError:  # "call stack is not deep enough", and so there is room
             return
         raise RecursionError("maximum recursion depth exceeded")
+
+    return also_for_frames
+
+
+need_headroom = room(HEADROOM)
+need_steps = room(STEPS)

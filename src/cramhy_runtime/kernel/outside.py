@@ -10,7 +10,7 @@ takes. A source that only may send messages (`outside_source`) does not hold the
 
 from _thread import get_ident
 
-from .budget import budget, need_headroom
+from .budget import SLICE, budget, need_headroom
 from .tasks import BLOCKED, RUNNING
 
 
@@ -63,7 +63,7 @@ class Outside:
         finally:
             me.state = RUNNING
             self.current = me
-            budget.renew()
+            budget.left = SLICE
             if dynamic is not None:
                 dynamic.enter()
             if me.attention:

@@ -22,7 +22,7 @@ from collections import deque
 
 from . import reports
 from .backends import make_backend
-from .budget import budget, need_headroom
+from .budget import SLICE, budget, need_headroom, need_steps
 from .clocks import Bell, make_clock
 from .endings import PATIENCE, Endings
 from .errors import Deadlock, Interrupted, KernelError, NoStack, TimeLimit
@@ -96,12 +96,14 @@ class Kernel(Endings, Outside):
     def spawn(self, fn, *args, name=None, parent=None):
         """A new task that will run FN(*ARGS), at the end of the queue. PARENT: the current task if not given."""
         me = self.current
-        if me.carrier is not None and me.carrier.ident != get_ident():
+        carrier = me.carrier
+        if carrier is not None and carrier.ident != get_ident():
             self._refuse("spawn a task")
         if parent is None:
             parent = self.main if me is self._scheduler else me
         task = self._new_task(fn, args, name or getattr(fn, "__name__", "task"), parent)
-        self._enqueue(task)
+        self._queue.append(task)
+        self._streak = 0
         return task
 
     def _new_task(self, fn, args, name, parent):
@@ -127,7 +129,10 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention:
             me.deliver()
-        need_headroom()
+        if self._timers.entries or self._inbox or self._unclaimed:
+            need_headroom()
+        else:
+            need_steps()
         if me.carrier.ident != get_ident():
             self._refuse("wait")
         me.why = why
@@ -144,8 +149,8 @@ class Kernel(Endings, Outside):
 
     def unpark(self, task):
         """Make a parked task runnable; returns True if it was parked, else nothing happens and the result is False."""
-        me = self.current
-        if me.carrier is not None and me.carrier.ident != get_ident():
+        carrier = self.current.carrier
+        if carrier is not None and carrier.ident != get_ident():
             self._refuse("wake a task")
         if task.state is not PARKED:
             return False
@@ -159,7 +164,10 @@ class Kernel(Endings, Outside):
             task.timed = False
             if woken:
                 self._timers.went_stale()
-        self._enqueue(task)
+        task.state = RUNNABLE
+        task.preempted = False
+        self._queue.append(task)
+        self._streak = 0
 
     def rouse(self, task):
         """Wake TASK, wherever it waits inside of the kernel, because something is to be raised in it."""
@@ -276,7 +284,7 @@ class Kernel(Endings, Outside):
         if task is not me:
             self.backend.transfer(me.carrier, task.carrier)
         me.state = RUNNING
-        budget.renew()
+        budget.left = SLICE
 
     def carry(self, carrier):
         """The job of every carrier: live the life of the current task, and of new tasks that come next.
@@ -288,7 +296,7 @@ class Kernel(Endings, Outside):
         while True:
             if task is not self._scheduler:
                 task.state = RUNNING
-                budget.renew()
+                budget.left = SLICE
                 try:
                     task.result = task.context.run(task.fn, *task.args)
                 except BaseException as exception:
@@ -305,7 +313,11 @@ class Kernel(Endings, Outside):
         """TASK has ended: tell those who wait for it."""
         self.current = self._scheduler
         task.state = DEAD
-        task.carrier = task.fn = task.args = task.context = task.alarms = None
+        # What a dead task holds makes no circles, so that it goes without the garbage collector.
+        task.carrier = task.fn = task.args = task.context = task.alarms = task.owner = task.when_refused = None
+        task.why = ""
+        if task._name.__class__ is not str:
+            task._name = "a task that has ended" if task._exception is None else str(task.name)
         del self._tasks[task.id]
         if task.dynamic is not None:
             task.dynamic.leave()
@@ -313,7 +325,7 @@ class Kernel(Endings, Outside):
             for joiner in task.joiners:
                 self.unpark(joiner)
             task.joiners = None
-        if not task.ended_as_asked():
+        if task._exception is not None and not task.ended_as_asked():
             self._unclaimed.append(task)
         if self._unclaimed:
             self._report_unclaimed(task)

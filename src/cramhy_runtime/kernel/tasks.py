@@ -10,6 +10,7 @@ for whoever does not look at it is told about it (`kernel.unhandled`).
 """
 
 from contextvars import copy_context
+from types import SimpleNamespace
 
 from .budget import budget
 from .errors import Abandoned, Cancelled, KernelError
@@ -24,15 +25,14 @@ DEAD = "dead"
 HOPELESS = 100  # times that a task may swallow `Abandoned` before it is left where it is, for good
 
 
-class Locals:
-    """Where the floors above keep what they know about a task."""
-
-
 class Task:
-    """Made by `spawn`. Read `name`, `parent`, `state`, `dead`, `result`, `exception`; use `cancel` and `join`."""
+    """Made by `spawn`. Read `name`, `parent`, `state`, `dead`, `result`, `exception`; use `cancel` and `join`.
+
+    `owner` is for the floor above: its own object that this task runs for. `local` is a place for whatever else it keeps with it.
+    """
 
     __slots__ = (
-        "kernel", "id", "name", "parent", "local", "dynamic", "result", "cancelled_delivered",
+        "kernel", "id", "_name", "parent", "owner", "_local", "dynamic", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
         "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered",
         "swallowed", "_exception", "claimed", "when_refused", "cleanup",
@@ -42,9 +42,10 @@ class Task:
     def __init__(self, kernel, number, fn, args, name, parent):
         self.kernel = kernel
         self.id = number
-        self.name = name
+        self._name = name
         self.parent = parent
-        self.local = Locals()
+        self.owner = None
+        self._local = None
         self.dynamic = None
         self.result = None
         self.cancelled_delivered = False
@@ -71,6 +72,19 @@ class Task:
         self._exception = None
         self.claimed = False
         self.when_refused = None  # called with the exception, in the scheduler, if the system gives no stack for it
+
+    @property
+    def name(self):
+        """Its name in reports; one given as a function is made when somebody asks."""
+        return self._name() if callable(self._name) else self._name
+
+    @property
+    def local(self):
+        """A namespace, made when somebody asks."""
+        local = self._local
+        if local is None:
+            local = self._local = SimpleNamespace()
+        return local
 
     @property
     def dead(self):

@@ -12,10 +12,11 @@ from .objects.generic import add_method, generic, remove_method
 
 
 class Hook:
-    """The hook ``name`` (``"PACKAGE::NAME"``). True when it has methods; calling it runs them, the most specific first."""
+    """The hook ``name`` (``"PACKAGE::NAME"``). True when it has ``methods``; calling it runs them, the most specific first."""
 
     def __init__(self, name, lambda_list):
         self.function = generic(name, lambda_list, combination="COMMON-LISP::HOOKS")
+        self.methods = self.function.methods  # that very list: to look at it is faster than to ask the hook whether it is true
         self.name = self.function.__lisp_name__
         self._added = {}
 
@@ -34,11 +35,11 @@ class Hook:
             remove_method(self.function, method)
 
     def __bool__(self):
-        return bool(self.function.methods)
+        return bool(self.methods)
 
     def __call__(self, *arguments):
         """The list of the methods' results (a Python list)."""
-        return list(one(self.function(*arguments)) or ()) if self.function.methods else []
+        return list(one(self.function(*arguments)) or ()) if self.methods else []
 
     def first(self, *arguments):
         """Run all methods; the first result, or ``None``: the id that the matching end hook gets."""
