@@ -76,7 +76,7 @@ def spawn_thread(name, fn, *arguments):
         type_error(name, "(OR STRING SYMBOL)")
     function = function_of(fn)
     me = kernel.current()
-    owner = getattr(me.local, "plan_task", None)
+    owner = me.owner
     task = kernel.spawn(_begin, function, arguments, name=str(getattr(name, "name", name) or "anonymous"),
                         parent=me if owner is not None else me.kernel.main)
     if owner is not None:
