@@ -75,7 +75,7 @@ def test_a_plan_form_outside_of_a_plan_says_so(form, call):
     assert (problem.value.format_control, problem.value.format_arguments) == ("'~a' form not inside a plan.", (form,))
 
 
-@pytest.mark.parametrize("form", [cpl.par, cpl.pursue, cpl.try_all, lambda: cpl.partial_order([], [])])
+@pytest.mark.parametrize("form", [operators.par, operators.pursue, operators.try_all, lambda: cpl.partial_order([], [])])
 def test_parallel_forms_without_branches_are_errors(form):
     with pytest.raises(Error) as problem:
         plan(form)
@@ -236,7 +236,7 @@ def test_par_loop_runs_all_elements_at_once_and_gives_the_first_ones_values():
     assert kernel.now() == 3
     assert plan(lambda: cpl.par_loop(None, lambda x: (x, "once"))) == (None, "once")
     with pytest.raises(Error):
-        plan(lambda: cpl.par_loop([1], lambda x: x))
+        plan(lambda: operators.par_loop([1], lambda x: x))
 
 
 def steps_with_tags(log, *names):

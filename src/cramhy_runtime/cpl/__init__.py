@@ -1,24 +1,42 @@
-"""CPL, the CRAM plan language: fluents, tasks, failures and the operators that combine them. Usable from Python:
+"""CPL, the CRAM plan language, as a Python library: fluents, tasks, failures and the forms that combine them. No Lisp is needed:
 
-    from cramhy_runtime import cpl, kernel
+    from cramhy_runtime import cpl
 
-    kernel.start(clock="virtual")
-    door = cpl.make_fluent(name="door-open")
+    class DoorStuck(cpl.PlanFailure):
+        pass
 
-    def watch():
-        return cpl.wait_for(door, timeout=5.0)
+    bumper = cpl.make_fluent(name="bumper", value=False)
 
-    def open_it():
-        cpl.sleep(2.0)
-        door.value = True
+    def drive(metres):
+        cpl.sleep(metres / 0.5)
+        return "there"
 
-    cpl.top_level(lambda: cpl.par(watch, open_it))      # True, after two seconds of virtual time
+    def main():
+        for attempt in cpl.attempts(3, on=DoorStuck, pause=1.0):
+            with attempt, cpl.timeout(10):
+                with cpl.pursue() as race:
+                    race.start(drive, 2.0)
+                    race.start(cpl.wait_for, bumper)
+        return race.result
+
+    cpl.run(main)       # "there", after four seconds of virtual time
+
+The page docs/plans-in-python.md tells the whole story. In short: a plan runs below `run` or ``with plan():``. ``par pursue try_all``
+take branches as functions, or begin a ``with`` block that starts them. When a form is left, its branches are dead, and what one of
+them failed with is raised. Waiting is for values that are not ``None`` and not ``False``; 0 and "" are true, as in Lisp.
 
 Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``, ``suspension`` ·
 ``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``watching`` · ``tree``, ``tree_report``,
-``tags``, ``plans``, ``policies`` · ``hooks``, ``logging``, ``printing`` · ``package``, the Lisp faces. Reference: cpl.md.
+``tags``, ``plans``, ``policies`` · ``hooks``, ``logging``, ``printing`` · ``package``, the Lisp faces. Python's face:
+``python_forms``, ``plan_run``, ``blocks``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``.
+Reference: cpl.md.
 """
 
+from ..kernel import Deadlock as Deadlock, TimeLimit as TimeLimit, checkpoint as checkpoint, now as now, run_blocking as run_blocking
+from . import fluent_notation as fluent_notation, printing as printing
+from .attempts import Attempt, attempts, handling
+from .blocks import Timeout, TimedOut, move_on_after, timeout
+from .branch_blocks import ParBlock, RaceBlock, TryAllBlock
 from .failure_types import (
                             CommonLispErrorEnvelope,
                             CompositeFailure,
@@ -32,38 +50,49 @@ from .failure_types import (
                             envelope,
                             opened,
 )
-from .failures import fail, with_failure_handling
+from .failures import with_failure_handling
 from .fluent_operators import fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed
 from .fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
-from .operators import (
-                            named_top_level,
+from .operators import named_top_level, seq, top_level
+from .plan_run import plan, run
+from .policies import Policy, make_policy
+from .python_forms import (
+                            fail,
+                            join_task,
+                            on_suspension,
                             par,
                             par_loop,
                             partial_order,
+                            policy,
                             pursue,
-                            seq,
-                            top_level,
+                            task_suspended,
                             try_all,
                             try_each_in_order,
                             try_in_order,
+                            whenever,
                             with_task,
+                            without_scheduling,
 )
 from .retry_counters import RetryCounter
-from .suspension import on_suspension, retry_after_suspension, suspend, wake_up, with_task_suspended, without_scheduling
+from .statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
+from .steps import Tag, plan_function, tag
+from .suspension import retry_after_suspension, suspend, wake_up, with_task_suspended
 from .task_variables import define_task_variable
 from .current import current_task
-from .tasks import Task, ToplevelTask, evaporate, join_task
+from .tasks import Task, ToplevelTask, evaporate
 from .tree_report import describe_task_tree, task_tree_text
-from .waiting import sleep, wait_for, whenever
+from .waiting import sleep, wait_for
 
 __all__ = [
-    "CommonLispErrorEnvelope", "CompositeFailure", "current_task", "define_task_variable", "describe_task_tree", "envelope", "evaporate",
-    "fail", "fl_and", "fl_apply", "fl_eq", "fl_eql", "fl_funcall", "fl_not", "fl_or", "fl_pulsed", "fl_value_changed",
-    "Fluent", "join_task", "make_fluent", "named_top_level", "on_suspension", "opened", "par", "par_loop",
-    "partial_order", "peek_value", "PlanFailure", "PolicyCheckConditionMet", "PolicyCondition", "PolicyFailure",
-    "PolicyInitFailed", "PolicyNotFound", "pulse", "pulsed", "pursue", "register_update_callback",
-    "remove_update_callback", "retry_after_suspension", "RetryCounter", "seq", "SimplePlanFailure", "sleep", "suspend",
-    "Task", "task_tree_text", "top_level", "ToplevelTask", "try_all", "try_each_in_order", "try_in_order", "value", "ValueFluent",
-    "wait_for", "wake_up", "whenever", "with_failure_handling", "with_task", "with_task_suspended",
-    "without_scheduling",
+    "Attempt", "attempts", "checkpoint", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED", "current_task", "Deadlock",
+    "define_task_variable", "describe_task_tree", "envelope", "evaporate", "EVAPORATED",
+    "fail", "FAILED", "fl_and", "fl_apply", "fl_eq", "fl_eql", "fl_funcall", "fl_not", "fl_or", "fl_pulsed", "fl_value_changed",
+    "Fluent", "handling", "join_task", "make_fluent", "make_policy", "move_on_after", "named_top_level", "now", "on_suspension",
+    "opened", "par", "par_loop", "ParBlock", "partial_order", "peek_value", "plan", "plan_function", "PlanFailure", "policy", "Policy",
+    "PolicyCheckConditionMet", "PolicyCondition", "PolicyFailure", "PolicyInitFailed", "PolicyNotFound", "pulse", "pulsed", "pursue",
+    "RaceBlock", "register_update_callback", "remove_update_callback", "retry_after_suspension", "RetryCounter", "run", "run_blocking",
+    "RUNNING", "seq", "SimplePlanFailure", "sleep", "SUCCEEDED", "suspend", "SUSPENDED", "tag", "Tag",
+    "Task", "task_suspended", "task_tree_text", "TimedOut", "TimeLimit", "timeout", "Timeout", "top_level", "ToplevelTask", "try_all",
+    "try_each_in_order", "try_in_order", "TryAllBlock", "value", "ValueFluent", "wait_for", "wake_up", "whenever",
+    "with_failure_handling", "with_task", "with_task_suspended", "without_scheduling",
 ]  # fmt: skip

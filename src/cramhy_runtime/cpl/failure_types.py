@@ -112,4 +112,11 @@ def python_exception(condition):
     if error is not condition:
         error.envelope = condition
     cause = error.__cause__
-    return cause if cause is not None and getattr(cause, "__lisp_condition__", None) is error else error
+    if cause is None or getattr(cause, "__lisp_condition__", None) is not error:
+        cause = error
+    told = getattr(cause, "__notes__", ())
+    for label, other in getattr(error, "beside", ()):  # what else is to be told stands below the traceback
+        note = f"{label}: {type(python_exception(other)).__name__}: {other}"
+        if note not in told:
+            cause.add_note(note)
+    return cause

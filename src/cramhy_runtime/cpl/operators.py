@@ -122,27 +122,27 @@ def _run_top_level(body, name, tree):
 # ---------------------------------------------------------------------------------------------------------- when it is decided
 
 
-def _any_failed_or_all_dead(branches):
+def any_failed_or_all_dead(branches):
     return branches.failed or not branches.living
 
 
-def _any_dead(branches):
+def any_dead(branches):
     return branches.failed or branches.done
 
 
-def _any_done_or_all_dead(branches):
+def any_done_or_all_dead(branches):
     return branches.done or not branches.living
 
 
 # ---------------------------------------------------------------------------------------------------------- and what comes of it
 
 
-def _first_values(branches):
+def first_values(branches):
     failure = branches.last_failure() if branches.failed else None
     return branches.tasks[0].result, failure
 
 
-def _winner(branches):
+def winner(branches):
     if branches.failed:
         return None, branches.last_failure()
     for task in reversed(branches.tasks):
@@ -151,7 +151,7 @@ def _winner(branches):
     return None, None
 
 
-def _first_success(branches):
+def first_success(branches):
     for task in branches.tasks:
         if task.status in DONE:
             return task.result, None
@@ -168,17 +168,17 @@ def seq(*thunks):
 
 def par(*thunks):
     """``(par form...)``: all at once, until all have ended; values of the first form. One fails: the others are ended, it fails."""
-    return run_forms("PAR", thunks, _any_failed_or_all_dead, _first_values)
+    return run_forms("PAR", thunks, any_failed_or_all_dead, first_values)
 
 
 def pursue(*thunks):
     """``(pursue form...)``: all at once, until one has ended; its values. The others are evaporated, and dead when this returns."""
-    return run_forms("PURSUE", thunks, _any_dead, _winner)
+    return run_forms("PURSUE", thunks, any_dead, winner)
 
 
 def try_all(*thunks):
     """``(try-all form...)``: all at once, until one succeeds. All fail: a composite failure, failures of the last form first."""
-    return run_forms("TRY-ALL", thunks, _any_done_or_all_dead, _first_success, late_failures_count=False)
+    return run_forms("TRY-ALL", thunks, any_done_or_all_dead, first_success, late_failures_count=False)
 
 
 def try_in_order(*thunks):
@@ -212,7 +212,7 @@ def par_loop(elements, body):
     inside_plan("PAR-LOOP")
     elements = list(_list(elements)) or [None]
     tasks = branch_tasks("PAR", [(lambda element=element: body(element)) for element in elements])
-    return run("PAR", tasks, _any_failed_or_all_dead, _first_values)
+    return run("PAR", tasks, any_failed_or_all_dead, first_values)
 
 
 def _list(elements):
@@ -231,7 +231,7 @@ def partial_order(steps, orderings):
     """
     inside_plan("PARTIAL-ORDER")
     apply_orderings(orderings)
-    return run_forms("PAR", steps, _any_failed_or_all_dead, _first_values)
+    return run_forms("PAR", steps, any_failed_or_all_dead, first_values)
 
 
 def with_task(body, name="WITH-TASK", cls=None):

@@ -11,6 +11,8 @@ A clause is a function of the use's `Store` and the policy's parameters; the mac
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from ..lisp.conditions import error
 from ..lisp.data import list_from, one, truth
 from .failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
@@ -68,7 +70,14 @@ def named_policy(name):
 
 
 def with_policy(policy, arguments, body, forms=None):
-    """``(with-policy policy (form...) body...)``: values of ``body()`` under ``policy``.
+    """``(with-policy policy (form...) body...)``: values of ``body()`` under ``policy``; for the arguments see `in_force`."""
+    with in_force(policy, arguments, forms) as check:
+        return body() if check is None else pursue(check, body)
+
+
+@contextmanager
+def in_force(policy, arguments, forms=None):
+    """The block runs under ``policy``, beside the function that it gets: that of the check, which returns when it is met.
 
     ``arguments()`` evaluates the parameter forms to a Python sequence, again at each call of a clause; ``forms`` are the forms
     themselves, which the conditions show.
@@ -81,7 +90,7 @@ def with_policy(policy, arguments, body, forms=None):
         return one(function(store, *arguments()))
 
     if policy.init is not None and not truth(clause(policy.init)):
-        return error(PolicyInitFailed(name=policy.name, parameters=shown))
+        error(PolicyInitFailed(name=policy.name, parameters=shown))
     run_id = on_with_policy_begin.first(policy.name, None)
     met = False
 
@@ -93,9 +102,8 @@ def with_policy(policy, arguments, body, forms=None):
 
     succeeded = False
     try:
-        result = body() if policy.check is None else pursue(check, body)
+        yield None if policy.check is None else check
         succeeded = True
-        return result
     finally:
         try:
             if met and policy.recover is not None:

@@ -1,0 +1,44 @@
+"""The border to Python: which exception an ``except`` clause sees.
+
+Within the plan language an error of a branch travels in an envelope, which is a plan failure, so that ``try-in-order`` and handlers
+of ``plan-failure`` count it as one. Handlers run before anything unwinds, and they see it so. When all have declined and the stack
+unwinds into Python code, that code expects the exception that was raised: ``except ValueError`` around ``cpl.par(...)`` catches the
+``ValueError`` of a branch, with the traceback of the branch. The envelope is kept with the error: when the exception goes on into
+the next task it is the same envelope again, and Lisp code above sees no difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import NoReturn, ParamSpec, TypeVar
+
+from ..lisp.condition_types import Condition
+from .failure_types import python_exception
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def for_python(function: Callable[P, T]) -> Callable[P, T]:
+    """``function``, but what leaves it is what Python raised."""
+    @wraps(function)
+    def call(*arguments: P.args, **keywords: P.kwargs) -> T:
+        try:
+            return function(*arguments, **keywords)
+        except Condition as condition:
+            problem = condition
+        raise_in_python(problem)
+
+    return call
+
+
+def raise_in_python(condition: BaseException) -> NoReturn:
+    """Raise what Python code sees of ``condition``. Not to be called in an ``except`` clause, which would become its context."""
+    problem = python_exception(condition) if isinstance(condition, Condition) else condition
+    context = problem.__context__
+    try:
+        raise problem
+    finally:
+        problem.__context__ = context  # in an __exit__ method that is what ended the block, and means nothing to the user
+        del problem, condition

@@ -1,0 +1,94 @@
+"""Starting plans from Python: ``run(main)`` and ``with plan():``.
+
+Both make a plan of what is in them: a task at the root, below which all others are dead when it ends. ``run`` is ``top-level`` for
+a script: it starts a kernel, runs the function as a plan, stops the kernel, and gives back what the function returned or raised. In
+a ``with plan():`` block the plan is the block itself, which suits tests and notebooks.
+
+Options (``clock``, ``backend``, ``seed``, ``time_limit``: see `kernel.start`) are for a kernel of its own; one that is active
+already, of a session, is put aside meanwhile. Without options an active kernel is used, and left running: a plan in a session
+sees the session's fluents, process modules and turtle; a test sees what its fixtures started.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, ParamSpec, TypeVar
+
+from cramhy_runtime import kernel
+
+from ..lisp.conditions import error
+from ..lisp.data import NO_VALUES
+from ..lisp.dynamic import binding
+from .border import for_python, raise_in_python
+from .current import current_task
+from .operators import top_level
+from .statuses import FAILED, RUNNING, SUCCEEDED
+from .task_variables import DEBUGGER_HOOK, end_the_task
+from .tasks import ToplevelTask, end_tasks
+from .tree import TaskTreeNode
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+@for_python
+def run(main: Callable[..., T], *arguments: Any, clock: Any = None, backend: Any = None, seed: Any = None,
+        time_limit: float | None = None) -> T:
+    """Run ``main(*arguments)`` as a plan: what it returns. What it fails with is raised here, when all its tasks are dead."""
+    with _kernel(clock, backend, seed, time_limit):
+        return top_level(lambda: main(*arguments))
+
+
+@contextmanager
+def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit: float | None = None) -> Iterator[ToplevelTask]:
+    """``with cpl.plan(clock="wall"):`` the block is a plan. Its tasks are dead when it is left; it gives the task at the root."""
+    with _kernel(clock, backend, seed, time_limit):
+        task, me = ToplevelTask(name=lambda: "[TOP-LEVEL]"), kernel.current()
+        task.tree = TaskTreeNode()
+        task.kernel_task = me
+        task.change_status(RUNNING)
+        me.local.plan_task = task
+        status, result, problem = SUCCEEDED, NO_VALUES, None
+        try:
+            with binding(DEBUGGER_HOOK, end_the_task):
+                try:
+                    yield task
+                except BaseException as exception:
+                    problem = exception
+                    status, result = task._outcome(exception)
+                if task.children:
+                    end_tasks(list(task.children), "The plan is over.")
+        finally:
+            task._die(status, result)
+            me.local.plan_task = None
+            me.spare()
+        if status is FAILED:
+            raise_in_python(result if isinstance(problem, Exception) else problem)
+
+
+@contextmanager
+def _kernel(clock: Any, backend: Any, seed: Any, time_limit: float | None) -> Iterator[None]:
+    """The kernel for a plan; an interrupt that ends the plan is Python's KeyboardInterrupt outside of it."""
+    active = kernel.active()
+    if active is not None and current_task() is not None:
+        error("A plan was started inside of a plan. Call its function as it is: what runs in a plan is a part of it.")
+    given = {"clock": clock, "backend": backend, "seed": seed, "time_limit": time_limit}
+    options = {name: value for name, value in given.items() if value is not None}
+    try:
+        if active is not None and not options:
+            yield
+        elif active is not None and active.current is not active.main:
+            error("A kernel cannot be started by a task of another one. Leave out the options of the plan, so that it uses this kernel.")
+        else:
+            with kernel.aside():
+                kernel.start(**options)
+                yield
+    except kernel.Interrupted:
+        if kernel.active() is not None:
+            kernel.interrupt_over()
+        interrupted = True
+    else:
+        interrupted = False
+    if interrupted:
+        raise KeyboardInterrupt
