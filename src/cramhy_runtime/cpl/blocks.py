@@ -137,7 +137,6 @@ class Timeout(Block):
                 fail(TimedOut(seconds=self.seconds))
             except PlanFailure as failure:
                 problem = failure
-                problem.__context__ = None
             raise_in_python(problem)
         return self.expired
 

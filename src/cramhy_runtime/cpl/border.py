@@ -13,7 +13,10 @@ from collections.abc import Callable
 from functools import wraps
 from typing import NoReturn, ParamSpec, TypeVar
 
+from cramhy_runtime import kernel
+
 from ..lisp.condition_types import Condition
+from ..lisp.conditions import note_asked
 from .failure_types import python_exception
 
 P = ParamSpec("P")
@@ -36,9 +39,12 @@ def for_python(function: Callable[P, T]) -> Callable[P, T]:
 def raise_in_python(condition: BaseException) -> NoReturn:
     """Raise what Python code sees of ``condition``. Not to be called in an ``except`` clause, which would become its context."""
     problem = python_exception(condition) if isinstance(condition, Condition) else condition
+    note_asked(problem)  # the condition was signalled, or there would be none to raise
     context = problem.__context__
+    if isinstance(context, kernel.Cancelled):
+        context = None  # what ended the block, which means nothing to the user
     try:
         raise problem
     finally:
-        problem.__context__ = context  # in an __exit__ method that is what ended the block, and means nothing to the user
+        problem.__context__ = context  # not what Python finds in the air when this is called in an __exit__ method
         del problem, condition

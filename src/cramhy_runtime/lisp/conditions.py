@@ -427,6 +427,11 @@ def signal_exception(exception):
         _root(condition)
     if _debugger is not None or truth(DEBUGGER_HOOK.value):
         invoke_debugger(condition)
+    note_asked(exception)
+
+
+def note_asked(exception):
+    """The handlers in force have heard of ``exception``: it may be raised, and they are not asked as it passes them."""
     try:
         exception.__lisp_asked__ = (_handlers.value,)
     except AttributeError:
