@@ -19,13 +19,12 @@ from cramhy_runtime import kernel
 
 from ..lisp.conditions import error
 from ..lisp.data import NO_VALUES
-from ..lisp.dynamic import binding
 from .border import for_python, raise_in_python
 from .current import current_task
+from .ending import close_plan
 from .operators import top_level
 from .statuses import FAILED, RUNNING, SUCCEEDED
-from .task_variables import DEBUGGER_HOOK, end_the_task
-from .tasks import ToplevelTask, end_tasks
+from .tasks import Task, ToplevelTask
 from .tree import TaskTreeNode
 
 P = ParamSpec("P")
@@ -51,20 +50,25 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
         me.local.plan_task = task
         status, result, problem = SUCCEEDED, NO_VALUES, None
         try:
-            with binding(DEBUGGER_HOOK, end_the_task):
-                try:
-                    yield task
-                except BaseException as exception:
-                    problem = exception
-                    status, result = task._outcome(exception)
-                if task.children:
-                    end_tasks(list(task.children), "The plan is over.")
+            try:
+                yield task
+            except BaseException as exception:
+                problem = exception
+                status, result = task._outcome(exception)
+            _end(list(task.children))
         finally:
             task._die(status, result)
             me.local.plan_task = None
             me.spare()
         if status is FAILED:
             raise_in_python(result if isinstance(problem, Exception) else problem)
+
+
+def _end(children: list[Task]) -> None:
+    for child in children:
+        child.evaporate("The plan is over.")
+    for child in children:
+        close_plan(child, "The plan is over.")
 
 
 @contextmanager
