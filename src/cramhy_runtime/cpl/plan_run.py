@@ -47,7 +47,7 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
         task.tree = TaskTreeNode()
         task.kernel_task = me
         task.change_status(RUNNING)
-        me.local.plan_task = task
+        me.owner = task
         status, result, problem = SUCCEEDED, NO_VALUES, None
         try:
             try:
@@ -58,7 +58,7 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
             _end(list(task.children))
         finally:
             task._die(status, result)
-            me.local.plan_task = None
+            me.owner = None
             me.spare()
         if status is FAILED:
             raise_in_python(result if isinstance(problem, Exception) else problem)
