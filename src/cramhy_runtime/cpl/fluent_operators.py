@@ -10,6 +10,9 @@ Repaired: called with that list alone, it follows the fluents in it.
 
 from __future__ import annotations
 
+from operator import add, gt, lt, mul, sub
+from operator import eq as same_number
+
 from ..lisp.condition_types import CaseFailure
 from ..lisp.conditions import error
 from ..lisp.data import lisp_list, list_from, one, truth
@@ -34,6 +37,7 @@ from .fluents import (
 from .symbols import sym
 
 _QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other
+_TESTS = frozenset((lt, gt, same_number))
 
 
 def net(operator, formula, arguments, careful=False):
@@ -43,8 +47,13 @@ def net(operator, formula, arguments, careful=False):
     return announce(kind(operator, formula, inputs, careful))
 
 
-def _formula(function, arguments):
+def _formula(function, arguments, quick=None):
+    if len(arguments) == 1:
+        (only,) = arguments
+        return lambda: function(only.read())
     if len(arguments) == 2:
+        if quick is not None:
+            return _quick_formula(function, quick, *arguments)
         first, second = arguments
         if not isinstance(second, Fluent):
             return lambda: function(first.read(), second)
@@ -54,24 +63,43 @@ def _formula(function, arguments):
     return lambda: function(*map(value, arguments))
 
 
+def _quick_formula(function, quick, first, second):
+    """``function`` of two arguments, done by Python's ``quick`` when both are ordinary numbers: nets like ``(< distance 0.5)`` are
+    what plans wait for, and are computed at each step of the world."""
+    if second.__class__ not in _QUICK:
+        def formula():
+            return function(value(first), value(second))
+    elif quick in _TESTS:
+        def formula():
+            given = first.read()
+            return (quick(given, second) or None) if given.__class__ in _QUICK else function(given, second)
+    else:
+        def formula():
+            given = first.read()
+            return quick(given, second) if given.__class__ in _QUICK else function(given, second)
+    return formula
+
+
 def _lifted(name, operator, quick=None):
-    """The fluent-aware form of the Common Lisp function ``name``; ``quick`` does the commonest case, two ordinary numbers."""
+    """The fluent-aware form of the Common Lisp function ``name``; ``quick``, of Python, does the commonest case, two ordinary numbers."""
     symbol = sym(name)
     if quick is None:
         def compute(*arguments):
             return symbol.function(*arguments)
     else:
+        is_test = quick in _TESTS
+
         def compute(*arguments):
             if len(arguments) == 2:
                 first, second = arguments
                 if first.__class__ in _QUICK and second.__class__ in _QUICK:
-                    return quick(first, second)
+                    return quick(first, second) or None if is_test else quick(first, second)
             return symbol.function(*arguments)
 
     def lifted(*arguments):
         for argument in arguments:
             if isinstance(argument, Fluent):
-                return net(operator, _formula(compute, arguments), arguments)
+                return net(operator, _formula(compute, arguments, quick), arguments)
         return compute(*arguments)
 
     lifted.__name__ = operator.lower()
@@ -79,12 +107,12 @@ def _lifted(name, operator, quick=None):
     return lifted
 
 
-fl_lt = _lifted("<", "FL<", lambda a, b: True if a < b else None)
-fl_gt = _lifted(">", "FL>", lambda a, b: True if a > b else None)
-fl_equals = _lifted("=", "FL=", lambda a, b: True if a == b else None)
-fl_plus = _lifted("+", "FL+", lambda a, b: a + b)
-fl_minus = _lifted("-", "FL-", lambda a, b: a - b)
-fl_times = _lifted("*", "FL*", lambda a, b: a * b)
+fl_lt = _lifted("<", "FL<", lt)
+fl_gt = _lifted(">", "FL>", gt)
+fl_equals = _lifted("=", "FL=", same_number)
+fl_plus = _lifted("+", "FL+", add)
+fl_minus = _lifted("-", "FL-", sub)
+fl_times = _lifted("*", "FL*", mul)
 fl_divide = _lifted("/", "FL/")
 fl_member = _lifted("MEMBER", "FL-MEMBER")
 
@@ -147,6 +175,8 @@ def fl_funcall(function, *arguments):
     function = function_of(function)
     for argument in arguments:
         if isinstance(argument, Fluent):
+            if len(arguments) == 1:
+                return net("FL-FUNCALL", lambda: one(function(argument.read())), arguments, careful=True)
             return net("FL-FUNCALL", lambda: one(function(*map(value, arguments))), arguments, careful=True)
     return function(*arguments)
 

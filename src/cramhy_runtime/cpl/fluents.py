@@ -19,6 +19,7 @@ import itertools
 from weakref import ref
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.tasks import shield
 
 from ..lisp.condition_types import Condition
 from ..lisp.conditions import SimpleTypeError, error, from_python, program_error
@@ -29,7 +30,7 @@ from ..lisp.evaluation.places_in_source import circumstance, locate
 from ..lisp.objects.classes import find_class_or_error, make_instance
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import keyword
-from ..lisp.printer.printer import princ_to_string
+from ..lisp.printer.printer import prin1_to_string, princ_to_string
 from .failure_types import CompositeFailure
 from .hooks import on_make_fluent_hook
 from .symbols import sym
@@ -84,7 +85,7 @@ class Fluent:
 
     def _notify(self, value):
         if self.callbacks or self.sheltered:
-            with kernel.shield():
+            with shield(kernel.current()):
                 self._tell(value)
         else:
             self._tell(value)
@@ -116,6 +117,10 @@ class Fluent:
                     problem = raised if problem is None else _graver(problem, raised)
         if problem is not None:
             raise problem
+
+    def awaited(self):
+        """What a task that waits for it waits for, as text."""
+        return f"the fluent {prin1_to_string(self)}"
 
     def attach(self, net):
         """Have ``net`` told of pulses, as long as somebody else holds it."""
@@ -193,9 +198,9 @@ class ValueFluent(Fluent):
 
     def set(self, new):
         """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
-        old = self.stored
         if self.test is None:
-            if eql(old, new):
+            old = self.stored
+            if old is new or eql(old, new):
                 return new
         elif self._same(new):
             return new
@@ -277,9 +282,15 @@ class CachedNet(Net):
 
     @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed anew; it keeps its old value")
     def pulse(self):
-        new = self._recomputed() if self.careful else self.formula()
+        if self.careful:
+            self.turn = turn = self.turn + 1
+            new = self.formula()
+            if self.turn != turn:
+                new = self._recomputed()
+        else:
+            new = self.formula()
         old = self.cached
-        if eql(old, new):
+        if old is new or eql(old, new):
             return
         self.cached = new
         self.pulses += 1
@@ -289,12 +300,12 @@ class CachedNet(Net):
     input_pulsed = pulse
 
     def _recomputed(self):
-        self.turn = turn = self.turn + 1
+        """Inputs pulsed while the formula was computed, and what it read of them is out of date: compute until none does."""
         while True:
+            turn = self.turn
             new = self.formula()
             if self.turn == turn:
                 return new
-            turn = self.turn  # an input pulsed meanwhile, and what was read of it is out of date
 
 
 _peeking = set()
@@ -398,6 +409,8 @@ def is_cacheable(fluent):
 
 def value(fluent):
     """``(value x)``: the value of a fluent; any other object is its own value."""
+    if fluent.__class__ is ValueFluent:  # the commonest by far
+        return fluent.read()
     return fluent.read() if isinstance(fluent, Fluent) else fluent
 
 

@@ -18,7 +18,7 @@ from ..lisp.data import truth
 from ..lisp.packages import keyword
 from ..lisp.printer.printer import prin1_to_string
 from .fluents import Fluent
-from .logging import log_event
+from .logging import active_tags, log_event
 from .pausing import pause
 
 TIMEOUT = keyword("TIMEOUT")
@@ -53,12 +53,10 @@ def _wait(fluent, timeout):
     until = None if timeout is None else kernel.now() + in_seconds(timeout)
     if until is not None and timeout <= 0:
         return None
+    if active_tags:
+        log_event("WAIT-FOR", lambda: ("WAIT-FOR", prin1_to_string(fluent)))
     me = kernel.current()
-    log_event(lambda: ("WAIT-FOR", prin1_to_string(fluent)), "WAIT-FOR")
-
-    def why():
-        return f"the fluent {prin1_to_string(fluent)}"
-
+    why = fluent.awaited
     if not fluent.waiters:
         fluent.waiters = []
     fluent.waiters.append(me)
