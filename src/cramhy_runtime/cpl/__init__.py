@@ -79,13 +79,14 @@ from .steps import Tag, plan_function, tag
 from .suspension import retry_after_suspension, suspend, wake_up, with_task_suspended
 from .task_variables import define_task_variable
 from .current import current_task
+from .ending import cleanup_time_limit
 from .tasks import Task, ToplevelTask, evaporate
 from .tree_report import describe_task_tree, task_tree_text
 from .waiting import sleep, wait_for
 
 __all__ = [
-    "Attempt", "attempts", "checkpoint", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED", "current_task", "Deadlock",
-    "define_task_variable", "describe_task_tree", "envelope", "evaporate", "EVAPORATED",
+    "Attempt", "attempts", "checkpoint", "cleanup_time_limit", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED",
+    "current_task", "Deadlock", "define_task_variable", "describe_task_tree", "envelope", "evaporate", "EVAPORATED",
     "fail", "FAILED", "fl_and", "fl_apply", "fl_eq", "fl_eql", "fl_funcall", "fl_not", "fl_or", "fl_pulsed", "fl_value_changed",
     "Fluent", "handling", "join_task", "make_fluent", "make_policy", "move_on_after", "named_top_level", "now", "on_suspension",
     "opened", "par", "par_loop", "ParBlock", "partial_order", "peek_value", "plan", "plan_function", "PlanFailure", "policy", "Policy",

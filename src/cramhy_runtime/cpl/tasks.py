@@ -298,7 +298,11 @@ class AbstractTask:
         kernel_task.cancel(lambda: self._begin_to_end(reason))
 
     def _begin_to_end(self, reason):
+        """The request to end is delivered, in the task itself: what it raises. Cleanup begins after that."""
         if kernel.current() is self.kernel_task:
+            strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
+            if strays:
+                end_tasks(strays, reason)
             self.cleanup_limit = limit_cleanup(self)
         return kernel.Cancelled(reason)
 

@@ -44,3 +44,8 @@ class Lisp:
 @pytest.fixture
 def lisp(request):
     return Lisp(request.getfixturevalue("fresh_kernel").backend.name)
+
+
+@pytest.fixture
+def lisp_for_ten_seconds(request):
+    return Lisp(request.getfixturevalue("fresh_kernel").backend.name, time_limit=10)
