@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
+from ..lisp import condition_types as types
 from ..lisp.conditions import SimpleWarning, error, warn
 from .failure_types import CompositeFailure, PlanFailure, opened
 from .failures import signal_failure
@@ -162,7 +163,9 @@ def run_forms(form, thunks, ready, choose, late_failures_count=True):
     """`run` for a plan form with one branch per thunk; the errors of cpl.md 5.3 and of a form without branches."""
     inside_plan(form)
     if not thunks:
-        error("wait-for called with nil argument.")
+        empty = types.SimpleError("wait-for called with nil argument.")
+        empty.hint = f"There is no branch to wait for: {form} needs one form at least."
+        error(empty)
     tasks = branch_tasks(form, thunks)
     return run(form, tasks, ready, choose, late_failures_count)
 

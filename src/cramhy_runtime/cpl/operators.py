@@ -237,7 +237,7 @@ def partial_order(steps, orderings):
 def with_task(body, name="WITH-TASK", cls=None):
     """``(with-task (:name name) body...)``: run ``body`` in a new child task and wait for it."""
     inside_plan("WITH-TASK")
-    return run_one((cls or Task)(body, lambda: f"[{name}]"))
+    return run_one((cls or Task)(thread_fun=body, name=lambda: f"[{name}]", run_thread=None))
 
 
 def with_parallel_childs(name, thunks, watcher):

@@ -12,7 +12,7 @@ from ..lisp import condition_types as types
 from ..lisp.conditions import error, handler_bind, type_error
 from .fluent_operators import fl_pulsed
 from .fluents import ValueFluent
-from .statuses import CREATED
+from .statuses import CREATED, DEAD
 from .task_readers import task_dead
 from .tasks import AbstractTask
 
