@@ -27,18 +27,20 @@ def apply_orderings(orderings):
         _check(before, after)
     _refuse_rings(orderings)
     for before, after in orderings:
+        if after.status is not CREATED:
+            continue  # too late: it has looked what it must wait for
         if after.constraints is None:
             after.constraints = []
         if isinstance(before, AbstractTask):
             after.constraints.append(task_dead(before))
-            after.predecessors = [*predecessors(after), before]
+            after.predecessors = [*after.predecessors, before]
         else:
             after.constraints.append(fl_pulsed(before))
 
 
-def predecessors(task):
-    """The tasks that ``task`` waits for before it starts its body."""
-    return getattr(task, "predecessors", ()) if task.status is CREATED else ()
+def awaited_by(task):
+    """The living tasks that ``task`` waits for before it starts its body."""
+    return [before for before in task.predecessors if before.status not in DEAD]
 
 
 def _advise(condition):
@@ -57,8 +59,8 @@ def _refuse_rings(orderings):
     """Signal an error when with ``orderings`` a task would wait for itself, through others or at once."""
     waits_for = {}
     for before, after in orderings:
-        if isinstance(before, AbstractTask):
-            waits_for.setdefault(after, list(predecessors(after))).append(before)
+        if isinstance(before, AbstractTask) and after.status is CREATED:
+            waits_for.setdefault(after, awaited_by(after)).append(before)
     for start in waits_for:
         ring = _way_back(start, waits_for)
         if ring:
@@ -74,7 +76,7 @@ def _way_back(start, waits_for):
     came_from, waiting = {start: None}, [start]
     while waiting:
         task = waiting.pop(0)
-        for before in waits_for.get(task) or predecessors(task):
+        for before in waits_for.get(task) or awaited_by(task):
             if before is start:
                 ring = [task]
                 while (task := came_from[task]) is not None:

@@ -62,6 +62,8 @@ class AbstractTask:
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::ABSTRACT-TASK"
     threads = ()
     """The kernel's tasks that its body spawned by ``cut:spawn-thread``."""
+    predecessors = ()
+    """The tasks that it waits for before it starts its body (``orderings.py``)."""
     record = None
     """The list of all tasks of its plan, dead ones too, if they are recorded (``tree_report.py``)."""
     awaited = None
@@ -238,10 +240,10 @@ class AbstractTask:
 
     def _await_constraints(self):
         wait_for(fl_and(*self.constraints))
-        # If a predecessor failed, that may end the form around us before our body begins. A failure climbs one level of the
-        # tree per turn, so it gets as many turns as the tree is deep.
-        for _ in range(self.depth):
-            kernel.yield_()
+        if any(before.status is FAILED for before in self.predecessors):
+            kernel.settle()  # a failure that nobody takes ends the form around us before our body begins
+            if self.held:
+                obey(self)
 
     def _outcome(self, exception):
         """The status and result of a task that ``exception`` ended."""
