@@ -85,9 +85,10 @@ def test_an_unknown_step_in_an_ordering_is_named_and_starts_nothing(plan_text):
     assert plan_text("*notes*") == "(:CLOSED)" and nothing_runs()
 
 
-@pytest.mark.parametrize("ordering, value, wanted, more", [("(:order a 5)", "5", "TASK", ""), ("(:order (list 1) a)", "(1)", "(OR TASK VALUE-FLUENT)",
-                                                                                         " The first may be a value fluent."),
-                                                     ("(:order (fl+ (make-fluent :value 1) 1) a)", None, "(OR TASK VALUE-FLUENT)", "")])
+@pytest.mark.parametrize("ordering, value, wanted, more", [
+    ("(:order a 5)", "5", "TASK", ""),
+    ("(:order (list 1) a)", "(1)", "(OR TASK VALUE-FLUENT)", " The first may be a value fluent."),
+    ("(:order (fl+ (make-fluent :value 1) 1) a)", None, "(OR TASK VALUE-FLUENT)", "")])
 def test_what_is_no_task_cannot_be_ordered(plan_text, ordering, value, wanted, more):
     shown = plan_text.run(f"""(top-level
   (with-tags

@@ -17,7 +17,8 @@ TASKS = """(defun state (task) (value (status task)))
 
 
 @pytest.mark.law(78)
-@pytest.mark.parametrize("body, values", [("1", "1"), ("", "NIL"), ("(values 1 2)", "1 ; 2"), ("(values)", ""), ("1 2 (values nil t)", "NIL ; T")])
+@pytest.mark.parametrize("body, values", [("1", "1"), ("", "NIL"), ("(values 1 2)", "1 ; 2"), ("(values)", ""),
+                                          ("1 2 (values nil t)", "NIL ; T")])
 def test_top_level_returns_all_values_of_its_body(plan_text, body, values):
     assert plan_text(f"(top-level {body})") == plan_text(f"(named-top-level (:name x) {body})") == values
 
@@ -129,7 +130,8 @@ def test_seq_and_a_sequence_of_tags_are_strictly_sequential(plan_text):
                         (top-level (with-tags (:tag a (sleep 1) (note :a)) (:tag b (note :b))))
                         *notes*""") == "(1 2 :A :B)"
     assert plan_text("(seq)") == "NIL" and plan_text("(seq 1 (values 2 3))") == "2 ; 3"
-    assert plan_text.error('(seq (note :before) (fail "x") (note :never))').startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n")
+    assert plan_text.error('(seq (note :before) (fail "x") (note :never))').startswith(
+        "cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n")
     assert plan_text("*notes*") == "(1 2 :A :B :BEFORE)"
 
 
@@ -176,7 +178,8 @@ def test_a_failing_form_fails_par_and_ends_the_others_in_the_middle_of_their_wor
 
 @pytest.mark.law(84)
 def test_of_several_simultaneous_failures_par_reports_that_of_the_last_form(plan_text):
-    assert plan_text("""(top-level (handler-case (par (fail "a") (fail "b") (fail "c")) (plan-failure (e) (format nil "~a" e))))""") == '"c"'
+    assert plan_text("""(top-level (handler-case (par (fail "a") (fail "b") (fail "c")) (plan-failure (e) (format nil "~a" e))))
+                     """) == '"c"'
     assert plan_text("""(top-level (handler-case (par (fail "a") (seq (sleep 1) (fail "b"))) (plan-failure (e) (format nil "~a" e))))
                      """) == '"a"'
 
@@ -281,8 +284,8 @@ def test_nested_composites_stay_nested(plan_text):
 def test_par_loop_runs_its_body_once_for_each_element_all_at_once(plan_text):
     assert plan_text("(top-level (par-loop (x '(3 1 2)) (sleep x) (note x) (values x :more)))") == "3 ; :MORE"
     assert plan_text("*notes*") == "(1 2 3)" and kernel.now() == 3
-    assert plan_text("(top-level (handler-case (par-loop (x '(1 2)) (when (= x 2) (fail \"two\"))) (plan-failure (e) (format nil \"~a\" e))))") \
-        == '"two"'
+    assert plan_text("""(top-level (handler-case (par-loop (x '(1 2)) (when (= x 2) (fail "two")))
+                                     (plan-failure (e) (format nil "~a" e))))""") == '"two"'
 
 
 @pytest.mark.law(96)
