@@ -1,7 +1,9 @@
 "The macros of CRAM-UTILITIES: lazy lists and pattern variables (cpl.md 13)."
 
 (require cramhy.operators [defoperator])
-(import cramhy.operators *)
+(import cramhy.operators *
+        cramhy-runtime.lisp.packages [keyword]
+        cramhy-runtime.prolog.patterns [var-name])
 
 (setv package "CRAM-UTILITIES")
 
@@ -9,6 +11,14 @@
   "(names, initial forms) of bindings as in `let`."
   #((lfor parameter (elements parameters) (if (listp parameter) parameter.car parameter))
     (lfor parameter (elements parameters) (if (and (listp parameter) (listp parameter.cdr)) parameter.cdr.car None))))
+
+(setv lazy-restarts (lfor name ["CONT" "NEXT" "FINISH" "REST"] (keyword name)))
+
+(defn names-restart [form]
+  "Whether `form` mentions one of the restarts that a lazy list has in the original; they cost time, so others do without."
+  (cond
+    (listp form) (or (names-restart form.car) (names-restart form.cdr))
+    True (any (gfor restart lazy-restarts (is form restart)))))
 
 (defoperator lazy-list [parameters #* body]
   (setv #(names initial) (parameter-parts parameters))
@@ -18,7 +28,8 @@
        (flet [[cont [&rest ~rest] (apply ~give ~rest)]
               [next [&rest ~rest] (apply ~again ~rest)]
               [finish [&rest ~rest] (apply ~end ~rest)]]
-         ~@body))))
+         ~@body))
+     ~(names-restart (list-from body))))
 
 (defoperator with-lazy-list-dynamic-environment [definitions #* body]
   `(%lazy-environment (quote ~(list-from (lfor definition (elements definitions) definition.car)))
@@ -27,7 +38,9 @@
 
 (defoperator lazy-dolist [spec #* body]
   (setv #(variable items #* result) spec)
-  `(block nil (%lazy-dolist ~items (lambda [~variable] ~@body)) ~(if result (get result 0) None)))
+  `(block nil
+     (%lazy-dolist ~items (lambda [~variable] (declare (ignorable ~variable)) ~@body))
+     (let* [[~variable nil]] (declare (ignorable ~variable)) ~(if result (get result 0) None))))
 
 (defoperator delay [#* body]
   `(%delay-thunk (lambda [] ~@body)))
@@ -48,8 +61,9 @@
 (defn pattern-variables [pattern found]
   (cond
     (listp pattern) (do (pattern-variables pattern.car found) (pattern-variables pattern.cdr found))
-    (and (isinstance pattern LispSymbol) (.startswith pattern.name "?") (!= pattern.name "?_") (not-in pattern found))
-    (.append found pattern))
+    (and (isinstance pattern LispSymbol) (.startswith pattern.name #("?" "!?")) (not-in pattern.name ["?_" "!?_"]))
+    (do (setv variable (var-name pattern))
+        (when (not-in variable found) (.append found variable))))
   found)
 
 (defoperator with-pat-vars-bound [pattern sequence #* body]

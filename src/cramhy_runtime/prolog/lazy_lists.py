@@ -18,8 +18,11 @@ from cramhy_runtime.lisp.evaluation.functions import function_of
 from cramhy_runtime.lisp.packages import keyword
 from cramhy_runtime.lisp.printer.printer import address, define_printer, output_object, print_unreadable, write
 from cramhy_runtime.lisp.printer.standard_printers import print_slots
+from cramhy_runtime.lisp.restarts import restart_case
 
 from .symbols import sym
+
+CONT, NEXT, FINISH, REST = map(keyword, ("CONT", "NEXT", "FINISH", "REST"))
 
 _environment = special(Symbol("*LAZY-LIST-ENVIRONMENT*"))
 
@@ -116,12 +119,13 @@ class _Leave(BaseException):
         self.token, self.kind, self.value, self.parameters = token, kind, value, parameters
 
 
-def lazy_list(initial, body):
+def lazy_list(initial, body, restarts=False):
     """``cut:lazy-list``: the list whose elements ``body(cont, next_, finish, *parameters)`` gives, called once per element.
 
     ``initial`` is a sequence with the parameters of the first call. In the body ``cont(value, *parameters)`` delivers an
     element and names the parameters for the next one, ``next_(*parameters)`` calls the body again at once,
     ``finish(value)`` delivers the last element; each leaves the body. What the body returns is the rest of the list.
+    With ``restarts`` the three are restarts ``:cont``, ``:next`` and ``:finish`` too, as in the original, and ``:rest`` takes the rest.
     """
 
     def step(parameters):
@@ -138,7 +142,11 @@ def lazy_list(initial, body):
                 raise _Leave(token, "next", None, arguments)
 
             try:
-                return one(body(leave("cont"), again, leave("finish"), *parameters))
+                if not restarts:
+                    return one(body(leave("cont"), again, leave("finish"), *parameters))
+                return restart_case(
+                    [(CONT, leave("cont"), None), (NEXT, again, None), (FINISH, leave("finish"), None), (REST, lambda rest=None: rest, None)],
+                    lambda: one(body(leave("cont"), again, leave("finish"), *parameters)))
             except _Leave as left:
                 if left.token is not token:
                     raise

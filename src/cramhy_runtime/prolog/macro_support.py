@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import list_from, python_list
+from cramhy_runtime.lisp.data import list_from, python_list, truth
 from cramhy_runtime.lisp.faces import define_face
 
 from . import barriers, facts, file_cache, lazy_lists, locks, natives, patterns, rete
@@ -33,9 +33,9 @@ def fact_outside_group(fact):
     return facts.fact_outside_group(*python_list(fact))
 
 
-def lazy_list_of(initial, body):
-    """``initial``: list of the parameters' first values. ``body(cont, next, finish, parameter...)``."""
-    return lazy_lists.lazy_list(python_list(initial), body)
+def lazy_list_of(initial, body, restarts):
+    """``initial``: list of the parameters' first values. ``body(cont, next, finish, parameter...)``; ``restarts``: it names some."""
+    return lazy_lists.lazy_list(python_list(initial), body, truth(restarts))
 
 
 def lazy_environment(symbols, thunks, body):

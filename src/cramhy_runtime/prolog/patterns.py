@@ -10,7 +10,7 @@ This is the library that plans call. The Prolog engine has terms of its own, see
 from __future__ import annotations
 
 from cramhy_runtime.lisp import equality
-from cramhy_runtime.lisp.conditions import error, warn
+from cramhy_runtime.lisp.conditions import error, type_error, warn
 from cramhy_runtime.lisp.data import Cons, Keyword, LispString, MultipleValues, Symbol, list_from, one, truth
 from cramhy_runtime.lisp.evaluation.functions import function_of
 
@@ -221,10 +221,17 @@ def rename_vars(pat, *, gensym_var_names=True):
 
 def patterns_eq(pattern_1, pattern_2):
     """Whether two lists have the same shape and atoms, any variable standing for any variable."""
+    for pattern in (pattern_1, pattern_2):
+        if pattern is not None and not isinstance(pattern, Cons):
+            return type_error(pattern, "LIST")
+    return _patterns_eq(pattern_1, pattern_2)
+
+
+def _patterns_eq(pattern_1, pattern_2):
     while isinstance(pattern_1, Cons) and isinstance(pattern_2, Cons):
         a, b = pattern_1.car, pattern_2.car
         if isinstance(a, Cons) and isinstance(b, Cons):
-            if not patterns_eq(a, b):
+            if not _patterns_eq(a, b):
                 return None
         elif not ((variable(a) and variable(b)) or a is b or (isinstance(a, int) and same_atom(a, b))):
             return None

@@ -12,10 +12,11 @@ from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, type_error, warn
 from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, Symbol, lisp_list, list_from, one, python_list, truth
-from cramhy_runtime.lisp.dynamic import special
+from cramhy_runtime.lisp.dynamic import binding, special
 from cramhy_runtime.lisp.equality import eql
 from cramhy_runtime.lisp.evaluation.functions import function_of, identity
 from cramhy_runtime.lisp.evaluation.universal_time import CONSTANTS, get_internal_run_time
+from cramhy_runtime.lisp.objects.protocol import protocol_function
 from cramhy_runtime.lisp.objects.structures import StructureObject, copy_structure
 from cramhy_runtime.lisp.packages import find_package, keyword
 from cramhy_runtime.lisp.printer.print_controls import PACKAGE
@@ -46,25 +47,30 @@ def deprecate(message):
 style_warn = conditions.style_warn
 
 
-def copy_object(obj):
+_copies = special(Symbol("*COPIES*"))
+
+
+def _copy_of(obj):
     """A copy of an instance whose bound slots are copied in turn; a structure's slots are shared; other objects are themselves.
 
     An instance that is met again, in itself or in another slot, is copied once, so that circles and sharing are as before.
     """
-    copies = {}
+    if isinstance(obj, StructureObject):
+        return copy_structure(obj)
+    if not hasattr(obj, "__dict__") or isinstance(obj, type | BaseException) or callable(obj):
+        return obj
+    if _copies.value is None:
+        with binding(_copies, {}):
+            return _copy_of(obj)
+    copy = _copies.value.get(id(obj))
+    if copy is None:
+        copy = _copies.value[id(obj)] = obj.__class__.__new__(obj.__class__)
+        copy.__dict__.update({name: one(copy_object(value)) for name, value in obj.__dict__.items()})
+    return copy
 
-    def copy_of(thing):
-        if isinstance(thing, StructureObject):
-            return copy_structure(thing)
-        if not hasattr(thing, "__dict__") or isinstance(thing, type | BaseException) or callable(thing):
-            return thing
-        copy = copies.get(id(thing))
-        if copy is None:
-            copy = copies[id(thing)] = thing.__class__.__new__(thing.__class__)
-            copy.__dict__.update({name: copy_of(value) for name, value in thing.__dict__.items()})
-        return copy
 
-    return copy_of(obj)
+copy_object = protocol_function("CUT::COPY-OBJECT", "(obj)", _copy_of)
+"""``cut:copy-object``, a generic function: `_copy_of` is what it does without further methods."""
 
 
 # --------------------------------------------------------------------------------------------------------------------- time
