@@ -20,6 +20,7 @@ from cramhy_runtime.lisp.printer.printer import address, define_printer, output_
 from cramhy_runtime.lisp.printer.standard_printers import print_slots
 from cramhy_runtime.lisp.restarts import restart_case
 
+from .lines import Line
 from .symbols import sym
 
 CONT, NEXT, FINISH, REST = map(keyword, ("CONT", "NEXT", "FINISH", "REST"))
@@ -27,33 +28,67 @@ CONT, NEXT, FINISH, REST = map(keyword, ("CONT", "NEXT", "FINISH", "REST"))
 _environment = special(Symbol("*LAZY-LIST-ENVIRONMENT*"))
 
 
-class LazyTail:
+class Once:
+    """A value that the first who asks computes, by ``generator``, and that is remembered; who asks meanwhile waits for the first.
+
+    When that one ends before it has the value, the next computes it.
+    """
+
+    __slots__ = ("generator", "value", "worker", "line")
+    circle, why = "A promise needs its own value to compute that value.", "the value of a promise that another task computes"
+
+    def __init__(self, generator):
+        self.generator = generator
+        self.worker = self.line = None
+
+    def force(self):
+        """The value."""
+        if self.begin():
+            try:
+                self.value = one(self.generator())
+                self.generator = None
+            finally:
+                self.end()
+        return self.value
+
+    def begin(self):
+        """True if the task is to compute the value now, and call `end` then; false if the value is there."""
+        while self.generator is not None and self.worker is not None:
+            if self.worker is kernel.current():
+                error(self.circle)
+            if self.line is None:
+                self.line = Line()
+            self.line.stand(self.why)
+        if self.generator is None:
+            return False
+        self.worker = kernel.current()
+        return True
+
+    def end(self):
+        self.worker = None
+        if self.line is not None:
+            line, self.line = self.line, None
+            line.serve_all()
+
+
+class LazyTail(Once):
     """The rest of a lazy list, not yet computed. ``generator`` takes no arguments and returns the rest: a list or ``None``.
 
     ``drain``, if given, returns all remaining elements at once, which is quicker for whoever wants the whole list.
     """
 
-    __slots__ = ("generator", "drain", "value", "worker", "waiting")
+    __slots__ = ("drain",)
+    circle, why = "A lazy list needs its own next element to compute that element.", "the element of a lazy list that another task computes"
 
     def __init__(self, generator, drain=None):
         self.generator = generator
         self.drain = drain
-        self.worker = None
-        self.waiting = None
+        self.worker = self.line = None
 
     def force(self, completely=False):
         """The rest of the list; computed at the first call, remembered afterwards. ``completely``: all of it, where possible."""
-        if self.generator is None:
+        if self.generator is None or not self.begin():
             return self.value
-        task = kernel.current()
-        while self.worker is not None:
-            if self.worker is task:
-                return error("A lazy list needs its own next element to compute that element.")
-            self.waiting = [*(self.waiting or ()), task]
-            kernel.park("the element of a lazy list that another task computes")
-        if self.generator is None:
-            return self.value
-        self.worker = task
         try:
             if completely and self.drain is not None:
                 rest = list_from(self.drain())
@@ -63,10 +98,7 @@ class LazyTail:
                     rest = rest.force()
             self.value, self.generator, self.drain = rest, None, None
         finally:
-            self.worker = None
-            waiting, self.waiting = self.waiting, None
-            for other in waiting or ():
-                kernel.unpark(other)
+            self.end()
         return rest
 
     def __repr__(self):
@@ -145,7 +177,8 @@ def lazy_list(initial, body, restarts=False):
                 if not restarts:
                     return one(body(leave("cont"), again, leave("finish"), *parameters))
                 return restart_case(
-                    [(CONT, leave("cont"), None), (NEXT, again, None), (FINISH, leave("finish"), None), (REST, lambda rest=None: rest, None)],
+                    [(CONT, leave("cont"), None), (NEXT, again, None), (FINISH, leave("finish"), None),
+                     (REST, lambda rest=None: rest, None)],
                     lambda: one(body(leave("cont"), again, leave("finish"), *parameters)))
             except _Leave as left:
                 if left.token is not token:
@@ -355,13 +388,10 @@ def copy_lazy_list(src):
 # ----------------------------------------------------------------------------------------------------------------- promises
 
 
-class Promise:
-    """What ``(delay expr)`` returns: computed by the first `force`, then remembered."""
+class Promise(Once):
+    """What ``(delay expr)`` returns."""
 
-    __slots__ = ("thunk", "value")
-
-    def __init__(self, thunk):
-        self.thunk = thunk
+    __slots__ = ()
 
     def __repr__(self):
         return "#<PROMISE>"
@@ -378,11 +408,7 @@ def delay_p(obj):
 
 def force(obj):
     """The value of a promise; any other object is returned as it is."""
-    if not isinstance(obj, Promise):
-        return obj
-    if obj.thunk is not None:
-        obj.value, obj.thunk = one(obj.thunk()), None
-    return obj.value
+    return obj.force() if isinstance(obj, Promise) else obj
 
 
 # ----------------------------------------------------------------------------------------------------------------- printing
