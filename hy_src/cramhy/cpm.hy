@@ -6,8 +6,8 @@
 (setv package "CRAM-PROCESS-MODULES")
 
 (defoperator def-process-module [name parameters #* body]
-  (setv #(variable) parameters)
-  `(%define-process-module (quote ~name) (%named-lambda ~name [~variable] (block nil ~@body))))
+  (setv #(variable) parameters #(declarations forms) (split-declarations body))
+  `(%define-process-module (quote ~name) (%named-lambda ~name [~variable] ~@declarations (block nil ~@forms))))
 
 (defoperator with-process-modules-running [modules #* body]
   `(%with-process-modules-running (quote ~modules) (lambda [] ~@body)))

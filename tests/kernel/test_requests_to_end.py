@@ -248,3 +248,23 @@ def test_cleanup_may_spawn_and_join(k):
 
 def test_the_text_of_a_request_without_a_reason():
     assert str(kernel.Cancelled()) == "cancelled"
+
+
+def test_a_wake_up_during_what_is_called_before_a_park_is_not_lost(k):
+    """What was interjected into a shield is called at the next park point, before the task parks, and takes its time."""
+    ready = []
+
+    def wait():
+        with kernel.shield():
+            kernel.sleep(1)
+        while not ready:
+            kernel.park("it")
+        return kernel.now()
+
+    task = kernel.spawn(wait)
+    kernel.sleep(0.5)
+    task.interject(lambda: kernel.sleep(1))  # from 1 to 2
+    kernel.sleep(1)
+    ready.append(True)
+    kernel.unpark(task)
+    assert task.join() == 2

@@ -6,11 +6,14 @@ from designators.support import lisp, make, user
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime import designators as desig
 from cramhy_runtime import process_modules as pm
+from cramhy_runtime.cpl.failure_types import opened
 from cramhy_runtime.cpl.failures import attempt
 from cramhy_runtime.lisp.conditions import Error, SimpleError, error, handler_bind, invoke_restart
 from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, lisp_list
 from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.evaluation.evaluator import evaluate
 from cramhy_runtime.lisp.packages import intern, keyword, sym
+from cramhy_runtime.lisp.reader.reader import Reader
 from cramhy_runtime.process_modules import asynchronous, modules, registry
 from cramhy_runtime.prolog.facts import define_fact_group, remove_fact_group
 
@@ -418,3 +421,46 @@ def test_finishing_what_is_not_being_done_is_an_error():
         return problem.value.format_control
 
     assert with_conveyor(body) == "Cannot finish an already stopped process module."
+
+
+def test_a_module_that_fails_is_the_reason_that_the_user_hears():
+    """The request only says that the module is not running; why it is not must not be lost (law 3)."""
+    def broken(designator):
+        raise LookupError("the motor is gone")
+
+    def body():
+        module = pm.registry.get_running_process_module(NAVIGATION)
+        module.sleeper.interject(lambda: broken(None))
+        return pm.pm_execute(NAVIGATION, motion())
+
+    define(lambda designator: None)
+    with pytest.raises(Exception, match="the motor is gone"):
+        with_modules(body)
+
+
+def test_a_module_that_ends_while_its_caller_is_suspended_fails_the_caller():
+    """The caller asked again after its wake-up, and waited for ever."""
+    define(lambda designator: cpl.sleep(10))
+
+    def body():
+        caller = cpl.Task(lambda: pm.pm_execute(NAVIGATION, motion()), "caller").execute()
+        cpl.sleep(1)
+        cpl.suspend(caller)
+        module = pm.registry.get_running_process_module(NAVIGATION)
+        module.sleeper.owner.evaporate()
+        cpl.sleep(1)
+        cpl.wake_up(caller)
+        return fails_with(lambda: cpl.join_task(caller))
+
+    failure = with_modules(body)
+    assert "not running" in str(opened(failure))
+
+
+def evaluated(text):
+    return evaluate(Reader(text, "<test>").read())
+
+
+def test_the_body_of_a_process_module_may_begin_with_declarations():
+    assert evaluated("""(progn (cpm:def-process-module declaring (designator) (declare (ignore designator)) :done)
+                          (cpm:with-process-modules-running (declaring)
+                            (cpl:top-level (cpm:pm-execute 'declaring (desig:make-designator :motion nil)))))""") is keyword("DONE")

@@ -111,6 +111,8 @@ def _run_top_level(body, name, tree):
         if task.status is FAILED and isinstance(exception, kernel.Cancelled | kernel.Interrupted):
             exception.add_note(f"While the plan was ended, its cleanup failed: {task.result}")
         raise
+    finally:
+        me.why = ""  # it holds the plan with its whole tree
     if task.status is FAILED:
         failure = opened(task.result)
         if isinstance(failure, KeyboardInterrupt | SystemExit | kernel.Interrupted):

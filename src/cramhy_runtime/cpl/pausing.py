@@ -63,21 +63,28 @@ def obey(task):
 
 
 def _be_suspended(task):
-    for handler in reversed(task.suspension_handlers or ()):
-        assert_no_nlx("ON-SUSPENSION", handler)
-    children = list(task.children)
-    for child in children:
-        request(child)
-    for child in children:
-        child.park_until(AT_REST, lambda child=child: f"the suspension of {child.name}", lambda child=child: not child.held)
-    task.change_status(SUSPENDED)
-    while task.held:
-        kernel.park(lambda: "its wake-up: it is suspended")
-    children = list(task.children)
-    for child in children:
-        release(child)
-    for child in children:
-        child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}", lambda child=child: child.held)
+    try:
+        for handler in reversed(task.suspension_handlers or ()):
+            assert_no_nlx("ON-SUSPENSION", handler)
+        children = list(task.children)
+        for child in children:
+            request(child)
+        for child in children:
+            child.park_until(AT_REST, lambda child=child: f"the suspension of {child.name}", lambda child=child: not child.held)
+        task.change_status(SUSPENDED)
+        while task.held:
+            kernel.park(lambda: "its wake-up: it is suspended")
+        children = list(task.children)
+        for child in children:
+            release(child)
+        for child in children:
+            child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}", lambda child=child: child.held)
+    except BaseException:  # it fails here, and may recover, or be suspended again in its cleanup
+        for child in task.children:
+            release(child)
+        if task.status is SUSPENDED and not task.kernel_task.cancelled_delivered:
+            task.change_status(RUNNING)
+        raise
     task.change_status(RUNNING)
 
 

@@ -37,4 +37,6 @@ def watch(tasks, watcher):
                     list_from([task for task in newest_first if task.status in DONE]),
                     list_from([task for task in newest_first if task.status is FAILED]))
     finally:
+        for task in tasks:
+            task.status_fluent.callbacks = None
         end_tasks([task for task in tasks if task.status not in DEAD])

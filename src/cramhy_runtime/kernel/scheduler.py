@@ -25,7 +25,7 @@ from .backends import make_backend
 from .budget import SLICE, budget, need_headroom, need_steps
 from .clocks import Bell, make_clock
 from .endings import PATIENCE, Endings
-from .errors import Deadlock, Interrupted, KernelError, NoStack, TimeLimit
+from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, TimeLimit
 from .outside import Outside
 from .tasks import DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
 from .timers import CALLBACK, TimerHeap
@@ -124,11 +124,12 @@ class Kernel(Endings, Outside):
         """Give the baton away until `unpark` (True) or until the clock reaches UNTIL (False).
 
         WHY, text or a function of no arguments that gives one, stands in reports. Raises what the task is asked to
-        end with, before or after.
+        end with, before or after. What was to be called on this stack before it parks may take its time, and the wake-up may
+        come meanwhile: then the result is True at once, and the caller looks again.
         """
         me = self.current
-        if me.attention:
-            me.deliver()
+        if me.attention and me.deliver():
+            return True
         if self._timers.entries or self._inbox or self._unclaimed:
             need_headroom()
         else:
@@ -318,6 +319,8 @@ class Kernel(Endings, Outside):
         task.why = ""
         if task._name.__class__ is not str:
             task._name = "a task that has ended" if task._exception is None else str(task.name)
+        if task.delivered.__class__ is Cancelled:
+            task.delivered.__traceback__ = None  # which holds the whole stack
         del self._tasks[task.id]
         if task.dynamic is not None:
             task.dynamic.leave()

@@ -187,7 +187,10 @@ class Task:
             return f"something that cannot say what it is ({broken!r})"
 
     def deliver(self):
-        """Raise what this task was asked to end with, if it may be raised now. Called by the task itself."""
+        """Raise what this task was asked to end with, if it may be raised now. Called by the task itself.
+
+        Returns True if functions were called (`interject`), which may have taken time.
+        """
         if self.abandoned:
             self.swallowed += 1
             if self.swallowed > HOPELESS:
@@ -217,6 +220,8 @@ class Task:
                     self._look_again()
                     raise
             self.woken = True  # whoever parked looks again whether what it waits for has come
+            return True
+        return False
 
     def _look_again(self):
         waiting = self.cancel_request is not None and not self.cancelled_delivered

@@ -86,10 +86,14 @@ class TimerHeap:
         """Some entry no longer counts."""
         self._stale += 1
         if self._stale > SWEEP_FROM and self._stale * 2 > len(self.entries):
-            # In place, because the scheduler holds this very list.
-            self.entries[:] = [entry for entry in self.entries if _counts(entry)]
-            heapify(self.entries)
-            self._stale = 0
+            self.sweep()
+
+    def sweep(self):
+        """Take out the entries that no longer count; until then each holds its task."""
+        # In place, because the scheduler holds this very list.
+        self.entries[:] = [entry for entry in self.entries if _counts(entry)]
+        heapify(self.entries)
+        self._stale = 0
 
     def next_time(self):
         """The time of the first entry that counts, or None."""

@@ -307,6 +307,8 @@ def _execute(module, input_, *, task=None):
         return values(*python_list(module.result_fluent.stored)) if not isinstance(module.result_fluent.stored, BaseException) else None
 
     def attempt():
+        if module.status_fluent.stored is OFFLINE:  # it has ended while the caller was suspended
+            return error(ProcessModuleNotRunning("Process module `~a' not running.", module.name))
         before = module.request or (module.queue[0] if module.queue else None)
         request = Request(input_, task or current_task())
         module.submit(request)

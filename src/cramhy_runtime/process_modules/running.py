@@ -18,7 +18,7 @@ from ..cpl.tree import TaskTreeNode
 from ..lisp.conditions import error
 from ..lisp.data import Cons
 from .modules import pm_run
-from .registry import running
+from .registry import ProcessModuleNotRunning, UnknownProcessModule, running
 
 
 def with_process_modules_running(modules, body):
@@ -35,6 +35,10 @@ def with_process_modules_running(modules, body):
     try:
         _await_start(background, [name for name, _ in started], registry, me)
         result = body()
+    except (ProcessModuleNotRunning, UnknownProcessModule) as missed:
+        if background.status is FAILED:  # that is why it was not running
+            raise opened(background.result) from missed
+        raise
     finally:
         background.ended = None
         end_tasks([background], "Body ended.")

@@ -63,6 +63,11 @@ def borrow(job):
     return carrier
 
 
+def threads_in_use():
+    """The threads of this process beside the main one, without those that are idle in the pool."""
+    return _thread._count() - len(_idle)
+
+
 def _carry_on(carrier):
     """The life of a thread in the pool: wait, do a job, hand the baton on, and again."""
     trace = threading.gettrace()

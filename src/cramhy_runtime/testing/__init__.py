@@ -1,0 +1,31 @@
+"""Testing plans: virtual time, seeds, all schedules, faults, and what must not be left. With pytest or without.
+
+    from cramhy_runtime import cpl, testing
+
+    def plan():
+        door = cpl.make_fluent()
+        return cpl.top_level(lambda: cpl.par(lambda: cpl.wait_for(door, timeout=5), lambda: door.set(True)))
+
+    testing.explore(plan)                                                     # the same result, whoever goes first
+    testing.run(plan, faults=[testing.faults.at(task="*#1/2", action="fail")])    # and when a branch fails
+
+A plan is a Python function or Lisp, as a text or a form. Each run has a kernel of its own, in virtual time, on either back end, so
+tests take milliseconds and disturb nothing. docs/testing.md has a whole example.
+
+Where the parts are: ``runs`` (a run, its outcome), ``plans`` (what can be run) · ``schedules``, ``exploration`` (who goes first) ·
+``traces`` (marks and their order) · ``park_points``, ``faults`` (what may happen where) · ``leftovers`` (tasks, observers, timers) ·
+``watched`` (the kernel that sees all this), ``labels`` (names of tasks that are the same in every run) · ``package`` (the Lisp face).
+"""
+
+from . import faults
+from .exploration import DependsOnLuck, Exploration, explore
+from .leftovers import assert_all_dead, assert_nothing_left, assert_tree, leftovers
+from .runs import Outcome, run, virtual_time
+from .schedules import Schedule
+from .traces import assert_after, assert_before, assert_concurrent, assert_never, assert_order, assert_times, mark
+
+__all__ = [
+    "assert_after", "assert_all_dead", "assert_before", "assert_concurrent", "assert_never", "assert_nothing_left", "assert_order",
+    "assert_times", "assert_tree", "DependsOnLuck", "Exploration", "explore", "faults", "leftovers", "mark", "Outcome", "run",
+    "Schedule", "virtual_time",
+]  # fmt: skip

@@ -1,0 +1,102 @@
+"""Faults: what may happen to a branch at a park point, on purpose.
+
+    fault = faults.at(task="*PAR-CHILD-#1/2", park="sleep", nth=2, action="evaporate")
+    outcome = testing.run(plan, faults=[fault])
+
+Somebody ends the branch, suspends it and lets it go on, or an error arises where it waits. A plan must get through all of it: its
+cleanup forms run once, its other branches end, nothing is left.
+"""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+
+from ..cpl.failure_types import SimplePlanFailure
+from ..cpl.failures import fail
+from ..cpl.pausing import release, request
+
+ACTIONS = ("evaporate", "fail", "raise", "suspend-and-resume")
+SUSPENDED_FOR = 0.05  # s
+
+
+class InjectedFailure(SimplePlanFailure):
+    """The plan failure of the action ``fail``."""
+
+    lisp_name = "CRAMHY-TESTING::INJECTED-FAILURE"
+
+
+class InjectedError(Exception):
+    """The error of the action ``raise``."""
+
+
+class Fault:
+    """Something that happens once, at the park point that `at` describes. ``happened``: the point, or None."""
+
+    def __init__(self, task, park, nth, action, seconds, entering):
+        self.task, self.park, self.nth, self.action, self.seconds, self.entering = task, park, nth, action, seconds, entering
+        self.happened = self.timer = None
+
+    def over(self):
+        """The run is over: nothing is to be resumed any more."""
+        if self.timer is not None:
+            self.timer.cancel()
+
+    def meets(self, point):
+        """True if it has not happened yet and this is the point."""
+        if self.happened is not None or not (self.task == point.task or fnmatchcase(point.task, _pattern(self.task))):
+            return False
+        return self.nth == point.number if self.park is None else self.park == point.name and self.nth == point.nth
+
+    def happen(self, kernel, me, point):
+        """Have it happen to the kernel's task ME: before it parks (``entering``), or as the first thing after."""
+        self.happened = point
+        task = me.owner
+        if self.entering:
+            self._act(kernel, me, task)
+        else:
+            kernel.post(lambda: self._act(kernel, me, task))
+
+    def _act(self, kernel, me, task):
+        if task.dead:
+            return
+        if self.action == "evaporate":
+            task.evaporate(f"fault at {self.happened}")
+        elif self.action == "suspend-and-resume":
+            request(task)
+            self.timer = kernel.call_at(kernel.now() + self.seconds, lambda: release(task))
+        elif not me.shielded:  # who is shielded waits for the death of others, and nothing can go wrong there
+            me.interject(self._go_wrong)
+
+    def _go_wrong(self):
+        if self.action == "fail":
+            fail(InjectedFailure(f"A fault at {self.happened}."))
+        if callable(self.action):
+            self.action()
+        else:
+            raise InjectedError(f"A fault at {self.happened}.")
+
+    def __str__(self):
+        action = getattr(self.action, "__name__", self.action)
+        where = f"park point {self.nth}" if self.park is None else f"{self.park} {self.nth}"
+        return f"{action} {self.task} at {where}{', entering' if self.entering else ''}"
+
+    __repr__ = __str__
+
+
+def _pattern(task):
+    return task.replace("[", "[[]")
+
+
+def at(task="*", park=None, nth=1, action="evaporate", *, seconds=SUSPENDED_FOR, entering=False):
+    """A fault that happens to ``task``, a label or a pattern of one (``*``, ``?``), at its ``nth`` park point.
+
+    ``park``: count points of this name only, as ``"sleep"`` or ``"wait-for"`` (see ``park_points.NAMES``). ``action``:
+    ``"evaporate"``; ``"fail"`` with a plan failure `InjectedFailure`; ``"raise"`` an error `InjectedError`;
+    ``"suspend-and-resume"`` after ``seconds``; or a function that is called on the task's own stack. ``entering``: before the task
+    parks instead of as soon as it has parked.
+    """
+    if not callable(action) and action not in ACTIONS:
+        raise ValueError(f'There is no action "{action}". Choose one of {", ".join(ACTIONS)}, or give a function.')
+    if nth < 1:
+        raise ValueError(f"Park points count from 1, not from {nth}.")
+    return Fault(task, park, nth, action, seconds, entering)

@@ -1,0 +1,69 @@
+"""Names of tasks that are the same in every run.
+
+The plan language names a task when somebody asks, ``[PAR-CHILD-#1/2]-7``, and counts the askings. A schedule or a fault must mean
+the same task tomorrow, so a test uses labels: the names without that number, from the top-level down, ``TOP-LEVEL/PAR-CHILD-#1/2``.
+Of siblings with one name the second is called ``... (2)``, in the order in which they were started.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from weakref import ref
+
+_NUMBERED = re.compile(r"\[(.*)\]-\d+$")
+
+
+class Births:
+    """The tasks that one task has started, in order, and their labels as far as somebody has asked."""
+
+    __slots__ = ("born", "known", "counts")
+
+    def __init__(self):
+        self.born = []  # weak references, or names of tasks that are gone
+        self.known = 0
+        self.counts = Counter()
+
+    def label_until(self, task, prefix):
+        """Label the tasks up to TASK in their order of birth."""
+        while True:
+            entry = self.born[self.known]
+            other = None if isinstance(entry, str) else entry()
+            name = entry if isinstance(entry, str) else plain_name(other)
+            self.born[self.known] = None
+            self.known += 1
+            self.counts[name] += 1
+            count = self.counts[name]
+            if other is not None:
+                other.local.label = prefix + (name if count == 1 else f"{name} ({count})")
+            if other is task:
+                return
+
+
+def plain_name(task):
+    """The task's own name, without brackets and number."""
+    name = "a task" if task is None else str(task.name)
+    numbered = _NUMBERED.match(name)
+    return numbered[1] if numbered else name.removeprefix("[").removesuffix("]")
+
+
+def born(task, parent):
+    """Note that PARENT has started TASK."""
+    births = getattr(parent.local, "births", None)
+    if births is None:
+        births = parent.local.births = Births()
+    task.local.siblings = births
+    births.born.append(ref(task))
+
+
+def label(task):
+    """The label of a kernel's task."""
+    known = getattr(task.local, "label", None)
+    if known is not None:
+        return known
+    siblings = getattr(task.local, "siblings", None)
+    if siblings is None:
+        return str(task.name)
+    parent = task.parent
+    siblings.label_until(task, "" if parent is None or parent.parent is None else label(parent) + "/")
+    return task.local.label

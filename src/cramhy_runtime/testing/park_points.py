@@ -1,0 +1,81 @@
+"""Park points: where a task gives the baton away, by name.
+
+Everything that can happen to a plan from outside happens at such a point: a sibling fails, a parent ends, somebody suspends it. A
+point has a stable name, that of the operation which waits: ``wait-for``, ``sleep``, ``branches`` (a parallel form for its
+branches), ``cleanup`` (a form for the death of branches that it has ended), ``end`` (of another task), and those in `NAMES`.
+
+Nothing of this is paid for outside of tests: the name is found, by looking which function waits, only in the kernel that tests
+start.
+"""
+
+from __future__ import annotations
+
+import os
+
+NAMES = {
+    "cpl/waiting.py:_wait": "wait-for",
+    "cpl/waiting.py:sleep_star": "sleep",
+    "cpl/watching.py:watch": "with-parallel-childs",
+    "cpl/branches.py:Branches.wait": "branches",
+    "cpl/tasks.py:end_tasks": "cleanup",
+    "cpl/tasks.py:AbstractTask.join": "end",
+    "cpl/tasks.py:_evaporate": "evaporation",
+    "cpl/tasks.py:AbstractTask.suspend": "suspension",
+    "cpl/suspension.py:task_suspended": "suspension",
+    "cpl/tasks.py:AbstractTask.wake_up": "wake-up",
+    "cpl/pausing.py:_be_suspended": "suspended",
+    "kernel/scheduler.py:Kernel.sleep": "sleep",
+    "kernel/tasks.py:Task.join": "end",
+    "process_modules/modules.py:ProcessModule._await_request": "request",
+    "process_modules/modules.py:_execute.<locals>.attempt": "pm-execute",
+    "process_modules/modules.py:ProcessModule.withdraw": "cleanup",
+}
+"""The functions that wait, by file and name, and what their waiting is called."""
+
+ORDER = "cpl/tasks.py:AbstractTask._await_constraints"  # waits by wait-for, for the steps before in a partial order
+OTHER = "park"
+_FARTHEST = 8  # frames between a function that waits and the kernel
+_known = {}  # what each code object is
+
+
+def name_of_wait(frame):
+    """What the innermost function of `NAMES` from FRAME outwards is called; ``park`` if none of them is near."""
+    for _ in range(_FARTHEST):
+        if frame is None:
+            break
+        name = NAMES.get(_of(frame.f_code))
+        if name is not None:
+            return "order" if name == "wait-for" and _called_by(frame, ORDER) else name
+        frame = frame.f_back
+    return OTHER
+
+
+def _of(code):
+    """A code object's file and name, as in `NAMES`."""
+    known = _known.get(code)
+    if known is None:
+        known = _known[code] = "/".join(code.co_filename.split(os.sep)[-2:]) + ":" + code.co_qualname
+    return known
+
+
+def _called_by(frame, name):
+    for _ in range(_FARTHEST):
+        frame = frame.f_back
+        if frame is None or _of(frame.f_code) == name:
+            return frame is not None
+    return False
+
+
+class ParkPoint:
+    """One time that a task parked: the label of the ``task``, the ``name`` of the point, how manyeth of the task's points it is
+    (``number``) and of those with this name (``nth``), the ``time``."""
+
+    __slots__ = ("task", "name", "number", "nth", "time")
+
+    def __init__(self, task, name, number, nth, time):
+        self.task, self.name, self.number, self.nth, self.time = task, name, number, nth, time
+
+    def __str__(self):
+        return f"{self.task}, point {self.number} ({self.name} {self.nth}), at {self.time:g} s"
+
+    __repr__ = __str__

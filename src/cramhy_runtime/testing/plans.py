@@ -1,0 +1,73 @@
+"""What can be run as a plan: a Python function, the text of a Lisp program, or a Lisp form.
+
+Of a text all forms but the last are evaluated once: they are its definitions. The last one is the plan, compiled once and called
+in every run, so what a run changes should be made in it (``let``), not in a global variable. Names are those of the package
+TESTING-USER, which has the plan language and ``mark``, unless the text begins with ``in-package``.
+"""
+
+from __future__ import annotations
+
+from .. import kernel
+from ..lisp.data import Cons, lisp_list
+from ..lisp.packages import find_package_or_error, sym
+
+_compiled = {}
+_AT_ONCE = (sym("IN-PACKAGE"), sym("DEFPACKAGE"))
+
+
+def plan_of(plan):
+    """The function of no arguments that runs ``plan``."""
+    if callable(plan):
+        return plan
+    if isinstance(plan, str):
+        function = _compiled.get(plan)
+        if function is None:
+            function = _compiled[plan] = with_lisp(lambda: _compile_text(plan))
+        return function
+    if isinstance(plan, Cons):
+        return with_lisp(lambda: _function_of(plan))
+    raise TypeError(f"A plan is a function, a text of Lisp or a Lisp form, not {plan!r}.")
+
+
+def with_lisp(thunk):
+    """Call ``thunk`` with the Lisp image made, in a kernel of its own, in the package TESTING-USER."""
+    from .. import image
+    from ..lisp.dynamic import binding
+    from ..lisp.evaluation.evaluator import PACKAGE
+    from . import package
+
+    with kernel.aside():
+        kernel.start()
+        image.boot()
+        package.define_faces()
+        with binding(PACKAGE, find_package_or_error("TESTING-USER")):
+            return thunk()
+
+
+def _compile_text(text):
+    from ..lisp.evaluation.evaluator import evaluate
+    from ..lisp.reader.reader import Reader
+
+    reader = Reader(text, filename="<plan>")
+    end, form = object(), None
+    while True:
+        if isinstance(form, Cons) and form.car in _AT_ONCE:  # the next form is to be read in that package
+            evaluate(form, reader.filename, reader.positions)
+            form = None
+        following = reader.read(eof_error=False, eof_value=end)
+        if following is end:
+            break
+        if form is not None:
+            evaluate(form, reader.filename, reader.positions)
+        form = following
+    if form is None:
+        raise ValueError("The text of the plan has no form.")
+    return _function_of(form, reader)
+
+
+def _function_of(form, reader=None):
+    from ..lisp.evaluation.evaluator import evaluate
+
+    function = lisp_list(sym("LAMBDA"), None, form)
+    place = (reader.filename, reader.positions) if reader else ()
+    return evaluate(function, *place)

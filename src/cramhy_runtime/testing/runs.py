@@ -1,0 +1,160 @@
+"""Running a plan once, in a kernel of its own: in virtual time, with a seed, a schedule, or faults.
+
+`virtual_time` gives a block its own kernel; `run` does that for one plan and returns what came of it as an `Outcome`. Neither
+disturbs the kernel that was active before, which is put aside meanwhile. A plan is a Python function, or Lisp: a text or a form.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from .. import kernel
+from ..cpl.failure_types import CommonLispErrorEnvelope, CompositeFailure, opened
+from ..lisp.data import Cons, all_values
+from ..lisp.equality import equalp
+from .leftovers import complain, leftovers
+from .plans import plan_of
+from .schedules import Schedule
+from .watched import WatchedKernel
+
+TIME_LIMIT = 3600.0  # s of virtual time after which a plan has lost its end
+
+
+@contextmanager
+def virtual_time(backend="threads", seed=None, *, schedule=None, faults=(), time_limit=TIME_LIMIT):
+    """A block with a kernel of its own, in virtual time: ``with virtual_time() as clock: ...; clock.now()``.
+
+    ``backend``: ``"threads"`` or ``"greenlet"``. ``seed``: a number that shuffles which of the runnable tasks goes on, as
+    ``--seed`` does; ``schedule``: a list of choices, or a `Schedule`, instead. ``faults``: see `faults.at`. ``time_limit``: in
+    seconds of virtual time. Gives the kernel. Tasks that are left when the block ends are ended.
+    """
+    if schedule is None:
+        chooser = seed
+    elif seed is not None:
+        raise ValueError("A seed or a schedule, not both: each says who goes next.")
+    else:
+        chooser = schedule if isinstance(schedule, Schedule) else Schedule(schedule)
+    with kernel.aside():
+        watched = kernel.start("virtual", backend, chooser, time_limit, kind=WatchedKernel)
+        watched.faults.extend(faults)
+        _same_random_numbers()
+        yield watched
+
+
+def _same_random_numbers():
+    from ..lisp.numbers.random_state import seed_random
+
+    seed_random()
+
+
+class Outcome:
+    """What came of a run: ``values`` (a list) or the ``error`` that left the plan; ``trace``, ``points``, ``time`` (s);
+    ``left``: what it left behind, as `assert_nothing_left` sees it; ``stack``: where the error came through."""
+
+    def __init__(self, values, error, watched):
+        self.values, self.error = values, error
+        self.left, self.stack = [], ()
+        self.trace, self.points, self.time = watched.trace, watched.points, watched.now()
+
+    @property
+    def value(self):
+        """The first value; the error is raised if there was one."""
+        if self.error is not None:
+            raise self.error
+        return self.values[0] if self.values else None
+
+    def same(self, other):
+        """True if both ended alike: equal values (``equalp``), or errors of one type with one text."""
+        if (self.error is None) != (other.error is None):
+            return False
+        if self.error is not None:
+            return str(self) == str(other)
+        return len(self.values) == len(other.values) and all(map(_equal, self.values, other.values))
+
+    def __str__(self):
+        if self.error is not None:
+            return describe(self.error)
+        return ", ".join(map(shown, self.values)) if self.values else "no values"
+
+    __repr__ = __str__
+
+
+def describe(error):
+    """An error as text, those in a composite failure and in an envelope too."""
+    error = opened(error) if isinstance(error, CommonLispErrorEnvelope) else error
+    if isinstance(error, CompositeFailure):
+        return f"{type(error).__name__} of [{'; '.join(describe(failure) for failure in error.failures or ())}]"
+    text = str(error).partition("\n")[0]
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def _equal(one, other):
+    try:
+        return bool(one == other or equalp(one, other) or shown(one) == shown(other))
+    except Exception:
+        return shown(one) == shown(other)
+
+
+def shown(value):
+    """A value as Lisp prints it."""
+    from ..lisp.printer.printer import prin1_to_string
+
+    return prin1_to_string(value)
+
+
+def run(plan, *, backend="threads", seed=None, schedule=None, faults=(), time_limit=TIME_LIMIT):
+    """Run ``plan`` once in a fresh kernel and return its `Outcome`; nothing is raised that the plan raises.
+
+    The arguments are those of `virtual_time`. A fault that did not happen is an AssertionError, since a test of it would test
+    nothing, and something left behind (`assert_nothing_left`) is one too.
+    """
+    outcome = observe(plan_of(plan), backend, seed, schedule=schedule, faults=faults, time_limit=time_limit)
+    missed = [fault for fault in faults if fault.happened is None]
+    if missed:
+        points = "\n".join(f"  {point}" for point in outcome.points) or "  (none)"
+        raise AssertionError(f"Did not happen: {'; '.join(map(str, missed))}. The park points of the run:\n{points}")
+    complain(outcome.left)
+    return outcome
+
+
+def observe(function, *arguments, **options):
+    """The `Outcome` of ``function()`` in a `virtual_time` with the given arguments; ``left`` says what it left behind."""
+    with virtual_time(*arguments, **options) as watched:
+        watched.watch_fluents()
+        values = error = None
+        stack = ()
+        try:
+            values = all_values(function())
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException as problem:
+            error = problem
+            stack = _places(error.__traceback__)
+            _let_go_of_stacks(error, set())
+        outcome = Outcome(values, error, watched)
+        outcome.stack = stack
+        for fault in watched.faults:
+            fault.over()
+        outcome.left = leftovers(watched)
+    return outcome
+
+
+def _let_go_of_stacks(error, known):
+    """Take from an error, and those it is made of, the stacks that they came through, which are not what the plan has left behind."""
+    if isinstance(error, list | tuple | Cons):
+        for other in error:
+            _let_go_of_stacks(other, known)
+    elif isinstance(error, BaseException) and id(error) not in known:
+        known.add(id(error))
+        error.__traceback__ = None
+        for other in (error.__cause__, error.__context__, *vars(error).values()):
+            _let_go_of_stacks(other, known)
+
+
+def _places(stack):
+    """The functions and lines of a traceback, the innermost last."""
+    places = []
+    while stack is not None:
+        places.append(f"{stack.tb_frame.f_code.co_filename}:{stack.tb_lineno} in {stack.tb_frame.f_code.co_name}")
+        stack = stack.tb_next
+    return places

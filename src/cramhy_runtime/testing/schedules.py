@@ -1,0 +1,89 @@
+"""Schedules: who goes next, decided, noted and repeated.
+
+A run of a plan is a function of its inputs and of the decisions which of the runnable tasks gets the baton. Where only one may go
+on there is nothing to decide; elsewhere the candidates stand in the order in which they became runnable, and a decision is the
+number of the one that goes, 0 for the first. A schedule is the list of these numbers. After its end the first come is first served,
+so ``[]`` is the ordinary run, and ``[0, 1]`` is one in which the second decision alone is another one.
+"""
+
+from __future__ import annotations
+
+from ..kernel.scheduler import lots
+from .labels import label
+
+
+class Decision:
+    """One decision: the ``time``, the labels of those who could go (``candidates``, with what each does) and the ``choice``."""
+
+    __slots__ = ("time", "candidates", "choice")
+
+    def __init__(self, time, candidates, choice):
+        self.time, self.candidates, self.choice = time, candidates, choice
+
+
+class Schedule:
+    """Decides for one run: first by ``prefix``, then by lot if there is a ``seed``, else first come, first served.
+
+    Afterwards ``choices`` are the decisions made. ``noting``: keep them with their candidates in ``decisions`` as well.
+    """
+
+    def __init__(self, prefix=(), seed=None, noting=False):
+        self.prefix = list(prefix)
+        self.lots = None if seed is None else lots(seed)
+        self.noting = noting
+        self.choices = []
+        self.decisions = []
+        self.misfit = None  # the number of a decision that the prefix does not fit
+        self.kernel = None
+
+    def watch(self, kernel):
+        """It decides for KERNEL."""
+        self.kernel = kernel
+
+    def __call__(self, queue):
+        drawn = None if self.lots is None else self.lots(queue)
+        if len(queue) == 1:
+            return 0
+        eligible, newborn = [], None
+        for index, task in enumerate(queue):
+            if task.carrier is not None:
+                eligible.append(index)
+            elif newborn is None:  # branches begin in the order in which they stand
+                newborn = index
+                eligible.append(index)
+        if len(eligible) == 1:
+            return eligible[0]
+        number = len(self.choices)
+        if number < len(self.prefix):
+            choice = self.prefix[number]
+            if not 0 <= choice < len(eligible):
+                self.misfit = number if self.misfit is None else self.misfit
+                choice = 0
+        elif drawn is not None:
+            choice = eligible.index(drawn if queue[drawn].carrier is not None else newborn)
+        else:
+            choice = 0
+        self.choices.append(choice)
+        if self.noting:
+            self.decisions.append(Decision(self.kernel.now(), [_activity(queue[index]) for index in eligible], choice))
+        return eligible[choice]
+
+
+def _activity(task):
+    """Who TASK is, and what it goes on with."""
+    if task.carrier is None:
+        doing = "begins"
+    elif task.preempted:
+        doing = "goes on computing"
+    else:
+        why = task.describe_why()
+        doing = f"goes on after waiting for {why}" if why else "goes on"
+    return f"{label(task)} ({doing})"
+
+
+def without_defaults(choices):
+    """The schedule without the zeros at its end, which are what happens anyway."""
+    end = len(choices)
+    while end and not choices[end - 1]:
+        end -= 1
+    return list(choices[:end])

@@ -1,0 +1,136 @@
+"""Marks that a plan leaves, and what a test says of their order.
+
+    def plan():
+        mark("reach")
+        cpl.par(lambda: (cpl.sleep(1), mark("grasp")), lambda: mark("look"))
+        mark("done")
+
+    trace = testing.run(lambda: cpl.top_level(plan)).trace
+    assert_order(trace, ("reach", "grasp", "done"), ("reach", "look", "done"))
+
+A plan with branches has no one right order of events, so a test that compares lists breaks when nothing is wrong. What is right is
+a *partial* order: reach before grasp, whatever else comes between. In Lisp: ``(mark :reach)``, the same event.
+"""
+
+from __future__ import annotations
+
+from .. import kernel
+from ..lisp.data import Symbol
+from .labels import label
+
+
+class Event:
+    """A mark: its ``name``, the ``time`` (s of virtual time), the label of the ``task`` that left it, its place in the trace."""
+
+    __slots__ = ("name", "time", "task", "number", "value")
+
+    def __init__(self, name, time, task, number, value):
+        self.name, self.time, self.task, self.number, self.value = name, time, task, number, value
+
+    def __str__(self):
+        value = "" if self.value is None else f" {self.value}"
+        return f"{self.time:8.3f} s  {self.name}{value}  ({self.task})"
+
+    def __repr__(self):
+        return f"<mark {self.name} at {self.time:g} s>"
+
+
+class Trace:
+    """The marks of one run, in the order in which they were left."""
+
+    def __init__(self):
+        self.events = []
+
+    def __iter__(self):
+        return iter(self.events)
+
+    def __len__(self):
+        return len(self.events)
+
+    @property
+    def names(self):
+        """The names, in order."""
+        return [event.name for event in self.events]
+
+    def named(self, name):
+        """The events of one name, which may be a string or a Lisp symbol."""
+        name = spelled(name)
+        return [event for event in self.events if event.name == name]
+
+    def __str__(self):
+        return "\n".join(map(str, self.events)) or "(no marks)"
+
+
+def spelled(name):
+    """A mark's name as a test writes it: Lisp symbols and keywords in lower case."""
+    return name.name.lower() if isinstance(name, Symbol) else str(name)
+
+
+def mark(name, value=None):
+    """Leave a mark in the trace of the test that runs; without one nothing happens. Returns nil, so that plans are as before."""
+    active = kernel.active()
+    trace = getattr(active, "trace", None)
+    if trace is not None:
+        trace.events.append(Event(spelled(name), active.now(), label(active.current), len(trace), value))
+
+
+def assert_order(trace, *chains):
+    """In each chain of names every event of a name comes before all events of the next name. Each name must occur."""
+    for chain in chains:
+        groups = [_some(trace, name) for name in chain]
+        for before, after in zip(groups, groups[1:], strict=False):
+            last, first = before[-1], after[0]
+            if last.number > first.number:
+                _fail(trace, f"{first.name} came before {last.name}: it should be {' < '.join(map(spelled, chain))}.", (last, first))
+
+
+def assert_before(trace, before, after):
+    """Every event ``before`` comes before every event ``after``."""
+    assert_order(trace, (before, after))
+
+
+def assert_after(trace, after, before):
+    """Every event ``after`` comes after every event ``before``."""
+    assert_order(trace, (before, after))
+
+
+def assert_concurrent(trace, *names):
+    """The names overlap in time, each pair of them: from its first to its last mark each spans a time, and the spans meet.
+
+    Mark the beginning and the end of a step with one name. One mark is a span without length.
+    """
+    spans = [(name, _some(trace, name)) for name in names]
+    for index, (_, one) in enumerate(spans):
+        for _, other in spans[index + 1:]:
+            if one[-1].time < other[0].time or other[-1].time < one[0].time:
+                first, second = sorted((one, other), key=lambda events: events[0].time)
+                _fail(trace, f"{first[0].name} was over at {first[-1].time:g} s, before {second[0].name} began at "
+                             f"{second[0].time:g} s: they should overlap.", (first[-1], second[0]))
+
+
+def assert_never(trace, *names):
+    """None of the names was marked."""
+    for name in names:
+        events = trace.named(name)
+        if events:
+            _fail(trace, f"{spelled(name)} happened, which it should not.", events)
+
+
+def assert_times(trace, name, times):
+    """``name`` was marked so many times."""
+    events = trace.named(name)
+    if len(events) != times:
+        _fail(trace, f"{spelled(name)} happened {len(events)} times, not {times}.", events)
+
+
+def _some(trace, name):
+    events = trace.named(name)
+    if not events:
+        known = ", ".join(dict.fromkeys(trace.names)) or "none"
+        _fail(trace, f"{spelled(name)} did not happen. Marks that did: {known}.", ())
+    return events
+
+
+def _fail(trace, text, pointed):
+    lines = [("> " if event in pointed else "  ") + str(event) for event in trace]
+    raise AssertionError("\n".join([text, *(lines or ["  (no marks)"])]))

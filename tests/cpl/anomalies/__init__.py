@@ -1,0 +1,1 @@
+"""Faults at every park point of plans that use the whole language."""

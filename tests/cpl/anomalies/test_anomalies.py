@@ -1,0 +1,78 @@
+"""Whatever happens to a branch, wherever it waits: the laws hold (design.md section 2).
+
+For each plan of ``plans.py``, each of its tasks, each park point until the plan ends by itself: the task is evaporated there, fails,
+raises an error, or is suspended for a while. Cleanup runs once and in order, no task lives on, nothing observes, no timer and no
+thread is left, and the outcome is one that the plan allows. ``make soak`` (CRAMHY_SOAK=1) takes every point, at both moments, on both
+back ends, and pairs of faults; the ordinary suite a part of them.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.testing import faults
+
+from .harness import check_run, faults_of
+from .plans import PLANS
+
+SOAK = bool(os.environ.get("CRAMHY_SOAK"))
+PAIRS = 200 if SOAK else 3
+BACKENDS = ["threads", "greenlet"]
+
+
+@pytest.fixture(autouse=True)
+def fresh_kernel():
+    """The runs bring kernels of their own."""
+    kernel.stop()
+    return
+
+
+@pytest.fixture(autouse=True)
+def unheard(monkeypatch):
+    """What the kernel reports as lost: nothing may be."""
+    heard = []
+    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: heard.append((str(task.name), exception)))
+    yield heard
+    assert not heard
+
+
+def every_plan(test):
+    return pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)(test)
+
+
+@every_plan
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_without_a_fault_a_plan_gives_its_value_and_leaves_nothing(plan, backend):
+    outcome, wrong = check_run(plan, backend=backend)
+    assert str(outcome) == plan.value and not wrong
+
+
+@every_plan
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("action", faults.ACTIONS)
+def test_a_fault_at_any_park_point(plan, backend, action, record_property):
+    entering = (False, True) if SOAK else (False,) if backend == "threads" else (True,)
+    count = 0
+    for fault, _, wrong in faults_of(plan, backend, [action], entering, every=1 if SOAK else 2):
+        count += 1
+        assert not wrong, f"{plan.name}, {fault}, {backend}:\n  " + "\n  ".join(wrong)
+    record_property("faults", count)
+    print(f"{count} runs")
+
+
+@every_plan
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_two_faults_in_one_run(plan, backend, record_property):
+    """The second may hit the cleanup after the first. Which outcomes are right then is not asked, only what is left."""
+    lots = random.Random(plan.name)
+    points = check_run(plan, backend=backend)[0].points
+    for _ in range(PAIRS):
+        pair = [faults.at(point.task, nth=point.number + lots.choice((0, 0, 1, 2)), action=lots.choice(faults.ACTIONS),
+                          entering=lots.random() < 0.5) for point in lots.choices(points, k=2)]
+        _, wrong = check_run(plan, faults=pair, backend=backend)
+        assert not wrong, f"{plan.name}, {pair}, {backend}:\n  " + "\n  ".join(wrong)
+    record_property("faults", 2 * PAIRS)
