@@ -32,8 +32,8 @@ Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``
 Reference: cpl.md.
 """
 
-from ..kernel import Deadlock as Deadlock, TimeLimit as TimeLimit, checkpoint as checkpoint, now as now, run_blocking as run_blocking
-from . import fluent_notation as fluent_notation, printing as printing
+from ..kernel import Deadlock, TimeLimit, checkpoint, cleanup, now, run_blocking
+from . import fluent_notation, printing  # noqa: F401  they teach fluents Python's operators, and how they are shown
 from .attempts import Attempt, attempts, handling
 from .blocks import Timeout, TimedOut, move_on_after, timeout
 from .branch_blocks import ParBlock, RaceBlock, TryAllBlock
@@ -50,7 +50,7 @@ from .failure_types import (
                             envelope,
                             opened,
 )
-from .failures import with_failure_handling
+from .failures import Handling as Retry, with_failure_handling
 from .fluent_operators import fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed
 from .fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
 from .operators import named_top_level, seq, top_level
@@ -85,14 +85,14 @@ from .tree_report import describe_task_tree, task_tree_text
 from .waiting import sleep, wait_for
 
 __all__ = [
-    "Attempt", "attempts", "checkpoint", "cleanup_time_limit", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED",
+    "Attempt", "attempts", "checkpoint", "cleanup", "cleanup_time_limit", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED",
     "current_task", "Deadlock", "define_task_variable", "describe_task_tree", "envelope", "evaporate", "EVAPORATED",
     "fail", "FAILED", "fl_and", "fl_apply", "fl_eq", "fl_eql", "fl_funcall", "fl_not", "fl_or", "fl_pulsed", "fl_value_changed",
     "Fluent", "handling", "join_task", "make_fluent", "make_policy", "move_on_after", "named_top_level", "now", "on_suspension",
     "opened", "par", "par_loop", "ParBlock", "partial_order", "peek_value", "plan", "plan_function", "PlanFailure", "policy", "Policy",
     "PolicyCheckConditionMet", "PolicyCondition", "PolicyFailure", "PolicyInitFailed", "PolicyNotFound", "pulse", "pulsed", "pursue",
-    "RaceBlock", "register_update_callback", "remove_update_callback", "retry_after_suspension", "RetryCounter", "run", "run_blocking",
-    "RUNNING", "seq", "SimplePlanFailure", "sleep", "SUCCEEDED", "suspend", "SUSPENDED", "tag", "Tag",
+    "RaceBlock", "register_update_callback", "remove_update_callback", "Retry", "retry_after_suspension", "RetryCounter", "run",
+    "run_blocking", "RUNNING", "seq", "SimplePlanFailure", "sleep", "SUCCEEDED", "suspend", "SUSPENDED", "tag", "Tag",
     "Task", "task_suspended", "task_tree_text", "TimedOut", "TimeLimit", "timeout", "Timeout", "top_level", "ToplevelTask", "try_all",
     "try_each_in_order", "try_in_order", "TryAllBlock", "value", "ValueFluent", "wait_for", "wake_up", "whenever",
     "with_failure_handling", "with_task", "with_task_suspended", "without_scheduling",

@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from types import TracebackType
 from typing import NoReturn, ParamSpec, TypeVar
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.reports import of_the_library
 
 from ..lisp.condition_types import Condition
 from ..lisp.conditions import note_asked
@@ -39,6 +41,7 @@ def for_python(function: Callable[P, T]) -> Callable[P, T]:
 def raise_in_python(condition: BaseException) -> NoReturn:
     """Raise what Python code sees of ``condition``. Not to be called in an ``except`` clause, which would become its context."""
     problem = python_exception(condition) if isinstance(condition, Condition) else condition
+    problem.__traceback__ = _users_part(problem.__traceback__)
     note_asked(problem)  # the condition was signalled, or there would be none to raise
     context = problem.__context__
     if isinstance(context, kernel.Cancelled):
@@ -48,3 +51,16 @@ def raise_in_python(condition: BaseException) -> NoReturn:
     finally:
         problem.__context__ = context  # not what Python finds in the air when this is called in an __exit__ method
         del problem, condition
+
+
+def _users_part(traceback: TracebackType | None) -> TracebackType | None:
+    """``traceback`` without the frames of this library; as it is, if it has no others."""
+    frames, entry = [], traceback
+    while entry is not None:
+        if not of_the_library(entry.tb_frame.f_code.co_filename):
+            frames.append(entry)
+        entry = entry.tb_next
+    part = None
+    for entry in reversed(frames):
+        part = TracebackType(part, entry.tb_frame, entry.tb_lasti, entry.tb_lineno)
+    return part or traceback

@@ -110,7 +110,8 @@ class BranchBlock(Block):
 
     def __exit__(self, kind: type[BaseException] | None, exception: BaseException | None, traceback: TracebackType | None) -> bool:
         ended = self.ended_by(exception)
-        branches, problem = self.branches, None
+        branches = self.branches
+        problem: BaseException | None = None
         try:
             if exception is not None and not ended:
                 branches.abort(exception)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
 from ..lisp.conditions import error
 
 
-def current_task():
+def current_task() -> Any:
     """The plan task that runs, or ``None`` outside of plans."""
     return kernel.current().owner
 

@@ -14,16 +14,16 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 
 from .fluent_operators import fl_and, fl_not, fl_or, net
-from .fluents import Fluent
+from .fluents import Fluent, value
 
 
 def _binary(symbol: str, function: Callable[[Any, Any], Any]) -> tuple[Callable[..., Fluent], Callable[..., Fluent]]:
     def plain(self: Fluent, other: Any) -> Fluent:
-        return net(f"FL{symbol}", lambda read: function(read(self), read(other)), (self, other))
+        return net(f"FL{symbol}", lambda: function(value(self), value(other)), (self, other))
 
     def reflected(self: Fluent, other: Any) -> Fluent:
         return plain(other, self) if isinstance(other, Fluent) else net(
-            f"FL{symbol}", lambda read: function(other, read(self)), (self,))
+            f"FL{symbol}", lambda: function(other, self.read()), (self,))
 
     return plain, reflected
 
@@ -46,6 +46,6 @@ for _name, _function in [("and", fl_and), ("or", fl_or)]:
     setattr(Fluent, f"__{_name}__", _function)
     setattr(Fluent, f"__r{_name}__", lambda self, other, function=_function: function(other, self))
 setattr(Fluent, "__invert__", fl_not)
-setattr(Fluent, "__abs__", lambda self: net("FL-ABS", lambda read: abs(read(self)), (self,)))
+setattr(Fluent, "__abs__", lambda self: net("FL-ABS", lambda: abs(self.read()), (self,)))
 setattr(Fluent, "__bool__", _truth)
 

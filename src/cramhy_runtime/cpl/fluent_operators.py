@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from operator import add, gt, lt, mul, sub
 from operator import eq as same_number
+from typing import Any
 
 from ..lisp.condition_types import CaseFailure
 from ..lisp.conditions import error
@@ -130,14 +131,14 @@ fl_eq = _lift_test("FL-EQ", eq)
 fl_eql = _lift_test("FL-EQL", eql)
 
 
-def fl_not(argument):
+def fl_not(argument: Any) -> Any:
     """``(not x)``, or a net that is true while the fluent ``argument`` is not."""
     if isinstance(argument, Fluent):
         return net("FL-NOT", lambda: None if truth(argument.read()) else True, (argument,))
     return None if truth(argument) else True
 
 
-def fl_and(*arguments):
+def fl_and(*arguments: Any) -> Any:
     """The last value if all are true, else nil; a net if there is a fluent. ``(fl-and)`` is true."""
 
     def formula():
@@ -151,7 +152,7 @@ def fl_and(*arguments):
     return _now_or_net("FL-AND", formula, arguments)
 
 
-def fl_or(*arguments):
+def fl_or(*arguments: Any) -> Any:
     """The first true value, or nil; a net if there is a fluent. Later fluents are not read, hence not consumed."""
 
     def formula():
@@ -170,7 +171,7 @@ def _now_or_net(operator, formula, arguments):
     return formula()
 
 
-def fl_funcall(function, *arguments):
+def fl_funcall(function: Any, *arguments: Any) -> Any:
     """Call ``function`` on the values of ``arguments``, at once or in a net. Lists are not searched for fluents."""
     function = function_of(function)
     for argument in arguments:
@@ -181,7 +182,7 @@ def fl_funcall(function, *arguments):
     return function(*arguments)
 
 
-def fl_apply(function, argument, *more):
+def fl_apply(function: Any, argument: Any, *more: Any) -> Any:
     """A net of ``function`` on the values of the leading arguments and, last, a *list* of the values in the last argument."""
     function = function_of(function)
     *leading, last = argument, *more
@@ -196,7 +197,7 @@ def fl_apply(function, argument, *more):
 _MISSED = {keyword(mode): mode for mode in (NEVER, ONCE, ALWAYS)}
 
 
-def fl_pulsed(fluent, *, handle_missed_pulses=None):
+def fl_pulsed(fluent: Fluent, *, handle_missed_pulses: Any = None) -> Fluent:
     """A fluent of its own that is true while ``fluent`` has pulses that were not consumed; modes :never, :once, :always."""
     check_fluent(fluent)
     if handle_missed_pulses is None:
@@ -210,7 +211,7 @@ def fl_pulsed(fluent, *, handle_missed_pulses=None):
 pulsed = fl_pulsed
 
 
-def fl_value_changed(fluent, *, test=None, key=None):
+def fl_value_changed(fluent: Fluent, *, test: Any = None, key: Any = None) -> Fluent:
     """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
     check_fluent(fluent)
     return announce(ChangeFluent(fluent, function_of(test) or eql, function_of(key) or (lambda current: current)))

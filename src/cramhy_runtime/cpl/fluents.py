@@ -16,6 +16,7 @@ observer no longer keeps the others from being told; a net whose function lets o
 from __future__ import annotations
 
 import itertools
+from typing import TYPE_CHECKING, Any, NoReturn
 from weakref import ref
 
 from cramhy_runtime import kernel
@@ -77,7 +78,28 @@ class Fluent:
     peek = read
     value = property(lambda self: self.read(), doc="The current value; reading may consume a pulse.")
 
-    def pulse(self):
+    if TYPE_CHECKING:  # what fluent_notation.py makes of Python's operators
+        def __lt__(self, other: Any) -> Fluent: ...
+        def __le__(self, other: Any) -> Fluent: ...
+        def __gt__(self, other: Any) -> Fluent: ...
+        def __ge__(self, other: Any) -> Fluent: ...
+        def __add__(self, other: Any) -> Fluent: ...
+        def __radd__(self, other: Any) -> Fluent: ...
+        def __sub__(self, other: Any) -> Fluent: ...
+        def __rsub__(self, other: Any) -> Fluent: ...
+        def __mul__(self, other: Any) -> Fluent: ...
+        def __rmul__(self, other: Any) -> Fluent: ...
+        def __truediv__(self, other: Any) -> Fluent: ...
+        def __rtruediv__(self, other: Any) -> Fluent: ...
+        def __and__(self, other: Any) -> Fluent: ...
+        def __rand__(self, other: Any) -> Fluent: ...
+        def __or__(self, other: Any) -> Fluent: ...
+        def __ror__(self, other: Any) -> Fluent: ...
+        def __invert__(self) -> Fluent: ...
+        def __abs__(self) -> Fluent: ...
+        def __bool__(self) -> NoReturn: ...
+
+    def pulse(self) -> None:
         """Tell the observers. The value does not change by it; who waits for a value that is ``nil`` goes on waiting."""
         self.pulses += 1
         if self.waiters or self.nets or self.callbacks:
@@ -196,7 +218,7 @@ class ValueFluent(Fluent):
         self.stored = new
         return True
 
-    def set(self, new):
+    def set(self, new: Any) -> Any:
         """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
         if self.test is None:
             old = self.stored
@@ -407,14 +429,14 @@ def is_cacheable(fluent):
     return isinstance(fluent, (ValueFluent, CachedNet))
 
 
-def value(fluent):
+def value(fluent: Any) -> Any:
     """``(value x)``: the value of a fluent; any other object is its own value."""
     if fluent.__class__ is ValueFluent:  # the commonest by far
         return fluent.read()
     return fluent.read() if isinstance(fluent, Fluent) else fluent
 
 
-def peek_value(fluent):
+def peek_value(fluent: Any) -> Any:
     """``(peek-value x)``: as `value`, consuming nothing."""
     return fluent.peek() if isinstance(fluent, Fluent) else fluent
 
@@ -445,7 +467,8 @@ def announce(fluent, allow_tracing=True, max_tracing_freq=None):
     return fluent
 
 
-def make_fluent(*, class_=None, name=None, value=None, test=None, allow_tracing=True, max_tracing_freq=None, **others):
+def make_fluent(*, class_: Any = None, name: Any = None, value: Any = None, test: Any = None, allow_tracing: Any = True,
+                max_tracing_freq: Any = None, **others: Any) -> ValueFluent:
     """A new fluent, by default a value fluent with ``value``; ``test`` says which assignments change nothing (``eql``)."""
     if class_ is None and not others:
         return announce(ValueFluent(name, value, test), allow_tracing, max_tracing_freq)
@@ -474,7 +497,7 @@ def _fluent_made(given, allow_tracing, max_tracing_freq):
     return announce(fluent, allow_tracing, max_tracing_freq)
 
 
-def register_update_callback(fluent, name, function):
+def register_update_callback(fluent: Any, name: Any, function: Any) -> Any:
     """Call ``function`` with the value at every pulse of ``fluent``. A ``name`` that is taken is an error."""
     if not isinstance(fluent, Fluent):
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REGISTER-UPDATE-CALLBACK", 1, fluent, name, function)
@@ -500,7 +523,7 @@ def get_update_callback(fluent, name):
     return MultipleValues((None, None))
 
 
-def remove_update_callback(fluent, name):
+def remove_update_callback(fluent: Any, name: Any) -> Any:
     """``True`` if there was a callback ``name`` and it is gone now, else nil."""
     if not isinstance(fluent, Fluent):
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REMOVE-UPDATE-CALLBACK", 1, fluent, name)

@@ -10,7 +10,9 @@ What all parallel forms have in common is in ``branches.py``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import nullcontext
+from typing import Any, TypeVar
 
 from cramhy_runtime import kernel
 
@@ -38,8 +40,10 @@ from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
 from .tree_report import note_stopped
 from .watching import watch
 
+T = TypeVar("T")
 
-def top_level(body):
+
+def top_level(body: Callable[[], T]) -> T:
     """``(top-level body...)``: run ``body`` as the root of a plan and wait for it: its values.
 
     A plan failure that leaves it is signalled here as itself, an error of any branch as that error. When this returns or unwinds,
@@ -160,7 +164,7 @@ def first_success(branches):
     return None, CompositeFailure(failures=list_from([task.result for task in reversed(branches.tasks)]))
 
 
-def seq(*thunks):
+def seq(*thunks: Callable[[], Any]) -> Any:
     """``(seq form...)``: one after the other; values of the last."""
     result = None
     for thunk in thunks:

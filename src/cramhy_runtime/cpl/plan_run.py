@@ -48,7 +48,8 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
         task.kernel_task = me
         task.change_status(RUNNING)
         me.owner = task
-        status, result, problem = SUCCEEDED, NO_VALUES, None
+        status, result = SUCCEEDED, NO_VALUES
+        problem: BaseException | None = None
         try:
             try:
                 yield task
@@ -60,8 +61,8 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
             task._die(status, result)
             me.owner = None
             me.spare()
-        if status is FAILED:
-            raise_in_python(result if isinstance(problem, Exception) else problem)
+        if status is FAILED and problem is not None:
+            raise_in_python(problem)
 
 
 def _end(children: list[Task]) -> None:

@@ -12,6 +12,7 @@ A clause is a function of the use's `Store` and the policy's parameters; the mac
 from __future__ import annotations
 
 from contextlib import contextmanager
+from typing import Any
 
 from ..lisp.conditions import error
 from ..lisp.data import list_from, one, truth
@@ -50,7 +51,7 @@ class Store:
         return value
 
 
-def make_policy(name, parameters=None, description=None, **clauses):
+def make_policy(name: Any, parameters: Any = None, description: str | None = None, **clauses: Any) -> Policy:
     """A policy object; clauses are ``init``, ``check``, ``recover`` and ``clean_up``."""
     return Policy(name, parameters, description, **clauses)
 

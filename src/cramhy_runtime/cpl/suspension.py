@@ -12,7 +12,9 @@ its body may rely on the status, and takes the request back when it is left befo
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import contextmanager
+from typing import TypeVar
 
 from cramhy_runtime import kernel
 
@@ -20,6 +22,8 @@ from ..lisp.objects.generic import generic
 from .current import current_task, inside_plan
 from .pausing import AT_REST, Unwind, obey, request
 from .tasks import AbstractTask, check_reason
+
+T = TypeVar("T")
 
 suspend = generic("CPL-IMPL::SUSPEND", "(task &key reason sync)", documentation="""
 Suspend ``task`` and all below it; with ``sync`` (the default) wait until it is suspended or dead.""")
@@ -64,7 +68,7 @@ def on_suspension(handler, body):
         return body()
 
 
-def retry_after_suspension(body):
+def retry_after_suspension(body: Callable[[], T]) -> T:
     """Values of ``body()``. A suspension unwinds it, the task is suspended outside of it, and after wake-up it starts again."""
     task = current_task()
     if task is None or task.retry_level:

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
+from typing import Any, Self
 
 from cramhy_runtime import kernel
 
@@ -71,16 +72,16 @@ class AbstractTask:
     asked_to_end = False  # by a program, not only by the form that it belongs to
     cleanup_limit = None
 
-    def __init__(self, body=None, name=None, path=None, *, thread_fun=None, run_thread=True):
+    def __init__(self, body: Any = None, name: Any = None, path: Any = None, *, thread_fun: Any = None, run_thread: Any = True) -> None:
         self._name = name
         self.body = body
         self.parent = None
         self.children = {}
         self.status = CREATED
         self._status_fluent = None
-        self.result = NO_VALUES
+        self.result: Any = NO_VALUES
         self.path = path
-        self.tree = None
+        self.tree: Any = None
         self.node = None
         self.code = None
         self.kernel_task = None
@@ -101,7 +102,7 @@ class AbstractTask:
     # ---------------------------------------------------------------------------------------------------- names and status
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Its name, a string. Names given as functions are made when somebody asks."""
         name = self._name
         if name is None:
@@ -111,11 +112,11 @@ class AbstractTask:
         return name
 
     @property
-    def alive(self):
+    def alive(self) -> bool:
         return self.status not in DEAD
 
     @property
-    def dead(self):
+    def dead(self) -> bool:
         return self.status in DEAD
 
     @property
@@ -124,7 +125,7 @@ class AbstractTask:
         return self.kernel_task is None and self.started_at is None
 
     @property
-    def status_fluent(self):
+    def status_fluent(self) -> Any:
         """The fluent of its status, made when first asked for; callbacks on it see each transition in order."""
         fluent = self._status_fluent
         if fluent is None:
@@ -148,7 +149,7 @@ class AbstractTask:
 
     # ------------------------------------------------------------------------------------------------------------- life
 
-    def execute(self):
+    def execute(self) -> Self:
         """Start the task as a child of the current one. It runs when the current task parks.
 
         One that was evaporated before is dead already, and stays so.
@@ -284,7 +285,7 @@ class AbstractTask:
         if ended is not None:
             ended(self)
 
-    def evaporate(self, reason=None):
+    def evaporate(self, reason: str | None = None) -> None:
         """Ask the task to end. It unwinds from its next waiting point or checkpoint; nobody waits for that here.
 
         Forms ask like this. The function `evaporate` is for programs; asking a second time, it ends waits in the cleanup.
@@ -308,7 +309,7 @@ class AbstractTask:
             self.cleanup_limit = limit_cleanup(self)
         return kernel.Cancelled(reason)
 
-    def suspend(self, reason=None, sync=True):
+    def suspend(self, reason: str | None = None, sync: Any = True) -> None:
         """Ask the task, and all below it, to stand still; with ``sync`` wait until they do."""
         request(self)
         if self is current_task():
@@ -317,13 +318,13 @@ class AbstractTask:
         elif truth(sync):
             self.park_until(AT_REST, lambda: f"the suspension of {self.name}", lambda: not self.held or self.unexecuted)
 
-    def wake_up(self, reason=None, sync=True):
+    def wake_up(self, reason: str | None = None, sync: Any = True) -> None:
         """Let the task, and all below it, go on; with ``sync`` wait until they do."""
         release(self)
         if truth(sync) and self is not current_task():
             self.park_until(AWAKE, lambda: f"the wake-up of {self.name}", lambda: self.held)
 
-    def join(self):
+    def join(self) -> Any:
         """Wait until the task is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
         if self is current_task():
             error("Cannot join current task.")

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import inf
+from typing import Any
 
 from cramhy_runtime import kernel
 
@@ -26,7 +27,7 @@ user_wait = None
 """The generic function ``wait-for``, when users have defined methods on it (``user_methods.py``)."""
 
 
-def wait_for(fluent, *, timeout=None, **ignored):
+def wait_for(fluent: Any, *, timeout: float | None = None, **ignored: Any) -> Any:
     """Wait until the value of ``fluent`` is true and return it; after ``timeout`` seconds give up and return nil.
 
     Any other object is returned if it is true; nil is an error. A timeout of 0 only tests.
@@ -90,7 +91,7 @@ def whenever(fluent, body):
         kernel.checkpoint()
 
 
-def sleep_star(seconds):
+def sleep_star(seconds: float) -> None:
     """Sleep for ``seconds`` of the kernel's clock; returns nil. Time spent suspended counts as slept."""
     length = in_seconds(seconds)
     if not length > 0:

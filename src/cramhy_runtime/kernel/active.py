@@ -6,13 +6,16 @@ floors above call: `kernel.park(...)` is `kernel.active().park(...)`.
 
 import atexit
 from _thread import get_ident
+from collections.abc import Callable
 from contextlib import contextmanager
+from typing import Any, TypeVar
 
 from .budget import budget
 from .errors import KernelError
 from .scheduler import Kernel
 
 _active = None
+T = TypeVar("T")
 
 
 def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=Kernel):
@@ -74,7 +77,7 @@ def _none():
     raise KernelError("No kernel is running. Call kernel.start() first; the caller becomes the main task.")
 
 
-def checkpoint():
+def checkpoint() -> None:
     """Named in every loop's back edge: counts, and now and then lets others run or raises a request to end."""
     budget.left = left = budget.left - 1
     if left < 0:
@@ -100,7 +103,7 @@ def current():
     return (_active or _none()).current
 
 
-def now():
+def now() -> float:
     """Seconds of the kernel's clock since `start`."""
     return (_active or _none()).clock.now()
 
@@ -160,7 +163,7 @@ def outside_source():
     return (_active or _none()).outside_source()
 
 
-def run_blocking(fn, *args):
+def run_blocking(fn: Callable[..., T], *args: Any) -> T:
     """See `Kernel.run_blocking`."""
     return (_active or _none()).run_blocking(fn, *args)
 

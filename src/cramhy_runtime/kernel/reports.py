@@ -17,12 +17,18 @@ LONGEST_LIST = 30  # tasks
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
 _LIBRARY = os.path.dirname(_HERE) + os.sep
+_TUTORIALS = _LIBRARY + "tutorials" + os.sep
+
+
+def of_the_library(file):
+    """Whether ``file``, a path, is code of this library, which means nothing to its user; the tutorials in it are the user's."""
+    return file.startswith(_LIBRARY) and not file.startswith(_TUTORIALS)
 
 
 def describe_frame(frame):
     """The default: file, line and function of Python code, but not of this library's own."""
     code = frame.f_code
-    if code.co_filename.startswith(_LIBRARY):
+    if of_the_library(code.co_filename):
         return None
     return f"{code.co_filename}:{frame.f_lineno} in {code.co_name}"
 

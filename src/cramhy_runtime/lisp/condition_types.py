@@ -53,7 +53,7 @@ class Condition(BaseException):
     signalled = False  # whether handlers were asked; one that Python code just raised is offered to those that it passes
     context = ""
 
-    def __init__(self, *arguments, **slots):
+    def __init__(self, *arguments: object, **slots: object) -> None:
         super().__init__(*arguments)
         for name, value in slots.items():
             setattr(self, name, value)
