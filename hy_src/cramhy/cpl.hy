@@ -77,7 +77,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 (defoperator whenever [spec #* body]
   (setv #(fluent #* options) spec)
   (when (and options (or (!= (len options) 2) (is-not (get options 0) (sym ":WAIT-STATUS"))))
-    (raise (ValueError "WHENEVER takes a fluent and the keyword :WAIT-STATUS, which means nothing.")))
+    (raise (ValueError "after the fluent only :WAIT-STATUS and a value may stand.")))
   `(block nil (%whenever ~(if options `(prog1 ~fluent ~(get options 1)) fluent) (lambda [] ~@body))))
 
 (defoperator def-cpl-parameter [name [value None] [documentation None]]

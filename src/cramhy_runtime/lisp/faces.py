@@ -64,8 +64,9 @@ def lispify(function):
             name = known.get(key) if isinstance(key, Symbol) else None
             if name is not None:
                 keywords.setdefault(name, rest[index + 1])  # the first of equal keywords counts
-            elif takes_others and isinstance(key, Keyword):
-                keywords.setdefault(python_name(key.name), rest[index + 1])
+            elif takes_others:
+                if isinstance(key, Keyword):
+                    keywords.setdefault(python_name(key.name), rest[index + 1])
             elif key is not allow:
                 unknown.append(key)
         if unknown and not (allow in rest[::2] and rest[rest.index(allow) + 1] is not None):

@@ -48,7 +48,6 @@ def explanation(condition):
     if also:
         more = len(also) - SHOWN_PLACES
         lines.append(f"  also at {', '.join(map(describe, also[:SHOWN_PLACES]))}{f' and {more} more' if more > 0 else ''}")
-    lines += [f"  {line}" for line in getattr(condition, "circumstances", None) or ()]
     lines += _expansion(condition, position)
     hint = hint_for(condition)
     if hint:
@@ -82,8 +81,8 @@ def _expansion(condition, position):
 
 
 def hint_for(condition):
-    """Advice and what else went wrong, a line each, or ``None``."""
-    return "\n".join(filter(None, [_advice(condition), *_beside(condition)])) or None
+    """The circumstances, advice, and what else went wrong, a line each, or ``None``."""
+    return "\n".join(filter(None, [*(getattr(condition, "circumstances", None) or ()), _advice(condition), *_beside(condition)])) or None
 
 
 def _beside(condition):
