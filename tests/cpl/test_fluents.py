@@ -10,6 +10,9 @@ from cramhy_runtime.cpl.fluents import CachedNet, get_update_callback
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.lisp.streams.streams import StringOutputStream
+from cramhy_runtime.lisp.tools.describing import describe
 
 
 def collected(fluent):
@@ -374,3 +377,14 @@ def test_a_parameter_reads_and_assigns_its_hidden_fluent():
     name = op.define_cpl_parameter(keyword("SPEED"), 1)
     op.set_parameter_value(op.parameter_value(name) + 1, name)
     assert op.parameter_value(name) == 2
+
+
+def test_looking_at_a_fluent_consumes_nothing():
+    """Printing, ``repr`` and ``describe`` peek."""
+    fluent = cpl.make_fluent(value=1)
+    pulse, changed = pulses(fluent), cpl.fl_value_changed(fluent)
+    fluent.set(2)
+    for look in (repr, prin1_to_string, lambda thing: describe(thing, StringOutputStream())):
+        for thing in (pulse, changed, cpl.fl_and(pulse, changed)):
+            look(thing)
+    assert reads(pulse, 2) == [True, None] and reads(changed, 2) == [True, None]

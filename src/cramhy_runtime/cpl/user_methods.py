@@ -58,17 +58,19 @@ def _pulse(fluent):
 VALUE = open_to_methods(fluents.value, "CPL-IMPL::VALUE", "(fluent)", None, method=_value)
 SET_VALUE = open_to_methods(fluents.set_value, "(setf CPL-IMPL::VALUE)", "(new-value fluent)", None, ValueFluent, method=_set_value)
 PULSE = open_to_methods(fluents.pulse, "CPL-IMPL::PULSE", "(fluent)", Fluent, method=_pulse)
-open_to_methods(fluents.register_update_callback, "CPL-IMPL::REGISTER-UPDATE-CALLBACK", "(fluent name update-fun)", Fluent, None, None)
-open_to_methods(fluents.get_update_callback, "CPL-IMPL::GET-UPDATE-CALLBACK", "(fluent name)", Fluent, None)
-open_to_methods(fluents.remove_update_callback, "CPL-IMPL::REMOVE-UPDATE-CALLBACK", "(fluent name)", Fluent, None)
+REGISTER = open_to_methods(fluents.register_update_callback, "CPL-IMPL::REGISTER-UPDATE-CALLBACK", "(fluent name update-fun)",
+                           Fluent, None, None)
+GET = open_to_methods(fluents.get_update_callback, "CPL-IMPL::GET-UPDATE-CALLBACK", "(fluent name)", Fluent, None)
+REMOVE = open_to_methods(fluents.remove_update_callback, "CPL-IMPL::REMOVE-UPDATE-CALLBACK", "(fluent name)", Fluent, None)
 
 
 def _wait_through(generic):
     waiting.user_wait = generic
 
 
-open_to_methods(waiting.wait_for, "CPL-IMPL::WAIT-FOR", "(fluent &key timeout &allow-other-keys)", None,
-                method=waiting.plain_wait_for, when_opened=_wait_through)
+WAIT_FOR = open_to_methods(waiting.wait_for, "CPL-IMPL::WAIT-FOR", "(fluent &key timeout &allow-other-keys)", None,
+                           method=waiting.plain_wait_for, when_opened=_wait_through)
+OPENINGS = (VALUE, SET_VALUE, PULSE, REGISTER, GET, REMOVE, WAIT_FOR)
 
 
 # What takes the place of the Python methods.
