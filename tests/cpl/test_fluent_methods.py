@@ -47,7 +47,8 @@ def test_a_fluent_may_compute_its_value_itself(lisp):
 
 def test_a_class_without_a_method_for_value_says_so(lisp):
     assert lisp("""(defclass idle (fluent) ())
-                   (handler-case (value (make-fluent :class 'idle)) (error (e) (search "no applicable method" (princ-to-string e))))""") == "9"
+                   (handler-case (value (make-fluent :class 'idle))
+                     (error (e) (search "no applicable method" (princ-to-string e))))""") == "9"
 
 
 def test_methods_of_pulse_and_setf_value_are_called_by_assignments(lisp):
