@@ -35,7 +35,7 @@ def answer(session):
 
 
 def test_a_net_over_a_wrong_value_says_which_net_it_is_and_over_what(told):
-    text = told("(defparameter *speed* (make-fluent :name 'speed))\n(let ((limit (make-fluent :value 3 :name 'limit)))\n  (< *speed* limit))")
+    text = told("(defvar *speed* (make-fluent :name 'speed))\n(let ((limit (make-fluent :value 3 :name 'limit)))\n  (< *speed* limit))")
     lines = text.splitlines()
     assert [line.strip() for line in lines[:-1]] == ["The value", "NIL", "is not of type", "REAL", "at <repl test>:3:3",
                                                      "(< *speed* limit))", "^"]
@@ -82,7 +82,8 @@ def test_an_exit_taken_by_one_callback_does_not_hide_the_error_of_another(told):
 
 def test_a_callback_may_leave_for_a_block_around_the_assignment(answer):
     assert answer("""(let ((f (make-fluent :value 1)))
-                       (list (block out (register-update-callback f 'leave (lambda (x) (return-from out (list :left x)))) (setf (value f) 2))
+                       (list (block out (register-update-callback f 'leave (lambda (x) (return-from out (list :left x))))
+                                        (setf (value f) 2))
                              (value f)))""") == "((:LEFT 2) 2)"
 
 

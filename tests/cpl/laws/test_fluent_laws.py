@@ -10,7 +10,8 @@ from cramhy_runtime.lisp.packages import intern
 @pytest.mark.law(1)
 def test_anything_but_a_fluent_is_its_own_value(lisp):
     assert lisp("""(let ((things (list 3 nil t "text" :key 'symbol (list 1) #'car #\\a 1/2 (make-hash-table))))
-                     (list (every #'cl:eq things (mapcar #'value things)) (every #'cl:eq things (mapcar #'peek-value things))))""") == "(T T)"
+                     (list (every #'cl:eq things (mapcar #'value things))
+                           (every #'cl:eq things (mapcar #'peek-value things))))""") == "(T T)"
 
 
 @pytest.mark.law(2)
@@ -178,8 +179,7 @@ def test_a_net_whose_function_holds_the_net_itself_is_forgotten_too(lisp):
     lisp("""(defparameter *input* (make-fluent :value 1))
             (defparameter *count* 0)
             (let (net) (setf net (fl-funcall (lambda (x) (incf *count*) (list x net)) *input*)) nil)""")
-    for name in ("*", "**", "***", "/", "//", "///"):
-        lisp("nil")  # the prompt remembers three answers
+    lisp("1 2 3")  # the prompt remembers three answers
     gc.collect()
     lisp("(setf *count* 0)")
     assert lisp("(setf (value *input*) 2) *count*") == "0"
@@ -228,8 +228,8 @@ def test_a_parameter_reads_as_its_value_and_is_a_place(lisp):
     assert lisp("""(def-cpl-parameter *speed* 5 "How fast to go")
                    (def-cpl-parameter *queue*)
                    (defun faster () (incf *speed*))
-                   (list *speed* (integerp *speed*) (setf *speed* 6) (faster) *speed* *queue* (push 1 *queue*) (push 2 *queue*) (pop *queue*)
-                         *queue* (let ((*speed* 100)) (list *speed* (faster))) *speed*)
+                   (list *speed* (integerp *speed*) (setf *speed* 6) (faster) *speed* *queue* (push 1 *queue*)
+                         (push 2 *queue*) (pop *queue*) *queue* (let ((*speed* 100)) (list *speed* (faster))) *speed*)
                 """) == "(5 T 6 7 7 NIL (1) (2 1) 2 (1) (100 8) 8)"
 
 
