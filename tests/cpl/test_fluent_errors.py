@@ -11,7 +11,7 @@ from cramhy_runtime.repl.session import Session, condition_of
 @pytest.fixture
 def session(request, fresh_kernel):
     made = Session(time="virtual", backend=request.node.callspec.params["fresh_kernel"], time_limit=3600, turtlesim=False)
-    made.package = "CRAM-USER"
+    made.evaluate_text("(defpackage fluent-errors (:use :cpl)) (in-package fluent-errors)")
     return made
 
 
@@ -133,7 +133,7 @@ WRONG = [
     ("(make-fluent :foo 3 :bar 4)", "Invalid initialization arguments: :BAR, :FOO in call for class #<STANDARD-CLASS "
      "CRAM-LANGUAGE-IMPLEMENTATION:VALUE-FLUENT>. See also: The ANSI Standard, Section 7.1.2"),
     ("(make-fluent :value)", "odd number of &KEY arguments"),
-    ("(make-fluent :class 'nonsense)", "There is no class named CRAM-USER::NONSENSE."),
+    ("(make-fluent :class 'nonsense)", "There is no class named FLUENT-ERRORS::NONSENSE."),
     ("(make-fluent :test 5)", "The value 5 is not of type (OR FUNCTION SYMBOL)"),
     ("(setf (value 3) 4)", "There is no applicable method for the generic function #<STANDARD-GENERIC-FUNCTION (COMMON-LISP:SETF "
      "CRAM-LANGUAGE-IMPLEMENTATION:VALUE) (1)> when called with arguments (4 3). See also: The ANSI Standard, Section 7.6.6"),

@@ -12,7 +12,7 @@ from cramhy_runtime.repl.session import Session
 @pytest.fixture
 def lisp(request, fresh_kernel):
     session = Session(time="virtual", backend=request.node.callspec.params["fresh_kernel"], time_limit=3600, turtlesim=False)
-    session.package = "CRAM-USER"
+    session.evaluate_text("(defpackage fluent-methods (:use :cpl)) (in-package fluent-methods)")
     yield lambda text: prin1_to_string(session.evaluate_text(text, "<repl test>")[0])
     for opening in user_methods.OPENINGS:
         for method in list(opening.added):
@@ -120,7 +120,7 @@ def test_python_reads_and_assigns_through_the_methods_of_lisp(lisp):
             (defmethod (setf value) (new (f clipped)) (call-next-method (cl:* 2 new) f)) 1""")
     from cramhy_runtime.lisp.packages import intern
 
-    fluent = cpl.make_fluent(class_=intern("CLIPPED", "CRAM-USER"), value=1)
+    fluent = cpl.make_fluent(class_=intern("CLIPPED", "FLUENT-METHODS"), value=1)
     fluent.value = 3
     assert (fluent.value, fluent.stored) == (6, 6)
     fluent.set(50)
