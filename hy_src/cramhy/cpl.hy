@@ -83,6 +83,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 (defoperator def-cpl-parameter [name [value None] [documentation None]]
   `(progn
      (%cpl-parameter (quote ~name) ~value)
+     ~@(if documentation [`(setf (documentation (quote ~name) (quote variable)) ~documentation)] [])
      (define-symbol-macro ~name (%parameter-value (quote ~name)))))
 
 ;; ------------------------------------------------------------------------------------------------------------ 3: tasks

@@ -178,6 +178,24 @@ def test_fluents_are_printed_as_in_the_original(answer, name):
     assert text.removeprefix(f"#<FLUENT {name}").removesuffix(">").removesuffix(" [NIL]").isdigit()
 
 
+@pytest.mark.parametrize("form, given, operator", [("(eq 1)", 1, "EQ"), ("(eql 1 2 3)", 3, "EQL")])
+def test_the_tests_take_two_arguments(told, form, given, operator):
+    lines = told(form).splitlines()
+    assert lines[0] == f"  invalid number of arguments: {given}"
+    assert lines[-1] == f"  CRAM-LANGUAGE-IMPLEMENTATION:FL-{operator} takes 2 arguments."
+
+
+def test_a_wait_ignores_every_argument_that_it_does_not_know(answer):
+    assert answer("(wait-for (make-fluent :value 1) :colour :red \"a\" 3 'b 4)") == "1"
+
+
+def test_make_fluent_and_parameters_are_described_as_in_the_original(answer):
+    assert answer("""(progn (def-cpl-parameter *pace* 3 "How fast")
+                       (list (documentation '*pace* 'variable) #'(setf value)
+                             (integerp (search "(CLASS 'VALUE-FLUENT)" (with-output-to-string (s) (describe 'make-fluent s))))))
+                  """) == '("How fast" #<FUNCTION (SETF VALUE)> T)'
+
+
 def test_a_value_fluent_shows_its_value_readably(answer):
     assert answer("(list (make-fluent :name 'foo :value 3) (make-fluent :name \"str\" :value \"x\"))") == \
         '(#<FLUENT FOO [3]> #<FLUENT str ["x"]>)'

@@ -124,6 +124,7 @@ def _lift_test(operator, test):
             return net(operator, _formula(test, (first, second)), (first, second))
         return test(first, second)
 
+    lifted.__name__ = lifted.__qualname__ = operator.lower().replace("-", "_")  # by which an error of its arguments finds it
     return lifted
 
 

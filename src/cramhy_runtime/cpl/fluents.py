@@ -24,7 +24,7 @@ from cramhy_runtime.kernel.tasks import shield
 
 from ..lisp.condition_types import Condition
 from ..lisp.conditions import SimpleTypeError, error, from_python, program_error
-from ..lisp.data import MultipleValues, Symbol, one, truth
+from ..lisp.data import MultipleValues, Symbol, lisp_list, one, truth
 from ..lisp.equality import eql
 from ..lisp.evaluation import functions
 from ..lisp.evaluation.places_in_source import circumstance, locate
@@ -479,13 +479,19 @@ def make_fluent(*, class_: Any = None, name: Any = None, value: Any = None, test
 
 
 def fluent_from_initargs(*initargs):
-    """``(make-fluent :name name :value value ...)``: `make_fluent` for Lisp, where any object may name an initarg of a class."""
+    """``(make-fluent :name name :value value :test test)``: a new fluent; with ``:class`` all other arguments are its initargs."""
     if len(initargs) % 2:
         return program_error("odd number of &KEY arguments")
     given = {}
     for index in range(0, len(initargs), 2):
         given.setdefault(initargs[index], initargs[index + 1])
     return _fluent_made(given, given.pop(ALLOW_TRACING, True), given.pop(MAX_TRACING_FREQ, None))
+
+
+fluent_from_initargs.__lisp_lambda_list__ = lisp_list(
+    sym("&REST"), sym("CPL-IMPL::ARGS"), sym("&KEY"), lisp_list(sym("CLASS"), lisp_list(sym("QUOTE"), sym("CPL-IMPL::VALUE-FLUENT"))),
+    sym("CPL-IMPL::NAME"), sym("CPL-IMPL::VALUE"), lisp_list(sym("CPL-IMPL::ALLOW-TRACING"), True), sym("CPL-IMPL::MAX-TRACING-FREQ"),
+    sym("&ALLOW-OTHER-KEYS"))
 
 
 def _fluent_made(given, allow_tracing, max_tracing_freq):

@@ -45,6 +45,7 @@ def open_to_methods(function, name, lambda_list, *classes, method=None, when_ope
     name = lisp_list(sym("SETF"), sym(name[6:-1])) if name.startswith("(setf ") else sym(name)
     function.opening = opening = Opening(name, lambda_list, classes, method or function, when_opened)
     symbol, setf = function_cell(name)
+    function.__lisp_name__ = name
     if setf:
         symbol.setf_function = function
     elif getattr(symbol.function, "python", symbol.function) is function:
