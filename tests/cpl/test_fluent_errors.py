@@ -47,7 +47,7 @@ def test_an_assignment_that_a_net_cannot_take_is_the_place_of_the_error(told, an
     answer("(defparameter *f* (make-fluent :name 'f :value 2)) (defparameter *n* (< *f* 3)) (defparameter *m* (not *f*)) 1")
     lines = told("(progn\n  (setf (value *f*) \"fast\"))").splitlines()
     assert "  at <repl test>:2:3" in lines
-    assert lines[-1].endswith(" over the fluent F was computed anew; it keeps its old value")
+    assert lines[-1].endswith(" over the fluent F, which keeps its old value, was computed anew")
     assert answer("(list (value *f*) (value *n*) (value *m*))") == '("fast" T NIL)'
     assert answer("(progn (setf (value *f*) 7) (value *n*))") == "NIL"
 
@@ -58,8 +58,23 @@ def test_an_error_of_a_callback_names_it_and_comes_after_the_others_were_told(to
               (register-update-callback *f* 'broken (lambda (x) (error "No ~a." x)))
               (register-update-callback *f* 'log-too (lambda (x) (push x *seen*)))""")
     lines = told("(setf (value *f*)\n      5)").splitlines()
-    assert lines[0] == "  No 5." and lines[-1] == "  in the callback BROKEN of the fluent DOOR"
+    assert lines[0] == "  No 5." and "  at <repl test>:3:65" in lines
+    assert lines[-1] == "  in the callback BROKEN of the fluent DOOR, called at <repl test>:1:1"
     assert answer("(list *seen* (value *n*) (value *f*))") == "((5 5) 6 5)"
+
+
+def test_an_error_in_the_function_of_a_net_says_what_called_it(told, answer):
+    answer("(defparameter *f* (make-fluent :name 'f :value 1))\n(defparameter *n* (fl-funcall (lambda (x) (car x)) (not *f*)))")
+    lines = told("(progn\n  (setf (value *f*) nil))").splitlines()
+    assert "  at <repl test>:2:43" in lines
+    assert lines[-1].startswith("  while the net FN-FL-FUNCALL") and lines[-1].endswith(" was computed anew, called at <repl test>:2:3")
+
+
+def test_an_error_of_a_callback_of_a_net_is_no_error_of_the_net(told):
+    text = told("""(let* ((f (make-fluent :name 'f :value 1)) (net (+ f 1)))
+                     (register-update-callback net 'cb (lambda (x) (error "No ~a." x)))
+                     (setf (value f) 2))""")
+    assert "in the callback CB of the fluent FN-FL+" in text and "was computed" not in text
 
 
 def test_no_error_of_an_observer_is_lost(told):

@@ -302,7 +302,7 @@ class CachedNet(Net):
 
     peek = read
 
-    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed anew; it keeps its old value")
+    @circumstance(lambda here: None if "new" in here else f"while {_shown_net(here['self'])}, which keeps its old value, was computed anew")
     def pulse(self):
         if self.careful:
             self.turn = turn = self.turn + 1

@@ -77,8 +77,8 @@ def locate(condition, exception):
 class Circumstances:
     """What the runtime was about when an error arose, where the user's text does not say it: "while the net ... was computed".
 
-    ``@circumstance(tell)`` marks a function of the runtime: errors below it are shown with the line ``tell(its variables)``. That
-    costs nothing until there is an error, since the function is found on the stack.
+    ``@circumstance(tell)`` marks a function of the runtime: errors below it are shown with the line ``tell(its variables)``, if any,
+    and with the place that it was called from. That costs nothing until there is an error, since the function is found on the stack.
     """
 
     def __init__(self):
@@ -101,24 +101,31 @@ class Circumstances:
 
     def note(self, condition, exception=None):
         """Add the lines for the frames that ``exception`` passed, or for the running ones, to ``condition``, innermost first."""
-        for frame in reversed(_passed(exception)) if exception is not None else _running(sys._getframe(1)):
+        frames = _passed(exception) if exception is not None else _running(sys._getframe(1))
+        for index, (frame, _) in enumerate(frames):
             tell = self._tellers.get(frame.f_code)
-            if tell is not None:
-                self.add(condition, tell(frame.f_locals))
+            line = tell and tell(frame.f_locals)
+            if line:
+                caller = next((frame_position(*outer) for outer in frames[index:] if is_user_file(outer[0].f_code.co_filename)), None)
+                if caller is not None and caller != getattr(condition, "position", None):
+                    line += f", called at {describe(caller)}"
+                self.add(condition, line)
 
 
 def _passed(exception):
     frames, traceback = [], exception.__traceback__
     while traceback is not None:
-        frames.append(traceback.tb_frame)
+        frames.append((traceback.tb_frame, traceback.tb_lasti))
         traceback = traceback.tb_next
-    return frames
+    return frames[::-1]
 
 
 def _running(frame):
+    frames = []
     while frame is not None:
-        yield frame
+        frames.append((frame, frame.f_lasti))
         frame = frame.f_back
+    return frames
 
 
 circumstance = Circumstances()
