@@ -73,7 +73,7 @@ def test_a_method_of_wait_for_is_called_by_whenever_too(lisp):
 def test_methods_of_the_callback_functions(lisp):
     assert lisp("""(defclass strict (value-fluent) ())
                    (defparameter *names* nil)
-                   (defmethod register-update-callback :after ((f strict) name fun) (declare (ignore fun)) (push name *names*))
+                   (defmethod register-update-callback :after ((f strict) name function) (declare (ignore function)) (push name *names*))
                    (defmethod remove-update-callback :after ((f strict) name) (push (list :no name) *names*))
                    (let ((f (make-fluent :class 'strict)) (g (make-fluent)))
                      (register-update-callback f 'a #'identity) (register-update-callback g 'b #'identity)

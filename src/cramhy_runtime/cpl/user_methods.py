@@ -58,7 +58,7 @@ def _pulse(fluent):
 VALUE = open_to_methods(fluents.value, "CPL-IMPL::VALUE", "(fluent)", None, method=_value)
 SET_VALUE = open_to_methods(fluents.set_value, "(setf CPL-IMPL::VALUE)", "(new-value fluent)", None, ValueFluent, method=_set_value)
 PULSE = open_to_methods(fluents.pulse, "CPL-IMPL::PULSE", "(fluent)", Fluent, method=_pulse)
-REGISTER = open_to_methods(fluents.register_update_callback, "CPL-IMPL::REGISTER-UPDATE-CALLBACK", "(fluent name update-fun)",
+REGISTER = open_to_methods(fluents.register_update_callback, "CPL-IMPL::REGISTER-UPDATE-CALLBACK", "(fluent name function)",
                            Fluent, None, None)
 GET = open_to_methods(fluents.get_update_callback, "CPL-IMPL::GET-UPDATE-CALLBACK", "(fluent name)", Fluent, None)
 REMOVE = open_to_methods(fluents.remove_update_callback, "CPL-IMPL::REMOVE-UPDATE-CALLBACK", "(fluent name)", Fluent, None)
