@@ -295,7 +295,13 @@ class CachedNet(Net):
     @circumstance(lambda here: f"while {_shown_net(here['self'])} was made: its first value is computed at once")
     def _begin(self):
         self.turn = 0
-        self.cached = self.formula()  # before the inputs hear of this net: if it fails, they never do
+        if not self.careful:
+            self.cached = self.formula()  # before the inputs hear of this net: if it fails, they never do
+            return
+        pulses = None
+        while pulses != (now := [fluent.pulses for fluent in self.inputs]):  # until nobody assigned meanwhile
+            pulses = now
+            self.cached = self.formula()
 
     def read(self):
         return self.cached

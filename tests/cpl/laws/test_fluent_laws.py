@@ -223,6 +223,14 @@ def test_a_net_never_keeps_a_value_of_the_past_though_its_function_lets_others_a
                      (value net))""") == "20"
 
 
+@pytest.mark.law(14)
+def test_a_net_whose_first_computation_lets_others_assign_begins_with_what_they_assigned(lisp):
+    assert lisp("""(let* ((f (make-fluent :value 1)) (times 0) (net nil))
+                     (top-level (par (setf net (fl-funcall (lambda (x) (incf times) (sleep 2) (* 10 x)) f))
+                                     (progn (sleep 1) (setf (value f) 2))))
+                     (list (value net) times))""") == "(20 2)"
+
+
 @pytest.mark.law(39)
 def test_a_parameter_reads_as_its_value_and_is_a_place(lisp):
     assert lisp("""(def-cpl-parameter *speed* 5 "How fast to go")
