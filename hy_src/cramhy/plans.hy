@@ -81,8 +81,8 @@ task tree and `expand-plan` show it."
 
 ;; ---------------------------------------------------------------------------------------------------------- 8.4, 8.5: goals
 
-(defoperator declare-goal [name lambda-list #* body]
-  (setv #(documentation declarations forms) (documentation-and-body body) arguments (gensym "ARGUMENTS"))
+(defoperator declare-goal [name lambda-list #* body]  ; what the body returns is ignored, so a string alone documents too
+  (setv #(documentation declarations forms) (documentation-and-body (+ body #(None))) arguments (gensym "ARGUMENTS"))
   `(progn
      (defun ~name [&rest ~arguments]
        ~@documentation

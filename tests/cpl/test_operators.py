@@ -362,3 +362,42 @@ def test_everything_below_a_top_level_that_is_left_is_dead():
     other.cancel()
     other.join()
     assert task[0].status is EVAPORATED and kernel.now() == 1 and SUCCEEDED in DEAD
+
+
+@pytest.mark.parametrize("form", [
+    "(top-level {0})", "(top-level (seq 1 {0}))", "(top-level (par {0} 1))", "(top-level (pursue (sleep 9) {0}))",
+    "(top-level (try-all (fail) {0}))", "(top-level (try-in-order (fail) {0}))", "(top-level (try-each-in-order (x '(1)) x {0}))",
+    "(top-level (par-loop (x '(1 2)) x {0}))", "(top-level (partial-order ({0} 1)))", "(top-level (with-tags (:tag a {0})))",
+    "(top-level (with-task () {0}))", "(top-level (with-task-tree-node (:path-part '(a)) {0}))",
+    "(top-level (with-policy timeout-policy (9) {0}))",
+    "(top-level (with-failure-handling ((plan-failure (e) (return))) {0}))", "(top-level (with-retry-counters ((c 1)) {0}))",
+    "(top-level (on-suspension (note 1) {0}))", "(top-level (retry-after-suspension {0}))", "(top-level (without-scheduling {0}))",
+    "(top-level (let ((task (make-instance 'task :thread-fun (lambda () {0})))) (join-task task)))",
+    "(named-top-level (:name lecture) {0})", "(progn (def-cram-function f () {0}) (top-level (f)))",
+    "(progn (def-top-level-cram-function f () {0}) (f))", "(progn (declare-goal g ()) (def-goal (g) {0}) (top-level (g)))",
+    "(top-level (with-parallel-childs nil (running done failed) ({0}) (when done (return (result (first done))))))",
+    "(top-level (with-task-suspended ((make-instance 'task :thread-fun (lambda () (sleep 9)))) {0}))",
+])
+def test_every_form_passes_all_values_through(plan_text, form):
+    assert plan_text(form.format("(values 1 nil :three)")) == "1 ; NIL ; :THREE"
+    assert plan_text(form.format("(values)")) == ""
+
+
+@pytest.mark.parametrize("form", ["(block out {0} :after)", "(tagbody {1} out)", "(catch 'out {2} :after)", "(dolist (x '(1)) {3})"])
+@pytest.mark.parametrize("branch", ["(par {} 2)", "(pursue (sleep 9) {})", "(with-tags (:tag a {}))", "(par-loop (x '(1)) {})"])
+def test_no_exit_leaves_a_branch_silently(plan_text, form, branch):
+    exits = ["(return-from out 1)", "(go out)", "(throw 'out 1)", "(return 1)"]
+    shown = plan_text.error("(top-level " + form.format(*[branch.format(exit) for exit in exits]) + ")")
+    assert "CONTROL-ERROR" in shown
+    assert "A branch of a plan tried to leave a form around it" in shown or "attempt to THROW to a tag that does not exist: OUT" in shown
+
+
+@pytest.mark.parametrize("form", [
+    "(with-failure-handling () {})", "(with-failure-handling ((plan-failure (e) {})) (fail))", "(try-in-order {})",
+    "(try-each-in-order (x '(1)) {})", "(whenever ((make-fluent :value t)) {})", "(cut:lazy-dolist (x '(1)) {})",
+    "(with-parallel-childs nil (running done failed) (1) {})",
+])
+def test_return_means_the_innermost_block_named_nil_in_every_form_that_has_one(plan_text, form):
+    assert plan_text("(top-level (list (block nil (list " + form.format("(return (values :inner 2))") + ") :after)))") == "(:AFTER)"
+    assert plan_text("(top-level (multiple-value-list " + form.format("(return (values :inner 2))") + "))") == "(:INNER 2)"
+    assert plan_text("(top-level (list (block around " + form.format("(return-from around :outer)") + ")))") == "(:OUTER)"
