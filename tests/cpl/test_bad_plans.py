@@ -284,3 +284,19 @@ def test_malformed_forms_are_errors_of_the_expansion(plan_text, form, message):
 def test_par_loop_and_try_each_in_order_take_lists_only(plan_text):
     for form in ("par-loop", "try-each-in-order"):
         assert "The value\n    #(1 2)\n  is not of type\n    LIST\n" in plan_text.error(f"(top-level ({form} (x #(1 2)) x))")
+
+
+@pytest.mark.parametrize("form, value, wanted", [
+    ("(clear-tasks 5)", "5", "TASK-TREE-NODE"), ("(flatten-task-tree nil)", "NIL", "TASK-TREE-NODE"), ("(code-sexp 'x)", "X", "CODE"),
+    ("(setf (code-sexp 'x) 1)", "X", "CODE"), ("(filter-task-tree #'identity 5)", "5", "TASK-TREE-NODE"),
+    ("(task-tree-node '((a)) 5)", "5", "TASK-TREE-NODE"), ("(goal-task-tree-node-goal 5)", "5", "TASK-TREE-NODE"),
+    ("(task-tree-node-path nil)", "NIL", "TASK-TREE-NODE"), ("(plan-tree-node-path nil)", "NIL", "PLAN-TREE-NODE"),
+    ("(find-plan-node nil '((a)))", "NIL", "PLAN-TREE-NODE"), ("(name 5)", "5", "(OR FLUENT TASK POLICY PROCESS-MODULE)"),
+    ("(top-level (task 5))", "5", "LIST"), ("(top-level (sub-task 'a))", "A", "LIST"), ("(describe-goal 'a)", "A", "CONS"),
+])
+def test_what_is_asked_of_a_thing_of_another_kind_says_what_it_is_not(plan_text, form, value, wanted):
+    assert plan_text.error(form).startswith(f"cramhy: TYPE-ERROR\n  The value\n    {value}\n  is not of type\n    {wanted}\n")
+
+
+def test_the_root_of_the_task_tree_has_no_task(plan_text):
+    assert "There is no task at the root of the task tree: a path has one part at least." in plan_text.error("(top-level (task '()))")

@@ -10,11 +10,13 @@ Repaired: the original looks the properties of plans up under a symbol of the wr
 
 from __future__ import annotations
 
+from ..lisp.conditions import type_error
 from ..lisp.data import Cons, MultipleValues, lisp_list, list_from, python_list
 from ..lisp.equality import equal
 from ..lisp.packages import keyword
 from .plans import TOP_LEVEL, plan_property
 from .tags import TAGGED
+from .typed import parts_of
 from .walker import Walk, environment
 
 TOP_LEVEL_PLAN = keyword("TOP-LEVEL-PLAN")
@@ -88,8 +90,10 @@ def expand_plan(form):
 
 def find_plan_node(plan_tree, path):
     """``(find-plan-node tree path)``: the node at ``path`` (deepest part first) below ``plan_tree``; nil if there is none."""
+    if not isinstance(plan_tree, PlanTreeNode):
+        return type_error(plan_tree, "PLAN-TREE-NODE")
     node = plan_tree
-    for part in reversed(list(path or ())):
+    for part in reversed(parts_of(path)):
         node = next((child for child in node.nodes if equal(child.path.car, part)), None)
         if node is None:
             return None

@@ -9,7 +9,7 @@ says so.
 from __future__ import annotations
 
 from ..lisp import condition_types as types
-from ..lisp.conditions import error, style_warn
+from ..lisp.conditions import error, style_warn, type_error
 from ..lisp.data import Cons, Symbol, all_values, lisp_list, list_from, truth
 from ..lisp.equality import equal
 from ..lisp.late import late
@@ -155,6 +155,8 @@ def _bodies(name):
 
 def describe_goal(goal):
     """The doc string of the body whose pattern equals that of ``goal`` = ``(name . pattern)`` but for variable names, or nil."""
+    if not isinstance(goal, Cons):
+        return type_error(goal, "CONS", "\n(A goal is a list (name argument...), as in (describe-goal '(at ?x)).)")
     same = sym("CUT::PATTERNS-EQ").function
     for body in _bodies(goal.car):
         if body.pattern is None or goal.cdr is None:

@@ -12,7 +12,7 @@ from .plan_tree import PlanTreeNode
 from .symbols import sym
 from .task_variables import TaskStateSymbol
 from .tasks import AbstractTask, ToplevelTask
-from .tree import TaskTreeNode
+from .tree import Code, TaskTreeNode
 
 VERBOSITY = sym("CPL-IMPL::*TASK-PPRINT-VERBOSITY*")
 
@@ -63,6 +63,13 @@ def print_node(node, stream):
             out.write(f" {{{address(node)}}}")
 
 
+def print_code(code, stream):
+    """As the structure that it is in CRAM: ``#S(CODE :SEXP form :FUNCTION function :TASK task :PARAMETERS list)``."""
+    with logical_block(stream, "#S(", ")") as out:
+        _write_parts(out, prin1_to_string(CODE), [(":SEXP", code.sexp), (":FUNCTION", code.function), (":TASK", code.task),
+                                                  (":PARAMETERS", code.parameters)])
+
+
 def print_plan_node(node, stream):
     """``#(PLAN-TREE-NODE :SEXP form :PATH path :CHILDREN (node...))``."""
     with logical_block(stream, "#(", ")") as out:
@@ -78,12 +85,13 @@ def _write_parts(out, name, parts):
         write(value, out, True)
 
 
-FULL, ONE = keyword("FULL"), keyword("ONE")
+FULL, ONE, CODE = keyword("FULL"), keyword("ONE"), sym("CPL-IMPL::CODE")
 
 define_printer(Fluent, print_fluent)
 define_printer(AbstractTask, print_task)
 print_as_symbols(TaskStateSymbol)
 define_printer(TaskTreeNode, print_node)
+define_printer(Code, print_code)
 define_printer(PlanTreeNode, print_plan_node)
 
 

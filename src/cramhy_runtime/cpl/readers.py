@@ -8,37 +8,52 @@ from __future__ import annotations
 
 from ..lisp.conditions import type_error
 from .plan_tree import PlanTreeNode
+from .policies import Policy
 from .tree import Code, TaskTreeNode
+from .typed import of
 
 
 def name(thing):
     """The name of a fluent, task, policy or process module."""
-    return thing.name
+    try:
+        return thing.name
+    except AttributeError:
+        return type_error(thing, "(OR FLUENT TASK POLICY PROCESS-MODULE)")
 
 
 # ---------------------------------------------------------------------------------------------------------------- policies
 
 
+@of(Policy)
 def parameters(policy):
     """The parameter names of a policy."""
     return policy.parameters
 
 
-policy_name, policy_parameters = name, parameters
+@of(Policy)
+def policy_name(policy):
+    return policy.name
 
 
+policy_parameters = parameters
+
+
+@of(Policy)
 def policy_init(policy):
     return policy.init
 
 
+@of(Policy)
 def policy_check(policy):
     return policy.check
 
 
+@of(Policy)
 def policy_recover(policy):
     return policy.recover
 
 
+@of(Policy)
 def policy_clean_up(policy):
     return policy.clean_up
 
@@ -51,6 +66,7 @@ def make_code(*, sexp=None, function=None, task=None, parameters=None):
     return Code(sexp, function, task, parameters)
 
 
+@of(Code)
 def copy_code(code):
     copy = Code(code.sexp, code.function, code.task, code.parameters)
     copy.called_with = code.called_with
@@ -61,18 +77,22 @@ def code_p(thing):
     return True if isinstance(thing, Code) else None
 
 
+@of(Code)
 def code_sexp(code):
     return code.sexp
 
 
+@of(Code)
 def code_function(code):
     return code.function
 
 
+@of(Code)
 def code_task(code):
     return code.task
 
 
+@of(Code)
 def code_parameters(code):
     return code.parameters
 
@@ -87,6 +107,7 @@ def make_task_tree_node(*, code=None, code_replacements=None, parent=None, child
     return node
 
 
+@of(TaskTreeNode)
 def copy_task_tree_node(node):
     """A node of the same contents; codes and children are shared."""
     return make_task_tree_node(code=node.code, code_replacements=node.code_replacements, parent=node.parent,
@@ -97,23 +118,28 @@ def task_tree_node_p(thing):
     return True if isinstance(thing, TaskTreeNode) else None
 
 
+@of(TaskTreeNode)
 def task_tree_node_path(node):
     return node.path
 
 
+@of(TaskTreeNode)
 def task_tree_node_code(node):
     return node.code
 
 
+@of(TaskTreeNode)
 def task_tree_node_code_replacements(node):
     """The codes that replace its own, the newest first."""
     return node.code_replacements
 
 
+@of(TaskTreeNode)
 def task_tree_node_parent(node):
     return node.parent
 
 
+@of(TaskTreeNode)
 def task_tree_node_children(node):
     """The children as an alist from path part to node, the newest first."""
     return node.children_alist
@@ -128,6 +154,7 @@ def make_plan_tree_node(*, sexp=None, path=None, parent=None, children=None):
     return node
 
 
+@of(PlanTreeNode)
 def copy_plan_tree_node(node):
     return make_plan_tree_node(sexp=node.sexp, path=node.path, parent=node.parent, children=node.children)
 
@@ -136,18 +163,22 @@ def plan_tree_node_p(thing):
     return True if isinstance(thing, PlanTreeNode) else None
 
 
+@of(PlanTreeNode)
 def plan_tree_node_sexp(node):
     return node.sexp
 
 
+@of(PlanTreeNode)
 def plan_tree_node_path(node):
     return node.path
 
 
+@of(PlanTreeNode)
 def plan_tree_node_parent(node):
     return node.parent
 
 
+@of(PlanTreeNode)
 def plan_tree_node_children(node):
     """The nodes below it, in the order of the text."""
     return node.children

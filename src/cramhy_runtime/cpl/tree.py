@@ -16,6 +16,7 @@ from .symbols import sym
 from .current import current_task
 from .statuses import CREATED
 from .tasks import Task
+from .typed import of, parts_of
 
 CALL = keyword("CALL")
 _goal_marks = (sym("CPL-IMPL::GOAL"), sym("CPL-IMPL::GOAL-CONTEXT"))
@@ -88,7 +89,7 @@ def _key(part):
 def ensure_node(path, tree):
     """The node for ``path`` below ``tree``, with all nodes above it made as needed."""
     node = tree
-    for part in reversed(list(path or ())):
+    for part in reversed(parts_of(path)):
         node = node.child(part)
     return node
 
@@ -96,7 +97,9 @@ def ensure_node(path, tree):
 def task_tree_node(path, node=None):
     """``(task-tree-node path)``: the node of a path, or nil."""
     node = node or current_tree()
-    for part in reversed(list(path or ())):
+    if node is not None and not isinstance(node, TaskTreeNode):
+        return type_error(node, "TASK-TREE-NODE")
+    for part in reversed(parts_of(path)):
         if node is None:
             return None
         node = node.child(part, make=False)
@@ -153,6 +156,8 @@ def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None
     When the node's task has run already, that of the next iteration path. A replacement of the node's code takes its place.
     """
     path = path or current_path()
+    if not parts_of(path):
+        error("There is no task at the root of the task tree: a path has one part at least.")
     return _task_of(_next_free(path.car, ensure_node(path.cdr, _tree_or_error())), name, sexp, function, parameters)
 
 
@@ -188,7 +193,7 @@ def task_at(path):
 
 def sub_task(path):
     """``(sub-task path)``: the task of a path relative to the current one."""
-    return make_task(path=list_from(list(path), current_path()))
+    return make_task(path=list_from(parts_of(path), current_path()))
 
 
 def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp=None, lambda_list=None, parameters=None,
@@ -258,6 +263,7 @@ def remove_top_level_task_tree(name):
     _named_trees.pop(name, None)
 
 
+@of(TaskTreeNode)
 def clear_tasks(node):
     """Forget what ran: code, tasks and parameters. Structure and replacements stay."""
     node.calls = 1
@@ -270,27 +276,33 @@ def clear_tasks(node):
     return node
 
 
+@of(TaskTreeNode)
 def stale_task_tree_node_p(node):
     """True if the node's own code did not run in the latest run."""
     return True if node.code is None or node.code.task is None else None
 
 
+@of(TaskTreeNode)
 def task_tree_node_effective_code(node):
     return node.effective_code
 
 
+@of(TaskTreeNode)
 def task_tree_node_parameters(node):
     return node.code.parameters if node.code else None
 
 
+@of(TaskTreeNode)
 def task_tree_node_status_fluent(node):
     return node.code.task.status_fluent if node.code and node.code.task else None
 
 
+@of(TaskTreeNode)
 def task_tree_node_result(node):
     return node.code.task.result if node.code and node.code.task else None
 
 
+@of(TaskTreeNode)
 def flatten_task_tree(tree):
     """All nodes as a list, parents before children, the newest child first."""
     found = []
@@ -306,6 +318,8 @@ def flatten_task_tree(tree):
 
 def filter_task_tree(predicate, tree):
     """A copy with the nodes that satisfy ``predicate``; a rejected node takes what is below it along. The root must satisfy it."""
+    if not isinstance(tree, TaskTreeNode):
+        return type_error(tree, "TASK-TREE-NODE")
     if not truth(predicate(tree)):
         error("The assertion (FUNCALL PREDICATE TREE) failed.")
     copy = TaskTreeNode(tree.path, None, tree.code)
@@ -318,12 +332,14 @@ def filter_task_tree(predicate, tree):
     return copy
 
 
+@of(TaskTreeNode)
 def goal_task_tree_node_p(node):
     """True if the node is that of a goal."""
     part = node.path.car if node.path is not None else None
     return True if isinstance(part, Cons) and part.car in _goal_marks else None
 
 
+@of(TaskTreeNode)
 def goal_task_tree_node_pattern(node):
     """``(name . pattern)`` of a goal's node."""
     if goal_task_tree_node_p(node) is None:
@@ -331,12 +347,14 @@ def goal_task_tree_node_pattern(node):
     return node.path.car.cdr.car
 
 
+@of(TaskTreeNode)
 def goal_task_tree_node_parameter_bindings(node):
     """The variables of a goal's pattern with their values in the latest run, an alist; the last variable first, as ``vars-in``."""
     variables = sym("CUT::VARS-IN").function(goal_task_tree_node_pattern(node).cdr)
     return list_from([Cons(*pair) for pair in zip(variables or (), task_tree_node_parameters(node) or (), strict=False)])
 
 
+@of(TaskTreeNode)
 def goal_task_tree_node_goal(node):
     """The goal as it was called in the latest run, ``(name . arguments)``; the pattern when it did not run."""
     pattern = goal_task_tree_node_pattern(node)

@@ -361,6 +361,22 @@ def test_the_watcher_of_one_child_looks_twice_and_leaves_by_return(plan_text):
     assert plan_text("*notes*") == "((1 0 0) (0 1 0))"
 
 
+@pytest.mark.parametrize("forms, pictures", [
+    ("1", "((1 0 0) (0 1 0))"),
+    ("(sleep 1) (sleep 2) (sleep 3)", "((3 0 0) (3 0 0) (3 0 0) (2 1 0) (1 2 0) (0 3 0))"),
+    ("(sleep 1) (seq (sleep 2) (fail))", "((2 0 0) (2 0 0) (1 1 0) (0 1 1))"),
+])
+def test_the_watcher_looks_once_for_each_change_of_each_child(plan_text, forms, pictures):
+    assert plan_text(f"""(top-level (with-parallel-childs nil (running done failed) ({forms})
+                           (note (mapcar #'length (list running done failed)))
+                           (unless running (return *notes*))))""") == pictures
+
+
+def test_a_watcher_that_never_leaves_waits_for_ever_which_is_told(plan_text):
+    shown = plan_text.error("(top-level (with-parallel-childs nil (running done failed) (1) (list running done failed)))")
+    assert shown.startswith("cramhy: CRAMHY::DEADLOCK\n") and "waits for a change of its children" in shown
+
+
 def test_the_watcher_gets_its_children_the_last_form_first_and_what_is_left_of_them_ends_with_it(plan_text):
     assert plan_text("""(top-level (with-parallel-childs "PAR" (running done failed)
                                      ((unwind-protect (sleep 9) (note :ended)) (seq (sleep 1) 2) (fail "c") 4)
