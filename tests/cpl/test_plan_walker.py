@@ -139,3 +139,34 @@ def test_a_plan_tree_node_prints_itself_and_what_is_below(plan_text):
     assert plan_text("(let ((*print-pretty* nil)) (format nil \"~s\" (expand-plan '(progn (:tag a 1)))))") == (
         '"#(PLAN-TREE-NODE :SEXP (PROGN (:TAG A 1)) :PATH NIL '
         ':CHILDREN (#(PLAN-TREE-NODE :SEXP (:TAG A 1) :PATH ((TAGGED A)) :CHILDREN NIL)))"')
+
+
+# --------------------------------------------------------------------------------------------- what with-tags does with the walk
+
+
+@pytest.mark.parametrize("form, message, place", [
+    ("(let x 1)", "LET needs a list where it has X.", "2:6"),
+    ("(dolist 5 1)", "The DOLIST form (DOLIST 5 1) is malformed", "2:6"),
+    ("(macrolet ((m (x y) (list x y))) (m 1))", "Error while parsing arguments to MACROLET M", "2:39"),
+    ("(macrolet ((m (x) (setq x))) (m 1))", "SETQ takes pairs of a variable and a value", "2:24"),
+    ("(macrolet ((m (x) (car x))) (m 1))", "The value\n    1\n  is not of type\n    LIST", None),
+])
+def test_an_error_in_a_body_with_tags_is_told_once_and_at_its_own_place(plan_text, form, message, place):
+    shown = plan_text.error(f"(top-level (with-tags\n     {form}\n     (:tag a 1)))")
+    assert message in shown
+    assert place is None or f"  at <repl>:{place}\n" in shown
+
+
+def test_a_warning_in_a_body_with_tags_is_told_once(plan_text, capsys):
+    plan_text("(defmacro shout (x) (warn \"~a is loud.\" x) x)")
+    capsys.readouterr()
+    assert plan_text("(top-level (with-tags (:tag a (let ((unused 1)) (shout 2)))))") == "2"
+    told = capsys.readouterr().err
+    assert told.count("is loud") == 1 and told.count("The variable UNUSED is defined but never used.") == 1
+
+
+def test_a_with_tags_in_a_with_tags_is_not_walked_again_and_again(plan_text):
+    depth = 12
+    plan_text("(defvar *expansions* 0) (defmacro counted (x) (incf *expansions*) x)")
+    assert plan_text("(top-level " + "(with-tags (:tag a " * depth + "(counted 7)" + "))" * depth + ")") == "7"
+    assert int(plan_text("*expansions*")) <= 3

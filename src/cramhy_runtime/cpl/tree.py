@@ -358,5 +358,6 @@ def goal_task_tree_node_parameter_bindings(node):
 def goal_task_tree_node_goal(node):
     """The goal as it was called in the latest run, ``(name . arguments)``; the pattern when it did not run."""
     pattern = goal_task_tree_node_pattern(node)
-    called_with = node.code.called_with if node.code is not None else None
-    return pattern if called_with is None else Cons(pattern.car, called_with)
+    if node.code is not None and node.code.called_with is not None:
+        return Cons(pattern.car, node.code.called_with)
+    return sym("CUT::SUBSTITUTE-VARS").function(pattern, goal_task_tree_node_parameter_bindings(node))

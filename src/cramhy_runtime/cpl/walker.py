@@ -75,6 +75,10 @@ class Walk:
         """(expansion, whether there is one) of the call ``form``."""
         return macroexpand_1(form, env)
 
+    def local_macro(self, name, lambda_list, body, env):
+        """The expander of a definition of ``macrolet``."""
+        return macro_expander(name, lambda_list, body, env)
+
     def tag(self, form, name, body, env):
         """What becomes of the tag ``form`` = ``(:tag name . body)``: it stays, with its body walked."""
         return Cons(TAG, Cons(name, self.forms(body, env)))
@@ -128,7 +132,10 @@ class _Names(Walk):
     def expand(self, form, env):
         if form.car is WITH_TAGS and env.function(WITH_TAGS) is None:
             return None, True
-        return handler_case([(types.Error, lambda condition: (form, False))], lambda: super(_Names, self).expand(form, env))
+        return handler_case([(types.Error, lambda condition: (form, False))], lambda: macroexpand_1(form, env))
+
+    def local_macro(self, name, lambda_list, body, env):
+        return handler_case([(types.Error, lambda condition: lambda form, env: None)], lambda: macro_expander(name, lambda_list, body, env))
 
     def invalid(self, form):
         return form
@@ -255,7 +262,7 @@ def _macrolet(walk, form, env):
     inner = env.child()
     for item in _items(definitions):
         if isinstance(item, Cons) and isinstance(item.cdr, Cons):
-            inner.functions[item.car] = LocalMacro(macro_expander(item.car, item.cdr.car, item.cdr.cdr, env))
+            inner.functions[item.car] = LocalMacro(walk.local_macro(item.car, item.cdr.car, item.cdr.cdr, env))
     return Cons(form.car, Cons(definitions, _body(walk, body, inner)))
 
 

@@ -332,6 +332,15 @@ def test_a_goal_node_tells_the_goal_as_it_was_called_and_what_its_variables_stoo
 
 
 @pytest.mark.law(106)
+def test_performing_a_designator_is_a_goal_too(plan_text):
+    assert plan_text("""(defun performed (tree) (second (flatten-task-tree tree)))
+        (named-top-level (:name lecture) (handler-case (exe:perform (desig:a motion (type driving))) ((or error plan-failure) () nil)))
+        (let ((node (performed (get-top-level-task-tree 'lecture))))
+          (list (first (goal-task-tree-node-goal node)) (typep (second (goal-task-tree-node-goal node)) 'desig:motion-designator)
+                (length (goal-task-tree-node-parameter-bindings node))))""") == "(CRAM-EXECUTIVE:PERFORM T 1)"
+
+
+@pytest.mark.law(106)
 def test_only_goals_are_goals(plan_text):
     plan_text("(named-top-level (:name lecture) (with-tags (:tag a 1)))")
     assert plan_text("(mapcar #'goal-task-tree-node-p (flatten-task-tree (get-top-level-task-tree 'lecture)))") == "(NIL NIL)"
