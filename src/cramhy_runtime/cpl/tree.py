@@ -170,8 +170,8 @@ def _task_of(node, name=None, sexp=None, function=None, parameters=None, called_
         code.sexp = sexp
     if function is not None and not replaced:
         code.function = function
-    code.parameters = parameters
-    code.called_with = called_with
+    if function is not None or parameters is not None:  # a call, and not only a name for the task
+        code.parameters, code.called_with = parameters, called_with
     task = code.task
     if task is None:
         task = code.task = Task(None, name or (lambda: "[TASK]"), node.path)
@@ -181,7 +181,7 @@ def _task_of(node, name=None, sexp=None, function=None, parameters=None, called_
         task._name = name
     task.code = code
     if code.function is not None:
-        arguments = tuple(parameters) if parameters is not None else ()
+        arguments = tuple(code.parameters or ())
         task.body = lambda: code.function(*arguments)
     return task
 

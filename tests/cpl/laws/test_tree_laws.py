@@ -363,3 +363,20 @@ def test_a_segment_variable_matches_but_is_not_bound_in_the_body(plan_text):
 def test_a_goal_body_can_be_registered_as_a_function_of_the_bindings(plan_text):
     assert plan_text("""(declare-goal at (x)) (register-goal 'at '(?x) (lambda (bindings) (list :got bindings)) "By hand.")
         (top-level (list (at 3) (describe-goal '(at ?z))))""") == '((:GOT ((?X . 3))) "By hand.")'
+
+
+def test_make_task_gives_the_waiting_task_of_a_node_and_that_of_the_next_repetition_once_it_was_executed(plan_text):
+    assert plan_text("""(def-cram-function f () (task-path (make-task :function (lambda () 1))))
+        (top-level (let ((first (make-task :name "FIRST" :path '((a)) :sexp '(x) :function #'list :parameters '(1 2))))
+          (let ((same (make-task :path '((a)))))
+            (cpl-impl:execute first)
+            (list (eq first same) (name first) (multiple-value-list (join-task first)) (task-path first)
+                  (code-sexp (task-tree-node-code (task-tree-node '((a))))) (task-path (make-task :path '((a)))) (f)))))""") == (
+        '(T "FIRST" ((1 2)) ((A)) (X) ((A :CALL 2)) ((F :CALL 2)))')
+
+
+def test_a_task_named_by_its_path_can_be_waited_for_before_its_code_is_known(plan_text):
+    assert plan_text("""(def-cram-function fetch () (sleep 2) :fetched)
+        (top-level (par (join-task (task '((fetch))))
+                        (seq (sleep 1) (note (value (status (sub-task '((fetch)))))) (fetch))))""") == ":FETCHED"
+    assert plan_text("*notes*") == "(:CREATED)"
