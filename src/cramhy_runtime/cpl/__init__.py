@@ -26,10 +26,10 @@ take branches as functions, or begin a ``with`` block that starts them. When a f
 them failed with is raised. Waiting is for values that are not ``None`` and not ``False``; 0 and "" are true, as in Lisp.
 
 Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``, ``suspension`` ·
-``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``watching`` · ``tree``, ``tree_report``,
-``tags``, ``plans``, ``policies`` · ``hooks``, ``logging``, ``printing`` · ``package``, the Lisp faces. Python's face:
-``python_forms``, ``plan_run``, ``blocks``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``.
-Reference: cpl.md.
+``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``orderings``, ``watching`` · ``tree``,
+``tree_report``, ``tags``, ``plans``, ``policies``, ``walker``, ``plan_tree`` · ``hooks``, ``logging``, ``printing`` · ``package``,
+``readers``, ``markers``, the Lisp faces. Python's face: ``python_forms``, ``plan_run``, ``blocks``,
+``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``. Reference: cpl.md.
 """
 
 from ..kernel import Deadlock, TimeLimit, checkpoint, cleanup, now, run_blocking
