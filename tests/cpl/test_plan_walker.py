@@ -170,3 +170,24 @@ def test_a_with_tags_in_a_with_tags_is_not_walked_again_and_again(plan_text):
     plan_text("(defvar *expansions* 0) (defmacro counted (x) (incf *expansions*) x)")
     assert plan_text("(top-level " + "(with-tags (:tag a " * depth + "(counted 7)" + "))" * depth + ")") == "7"
     assert int(plan_text("*expansions*")) <= 3
+
+
+@pytest.mark.parametrize("body, value", [
+    ("`(1 ,(:tag a 2))", "(1 2)"), ("(list (symbol-macrolet ((x (:tag a 3))) x))", "(3)"), ("(list `#(1 ,(:tag a 4)))", "(#(1 4))"),
+    ("(length '#1=(:tag . #1#))", None), ("(list (car '#1=(:tag . #1#)) (:tag a 5))", "(:TAG 5)"), ("(list (length #1=#(1 #1#)))", "(2)"),
+])
+def test_tags_are_found_wherever_code_is_and_data_that_contains_itself_ends_the_search(plan_text, body, value):
+    if value is not None:
+        assert plan_text(f"(top-level (with-tags {body}))") == value
+    else:
+        assert plan_text(f"(top-level (with-tags (when nil {body})))") == "NIL"
+
+
+def test_a_global_symbol_macro_may_be_a_tag(plan_text):
+    assert plan_text("(define-symbol-macro look-around (:tag look 6)) (top-level (with-tags (list look-around (task-path look))))") == (
+        "(6 ((TAGGED LOOK)))")
+
+
+def test_choose_of_the_utilities_makes_a_tag(plan_text):
+    assert plan_text("""(top-level (with-tags (cut:choose pose :parameters (x) :generators ((list 1))
+                                                           :body (list x (task-path pose)))))""") == "((1) ((TAGGED POSE)))"
