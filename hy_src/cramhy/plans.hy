@@ -7,7 +7,7 @@ task tree and `expand-plan` show it."
 (import cramhy.operators *
         cramhy_runtime.lisp.conditions [SimpleStyleWarning style-warn]
         cramhy_runtime.lisp.evaluation.compilation-unit [current :as compilation-unit]
-        cramhy_runtime.cpl.tags [check-tag]
+        cramhy_runtime.cpl.tags [check-tag is-tag-name]
         cramhy_runtime.cpl.walker [tag-names])
 
 (setv package "CRAM-LANGUAGE-IMPLEMENTATION")
@@ -17,7 +17,7 @@ task tree and `expand-plan` show it."
 (setv tag (sym ":TAG") tag-form (sym "CPL-IMPL::TAG-FORM"))
 
 (defoperator with-tags [#* body environment]
-  (setv names (tag-names body environment))
+  (setv names (lfor name (tag-names body environment) :if (is-tag-name name) name))
   `(let [~@(lfor name names [name `(%make-tag-task (quote ~name))])]
      ~@(if names [] ['(%enter-with-tags)])
      (macrolet [[tag-form [name form]

@@ -274,11 +274,20 @@ def test_a_function_of_the_user_may_have_the_name_of_a_marker(plan_text):
     ("(with-task-tree-node (:path-part '(a) :paramters nil) 1)", "WITH-TASK-TREE-NODE has no option :PARAMTERS: it has :PATH-PART, :NAME, "
      ":SEXP, :LAMBDA-LIST, :PARAMETERS, :LOG-PARAMETERS, :LOG-PATTERN."),
     ("(with-task (:nam \"x\") 1)", "WITH-TASK has no option :NAM: it has :CLASS, :NAME."),
-    ("(with-tags (:tag 5 1))", "5 cannot be bound: a variable must be a symbol that is no constant."),
 ])
 def test_malformed_forms_are_errors_of_the_expansion(plan_text, form, message):
     shown = plan_text.error(f"(top-level {form})")
     assert shown.startswith(f"cramhy: CRAMHY::COMPILE-ERROR\n  {message}\n  at <repl>:1:12\n")
+
+
+@pytest.mark.parametrize("tag", ["(:tag 5 1)", "(:tag nil 1)", "(:tag t 1)", "(:tag :key 1)", "(:tag (a) 1)", "(:tag)"])
+def test_a_tag_that_cannot_be_a_variable_is_told_at_its_place(plan_text, tag):
+    assert plan_text.error(f"(top-level (with-tags\n  {tag}))") == f"""cramhy: CRAMHY::COMPILE-ERROR
+  {tag.upper()} is no tag: it is written (:tag name form...), and the name is a symbol that can be a variable.
+  at <repl>:2:3
+      {tag}))
+      ^
+"""
 
 
 def test_par_loop_and_try_each_in_order_take_lists_only(plan_text):

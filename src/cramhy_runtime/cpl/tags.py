@@ -11,8 +11,7 @@ Tags of a ``with-tags`` inside belong to that one alone; in the original the out
 from __future__ import annotations
 
 from ..lisp.conditions import CompileError, error
-from ..lisp.data import Cons, lisp_list
-from ..lisp.packages import is_symbol
+from ..lisp.data import Cons, Symbol, lisp_list
 from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
 from .symbols import sym
@@ -60,10 +59,15 @@ def execute_tag(task, body, sexp=None):
         on_finish_execute_tag_task(run_id)
 
 
+def is_tag_name(name):
+    """Whether ``name`` can name a tag, and so be a variable."""
+    return isinstance(name, Symbol) and not name.constant
+
+
 def check_tag(form, within):
     """At expansion time: signal what is wrong with the tag ``form``; ``within``: whether a ``with-tags`` is around it."""
     name = form.cdr.car if isinstance(form.cdr, Cons) else None
-    if not is_symbol(name) or name is None or name.constant:
+    if not is_tag_name(name):
         problem = CompileError("~S is no tag: it is written (:tag name form...), and the name is a symbol that can be a variable.", form)
     elif not within:
         problem = CompileError("(:TAG ~S ..) used outside of WITH-TAGS.", name)
