@@ -191,3 +191,9 @@ def test_a_global_symbol_macro_may_be_a_tag(plan_text):
 def test_choose_of_the_utilities_makes_a_tag(plan_text):
     assert plan_text("""(top-level (with-tags (cut:choose pose :parameters (x) :generators ((list 1))
                                                            :body (list x (task-path pose)))))""") == "((1) ((TAGGED POSE)))"
+
+
+def test_a_macro_that_expands_into_itself_is_told_and_not_followed_for_ever(plan_text):
+    plan_text("(defmacro again (x) `(again ,x))")
+    for form in ("(expand-plan '(again 1))", "(top-level (with-tags (again 1)))"):
+        assert "The expansion of AGAIN does not end: after 10000 expansions there is still a macro call." in plan_text.error(form)

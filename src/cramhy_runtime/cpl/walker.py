@@ -16,7 +16,7 @@ from ..lisp.conditions import error, handler_bind, handler_case, muffle_warning
 from ..lisp.data import Cons, Keyword, Symbol, lisp_list, list_from
 from ..lisp.evaluation.evaluator import macro_expander
 from ..lisp.evaluation.functions import function_of
-from ..lisp.evaluation.macros import macroexpand_1
+from ..lisp.evaluation.macros import expand_fully, macroexpand_1
 from ..lisp.packages import COMMON_LISP, find_package
 from ..lisp.reader.backquote import Comma
 from .symbols import CPL_IMPL, sym
@@ -43,27 +43,29 @@ class Walk:
 
     def form(self, form, env):
         """The expansion of ``form`` in the environment ``env``."""
-        while True:
-            if isinstance(form, Symbol) and not isinstance(form, Keyword):
-                expansion, expanded = macroexpand_1(form, env)
-                if not expanded:
-                    return form
-            elif not isinstance(form, Cons):
-                return form
-            else:
-                head = form.car
-                if head is TAG and isinstance(form.cdr, Cons):
-                    return self.tag(form, form.cdr.car, form.cdr.cdr, env)
-                if isinstance(head, Cons) and head.car is LAMBDA:
-                    return Cons(_function_object(self, head, env), self.forms(form.cdr, env))
-                if not isinstance(head, Symbol):
-                    return self.invalid(form)
-                if env.function(head) is None and head in SPECIAL_FORMS:
-                    return SPECIAL_FORMS[head](self, form, env)
-                expansion, expanded = self.expand(form, env)
-                if not expanded:
-                    return self.call(form, env)
-            form = expansion
+        form, _ = expand_fully(form, lambda form: self.step(form, env))
+        if not isinstance(form, Cons):
+            return form
+        head = form.car
+        if head is TAG and isinstance(form.cdr, Cons):
+            return self.tag(form, form.cdr.car, form.cdr.cdr, env)
+        if isinstance(head, Cons) and head.car is LAMBDA:
+            return Cons(_function_object(self, head, env), self.forms(form.cdr, env))
+        if not isinstance(head, Symbol):
+            return self.invalid(form)
+        if head in SPECIAL_FORMS and env.function(head) is None:
+            return SPECIAL_FORMS[head](self, form, env)
+        return self.call(form, env)
+
+    def step(self, form, env):
+        """(expansion, whether there is one) of ``form``, which may be anything. What is walked through itself has none."""
+        if isinstance(form, Cons):
+            head = form.car
+            if not isinstance(head, Symbol) or head is TAG and isinstance(form.cdr, Cons) \
+                    or head in SPECIAL_FORMS and env.function(head) is None:
+                return form, False
+            return self.expand(form, env)
+        return macroexpand_1(form, env) if isinstance(form, Symbol) and not isinstance(form, Keyword) else (form, False)
 
     def forms(self, forms, env):
         """The list of the expansions of a list of forms."""
