@@ -10,7 +10,6 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 
-law = pytest.mark.law
 NEVER = "(defvar *never* (make-fluent :name 'never))\n"
 WAITS = {
     "wait-for": "(wait-for *never*)",
@@ -29,7 +28,7 @@ WAITS = {
 waits = pytest.mark.parametrize("wait", WAITS.values(), ids=WAITS)
 
 
-@law(53, 54)
+@pytest.mark.law(53, 54)
 @waits
 def test_a_second_request_ends_the_wait_and_the_outer_cleanup_runs_completely(lisp, wait):
     assert lisp(NEVER + f"""
@@ -49,7 +48,7 @@ def test_a_second_request_ends_the_wait_and_the_outer_cleanup_runs_completely(li
     assert kernel.now() == 6.5
 
 
-@law(53, 54)
+@pytest.mark.law(53, 54)
 @waits
 def test_the_limit_ends_the_wait_with_a_warning(lisp, wait):
     assert lisp(NEVER + f"""
@@ -69,7 +68,7 @@ def test_the_limit_ends_the_wait_with_a_warning(lisp, wait):
     assert kernel.now() == 7
 
 
-@law(54)
+@pytest.mark.law(54)
 def test_the_request_goes_down_to_the_task_whose_cleanup_is_stuck(lisp):
     assert lisp(NEVER + """
         (let (deepest)
@@ -89,7 +88,7 @@ def test_the_request_goes_down_to_the_task_whose_cleanup_is_stuck(lisp):
         *notes*""") == "((:RUNNING :RUNNING) :PARENT (:EVAPORATED :EVAPORATED))"
 
 
-@law(54)
+@pytest.mark.law(54)
 def test_one_explicit_request_and_any_number_from_forms_leave_waiting_cleanup_alone(lisp):
     assert lisp("""
         (top-level
@@ -103,7 +102,7 @@ def test_one_explicit_request_and_any_number_from_forms_leave_waiting_cleanup_al
         *notes*""") == "(:COMPLETE)"
 
 
-@law(54)
+@pytest.mark.law(54)
 def test_a_second_request_leaves_a_protected_region_outside_of_cleanup_alone(lisp):
     assert lisp("""
         (top-level
@@ -112,7 +111,7 @@ def test_a_second_request_leaves_a_protected_region_outside_of_cleanup_alone(lis
         *notes*""") == "(:COMPLETE)"
 
 
-@law(53)
+@pytest.mark.law(53)
 @pytest.mark.parametrize(
     "way_in, then",
     [('(fail "why")', "why"), ('(error "why")', "why"), ("(values 1 2)", "(1 2)"), ("(return-from out :left)", "(:LEFT)"),
@@ -127,7 +126,7 @@ def test_what_led_into_the_cleanup_goes_on_when_the_limit_has_ended_it(lisp, way
     assert kernel.now() == 5 and lisp("*notes*") == "NIL"
 
 
-@law(53)
+@pytest.mark.law(53)
 def test_a_limit_that_is_not_reached_changes_nothing_and_each_cleanup_form_has_all_of_it(lisp):
     assert lisp("""
         (let ((*cleanup-time-limit* 5))

@@ -4,10 +4,8 @@ import pytest
 
 from cramhy_runtime import kernel
 
-law = pytest.mark.law
 
-
-@law(40)
+@pytest.mark.law(40)
 @pytest.mark.parametrize(
     "body, statuses",
     [
@@ -32,7 +30,7 @@ def test_the_statuses_that_a_callback_sees_are_a_path_of_the_table_from_running_
         *notes*""") == statuses
 
 
-@law(40)
+@pytest.mark.law(40)
 def test_a_suspended_task_that_is_evaporated_ends_without_running_again(lisp):
     assert lisp("""
         (top-level
@@ -42,7 +40,7 @@ def test_a_suspended_task_that_is_evaporated_ends_without_running_again(lisp):
         *notes*""") == "(:RUNNING :SUSPENDED :EVAPORATED)"
 
 
-@law(41)
+@pytest.mark.law(41)
 @pytest.mark.parametrize("body, result", [("(values 1 2)", "(1 2)"), ("(values)", "NIL"), ('(fail "x")', "T")])
 def test_when_a_status_is_dead_the_result_is_final(lisp, body, result):
     assert lisp(f"""
@@ -55,7 +53,7 @@ def test_when_a_status_is_dead_the_result_is_final(lisp, body, result):
               (if (typep (first seen) 'plan-failure) (eq (first seen) (result task)) seen))))""") == result
 
 
-@law(42)
+@pytest.mark.law(42)
 def test_a_parent_that_succeeds_leaves_no_living_child(lisp):
     assert lisp("""
         (let (short long)
@@ -65,7 +63,7 @@ def test_a_parent_that_succeeds_leaves_no_living_child(lisp):
             (list (later short) (later long))))""") == "(:SUCCEEDED :EVAPORATED)"
 
 
-@law(43)
+@pytest.mark.law(43)
 def test_grandchildren_that_end_first_then_children_then_the_parent_have_all_succeeded(lisp):
     assert lisp("""
         (let (parent child grandchild)
@@ -77,7 +75,7 @@ def test_grandchildren_that_end_first_then_children_then_the_parent_have_all_suc
             (mapcar #'later (list grandchild child parent))))""") == "(:SUCCEEDED :SUCCEEDED :SUCCEEDED)"
 
 
-@law(44)
+@pytest.mark.law(44)
 def test_evaporating_a_parent_ends_all_below_it_and_those_that_lived_are_evaporated(lisp):
     assert lisp("""
         (let (parent child done grandchild)
@@ -91,7 +89,7 @@ def test_evaporating_a_parent_ends_all_below_it_and_those_that_lived_are_evapora
             (mapcar #'later (list parent child grandchild done))))""") == "(:EVAPORATED :EVAPORATED :EVAPORATED :SUCCEEDED)"
 
 
-@law(45)
+@pytest.mark.law(45)
 def test_evaporating_a_child_leaves_the_parent_running(lisp):
     assert lisp("""
         (top-level
@@ -101,7 +99,7 @@ def test_evaporating_a_child_leaves_the_parent_running(lisp):
             (list (later child) (later parent) (join-task parent))))""") == "(:EVAPORATED :RUNNING :UNHARMED)"
 
 
-@law(46)
+@pytest.mark.law(46)
 def test_the_children_of_a_failing_parent_are_dead_before_anybody_sees_it_fail(lisp):
     """Repaired: in the original they die some time later."""
     assert lisp("""
@@ -113,7 +111,7 @@ def test_the_children_of_a_failing_parent_are_dead_before_anybody_sees_it_fail(l
             *notes*))""") == "(:CLEANED-UP (:EVAPORATED 1))"
 
 
-@law(47)
+@pytest.mark.law(47)
 def test_suspending_a_parent_stops_all_below_it_until_it_is_woken(lisp):
     assert lisp("""
         (let ((count 0) (tick (make-fluent)) tasks)
@@ -132,7 +130,7 @@ def test_suspending_a_parent_stops_all_below_it_until_it_is_woken(lisp):
             *notes*))""") == "((:SUSPENDED :SUSPENDED :SUSPENDED) 0 T)"
 
 
-@law(47)
+@pytest.mark.law(47)
 def test_a_task_that_has_not_begun_is_suspended_with_its_parent(lisp):
     assert lisp("""
         (top-level
@@ -144,7 +142,7 @@ def test_a_task_that_has_not_begun_is_suspended_with_its_parent(lisp):
               (= before (length *notes*)))))""".replace("(value-of-time)", ":tick")) == "T"
 
 
-@law(48)
+@pytest.mark.law(48)
 def test_suspending_a_child_leaves_its_parent_running(lisp):
     assert lisp("""
         (top-level
@@ -154,7 +152,7 @@ def test_suspending_a_child_leaves_its_parent_running(lisp):
             (list *notes* (join-task parent))))""") == "(((:SUSPENDED :RUNNING)) :DONE)"
 
 
-@law(49)
+@pytest.mark.law(49)
 def test_a_condition_that_came_true_during_suspension_is_found_after_wake_up(lisp):
     assert lisp("""
         (top-level
@@ -164,7 +162,7 @@ def test_a_condition_that_came_true_during_suspension_is_found_after_wake_up(lis
             (join-task task)))""") == ":OPEN"
 
 
-@law(50)
+@pytest.mark.law(50)
 def test_a_suspended_task_can_be_evaporated_and_cleans_up(lisp):
     assert lisp("""
         (top-level
@@ -175,7 +173,7 @@ def test_a_suspended_task_can_be_evaporated_and_cleans_up(lisp):
             (list (later task) *notes*)))""") == "(:EVAPORATED (:BRANCH :PARENT))"
 
 
-@law(51)
+@pytest.mark.law(51)
 def test_a_parent_that_succeeds_evaporates_a_suspended_child(lisp):
     assert lisp("""
         (let (child)
@@ -186,7 +184,7 @@ def test_a_parent_that_succeeds_evaporates_a_suspended_child(lisp):
           (later child))""") == ":EVAPORATED"
 
 
-@law(52)
+@pytest.mark.law(52)
 def test_after_suspend_and_wake_up_a_task_can_still_be_evaporated(lisp):
     assert lisp("""
         (top-level
@@ -199,7 +197,7 @@ def test_after_suspend_and_wake_up_a_task_can_still_be_evaporated(lisp):
     assert kernel.now() == 3
 
 
-@law(53, 2)
+@pytest.mark.law(53)
 @pytest.mark.parametrize("way_out", ["(evaporate task)", "(progn (suspend task) (evaporate task))", "(wake-up task)", "(fail)"])
 def test_cleanup_forms_of_an_evaporated_task_run_exactly_once_and_completely(lisp, way_out):
     assert lisp(f"""
@@ -214,7 +212,7 @@ def test_cleanup_forms_of_an_evaporated_task_run_exactly_once_and_completely(lis
         *notes*""") == "(1 2 3 4)"
 
 
-@law(53)
+@pytest.mark.law(53)
 def test_cleanup_that_a_failure_began_is_not_cut_short_by_the_failure_of_a_sibling(lisp):
     assert lisp.error("""
         (top-level
@@ -223,7 +221,7 @@ def test_cleanup_that_a_failure_began_is_not_cut_short_by_the_failure_of_a_sibli
     assert lisp("*notes*") == "(:COMPLETE)"
 
 
-@law(54)
+@pytest.mark.law(54)
 def test_a_second_request_does_not_disturb_cleanup_that_computes(lisp):
     assert lisp("""
         (top-level
@@ -234,7 +232,7 @@ def test_a_second_request_does_not_disturb_cleanup_that_computes(lisp):
             *notes*))""") == "(:COMPLETE)"
 
 
-@law(54)
+@pytest.mark.law(54)
 def test_requests_of_forms_never_disturb_cleanup_that_waits(lisp):
     assert lisp("""
         (top-level
@@ -247,7 +245,7 @@ def test_requests_of_forms_never_disturb_cleanup_that_waits(lisp):
     assert kernel.now() == 6
 
 
-@law(55)
+@pytest.mark.law(55)
 def test_time_spent_suspended_counts_as_slept(lisp):
     lisp("(top-level (let ((task (in-child (sleep 4)))) (sleep 1) (with-task-suspended (task) (sleep 1)) (join-task task)))")
     assert kernel.now() == 4
@@ -255,7 +253,7 @@ def test_time_spent_suspended_counts_as_slept(lisp):
     assert kernel.now() == 14
 
 
-@law(56)
+@pytest.mark.law(56)
 def test_on_suspension_forms_run_once_per_suspension_innermost_first_and_before_the_controllers_body(lisp):
     assert lisp("""
         (top-level
@@ -269,7 +267,7 @@ def test_on_suspension_forms_run_once_per_suspension_innermost_first_and_before_
         *notes*""") == ("((:INNER :RUNNING) (:OUTER :RUNNING) :BRANCH :BODY (:INNER :RUNNING) (:OUTER :RUNNING) :BRANCH :AGAIN)")
 
 
-@law(56)
+@pytest.mark.law(56)
 def test_leaving_an_on_suspension_form_by_a_non_local_exit_is_an_error_of_the_task(lisp):
     assert "not to perform a non-local exit. Caught attempt to do so." in lisp.error("""
         (top-level
@@ -277,7 +275,7 @@ def test_leaving_an_on_suspension_form_by_a_non_local_exit_is_an_error_of_the_ta
             (sleep 1) (with-task-suspended (task)) (join-task task)))""")
 
 
-@law(57)
+@pytest.mark.law(57)
 def test_retry_after_suspension_cleans_up_at_suspension_and_starts_again_after_wake_up(lisp):
     assert lisp("""
         (top-level
@@ -295,7 +293,7 @@ def test_retry_after_suspension_cleans_up_at_suspension_and_starts_again_after_w
             *notes*))""") == "(:START :CLEANUP :HANDLER :SUSPENDED :START :CLEANUP (1 :VALUES))"
 
 
-@law(58)
+@pytest.mark.law(58)
 @pytest.mark.parametrize("body, ends", [("(values 1 2)", "(1 2)"), ("(fail)", "(:FAILED)"), ("(return-from out (values 3 4))", "(3 4)"),
                                         ("(throw :out 5)", "(5)")])
 def test_with_task_suspended_returns_its_bodys_values_and_wakes_the_task_on_every_way_out(lisp, body, ends):
@@ -311,7 +309,7 @@ def test_with_task_suspended_returns_its_bodys_values_and_wakes_the_task_on_ever
             *notes*))""") == f"({ends} :RUNNING)"
 
 
-@law(58)
+@pytest.mark.law(58)
 def test_a_task_is_woken_when_the_one_that_suspends_it_is_evaporated_meanwhile(lisp):
     assert lisp("""
         (top-level
@@ -323,7 +321,7 @@ def test_a_task_is_woken_when_the_one_that_suspends_it_is_evaporated_meanwhile(l
             (list (later slow) *notes*)))""") == "(:RUNNING NIL)"
 
 
-@law(59)
+@pytest.mark.law(59)
 @pytest.mark.parametrize("before", ["(sleep 1)", "nil"])
 def test_inside_of_with_task_suspended_the_task_is_suspended_even_if_it_has_only_just_been_started(lisp, before):
     assert lisp(f"""
@@ -334,7 +332,7 @@ def test_inside_of_with_task_suspended_the_task_is_suspended_even_if_it_has_only
         *notes*""") == "(:SUSPENDED :SUSPENDED :WENT-ON)"
 
 
-@law(60)
+@pytest.mark.law(60)
 def test_join_task_gives_all_values_the_identical_condition_or_nothing(lisp):
     assert lisp("(top-level (multiple-value-list (join-task (in-child (sleep 1) (values 1 2)))))") == "(1 2)"
     assert lisp("""
@@ -348,7 +346,7 @@ def test_join_task_gives_all_values_the_identical_condition_or_nothing(lisp):
             (multiple-value-list (join-task task))))""") == "NIL"
 
 
-@law(61)
+@pytest.mark.law(61)
 @pytest.mark.parametrize(
     "form, text",
     [
@@ -363,7 +361,7 @@ def test_wrong_use_of_tasks_has_the_documented_texts(lisp, form, text):
     assert lisp.error(form) == text
 
 
-@law(62)
+@pytest.mark.law(62)
 def test_a_task_variable_bound_around_top_level_is_seen_in_all_tasks_and_an_ordinary_one_is_not(lisp):
     assert lisp("""
         (define-task-variable *inherited* :global "A variable of tasks.")
@@ -376,7 +374,7 @@ def test_a_task_variable_bound_around_top_level_is_seen_in_all_tasks_and_an_ordi
         *notes*""") == "((:BOUND :GLOBAL) (:BOUND :GLOBAL) :DEEPER)"
 
 
-@law(63)
+@pytest.mark.law(63)
 def test_assigning_a_task_variable_in_a_child_is_seen_by_later_children_of_it_only(lisp):
     assert lisp("""
         (define-task-variable *v* 0)
@@ -387,7 +385,7 @@ def test_assigning_a_task_variable_in_a_child_is_seen_by_later_children_of_it_on
         *notes*""") == "((:BELOW 1) (:SIBLING 0) (:PARENT 0))"
 
 
-@law(64)
+@pytest.mark.law(64)
 @pytest.mark.parametrize("request_, status", [("(suspend task)", ":SUSPENDED"), ("(evaporate task)", ":EVAPORATED")])
 def test_without_scheduling_delays_a_request_to_its_end(lisp, request_, status):
     assert lisp(f"""
@@ -402,7 +400,7 @@ def test_without_scheduling_delays_a_request_to_its_end(lisp, request_, status):
     assert lisp("(multiple-value-list (without-scheduling (values 1 2)))") == "(1 2)"
 
 
-@law(64)
+@pytest.mark.law(64)
 def test_with_scheduling_inside_of_it_obeys_again(lisp):
     assert lisp("""
         (top-level
