@@ -23,10 +23,8 @@ from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import warn
 from ..lisp.dynamic import binding
 from .statuses import DEAD
-from .symbols import sym
-from .task_variables import inherit
+from .task_variables import define_task_state, inherit
 
-CLEANUP_TIME_LIMIT = inherit(sym("CPL-IMPL::*CLEANUP-TIME-LIMIT*"), None)
 LATER = 0.01  # s after which a limit looks again, if the cleanup computed when it was over
 PATIENCE = 100  # waits that are ended when a plan is closed, before its cleanup is given up
 
@@ -129,20 +127,28 @@ class CleanupLimit:
 
 def limit_cleanup(task, block=None):
     """A `CleanupLimit` for the cleanup that ``task``, the current one, begins; ``None`` if no limit is set."""
-    seconds = CLEANUP_TIME_LIMIT.value
+    seconds = _limit
     if seconds is None or not isinstance(seconds, Real) or not 0 <= seconds < float("inf"):
         return None
     return CleanupLimit(task, float(seconds), block)
 
 
-def _block_begins(block, kernel_task):
-    if CLEANUP_TIME_LIMIT.value is not None:
-        task = kernel_task.owner
-        if task is not None:
-            block.limit = limit_cleanup(task, block)
+def _limit_of_block(block, kernel_task):
+    task = kernel_task.owner
+    return None if task is None else limit_cleanup(task, block)
 
 
-kernel.cleanup.begins = staticmethod(_block_begins)
+_limit = None
+
+
+def _set_limit(seconds):
+    global _limit
+    _limit = seconds
+    if seconds is not None:  # until somebody sets a limit, blocks do not even ask for it
+        kernel.cleanup.begins = staticmethod(_limit_of_block)
+
+
+CLEANUP_TIME_LIMIT = inherit(define_task_state("CPL-IMPL", "*CLEANUP-TIME-LIMIT*", lambda: _limit, _set_limit), None)
 
 
 def cleanup_time_limit(seconds):

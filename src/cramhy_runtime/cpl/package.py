@@ -123,13 +123,14 @@ def define_faces():
                    "current-task": tasks.current_task_or_dummy, "task": tree.task_at,
                    "describe-task-tree": tree_report.describe_task_tree_in_lisp},
         variables={"*task-pprint-verbosity*": 0, "*break-on-plan-failures*": None, "*debug-on-lisp-errors*": None,
-                   "*save-tasks*": None, "*record-task-tree*": None, "*cleanup-time-limit*": None,
+                   "*save-tasks*": None, "*record-task-tree*": None,
                    "*log-output*": None, "*log-right-margin*": 130,
                    **printing.SWITCHES,
                    "timeout-policy": policies.TIMEOUT_POLICY,
                    **{name: statuses.status_list(members) for name, members in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
-        export=f"{MACROS_AND_MARKERS} {REACHED_FOR} *current-task* *current-path* *task-tree* *tasks*", internal="abstract-task")
+        export=f"{MACROS_AND_MARKERS} {REACHED_FOR} *current-task* *current-path* *task-tree* *tasks*
+               *cleanup-time-limit*""", internal="abstract-task")
     for name, writer in readers.WRITERS.items():
         CPL_IMPL.intern(name).setf_function = writer
     real_statuses = statuses.status_list((*statuses.NEXT, *statuses.DEAD))
