@@ -129,8 +129,8 @@ def define_faces():
                    "timeout-policy": policies.TIMEOUT_POLICY,
                    **{name: statuses.status_list(members) for name, members in constants.items()},
                    **{name: logging.tag_list(tags) for name, tags in log_lists.items()}},
-        export=f"{MACROS_AND_MARKERS} {REACHED_FOR} *current-task* *current-path* *task-tree* *tasks*
-               *cleanup-time-limit*""", internal="abstract-task")
+        export=f"{MACROS_AND_MARKERS} {REACHED_FOR} *current-task* *current-path* *task-tree* *tasks* *cleanup-time-limit*",
+        internal="abstract-task")
     for name, writer in readers.WRITERS.items():
         CPL_IMPL.intern(name).setf_function = writer
     real_statuses = statuses.status_list((*statuses.NEXT, *statuses.DEAD))
