@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+from cramhy_runtime.cpl import task_variables
 from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.repl.session import Session, condition_of
 
@@ -39,6 +40,12 @@ class Lisp:
         with pytest.raises(BaseException) as problem:
             self.session.evaluate_text(text)
         return re.sub(r"\{[0-9A-F]+\}", "{}", " ".join(princ_to_string(condition_of(problem.value)).split()))
+
+
+@pytest.fixture(autouse=True)
+def task_variables_of_its_own(monkeypatch):
+    """Task variables that a test declares are forgotten, for they would be bound in all tasks of later tests."""
+    monkeypatch.setattr(task_variables, "_declared", dict(task_variables._declared))
 
 
 @pytest.fixture
