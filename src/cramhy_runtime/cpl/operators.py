@@ -107,7 +107,7 @@ def _run_top_level(body, name, tree):
     task.execute()
     try:
         while task.status not in DEAD:
-            kernel.park(lambda: f"the plan {task.name}")
+            me.kernel.park(task.described)
     except BaseException as exception:
         if isinstance(exception, kernel.Interrupted | kernel.Deadlock | kernel.TimeLimit):
             note_stopped(task, exception)

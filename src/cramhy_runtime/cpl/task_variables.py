@@ -64,9 +64,10 @@ def define_task_variable(symbol, global_value=None, *, init_function=None):
     return symbol
 
 
-def inherited_bindings(task, parent):
-    """The bindings that the new ``task`` starts with, computed in the task that starts it; ``None`` when there are none."""
-    current = kernel.current().dynamic
+def inherited_bindings(here, task, parent):
+    """The bindings that the new ``task`` starts with, computed in ``here``, the task of the kernel that starts it; ``None`` when there
+    are none."""
+    current = here.dynamic
     if current is None and not _declared:
         return None
     stack = []
@@ -87,7 +88,7 @@ def bindings_of(stack):
 
 def tv_closure(task, parent, continuation):
     """A function that binds the task variables, as seen here and now, and calls ``continuation``."""
-    bindings = inherited_bindings(task, parent) or bindings_of([])
+    bindings = inherited_bindings(kernel.current(), task, parent) or bindings_of([])
 
     def call(*arguments):
         here = kernel.current()

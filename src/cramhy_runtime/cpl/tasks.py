@@ -179,12 +179,13 @@ class AbstractTask:
                 self.path, self.node = parent.path, parent.node
         if self._name is None:
             self.name  # names are numbered in the order in which tasks start
-        self.kernel_task = task = kernel.spawn(self._live, inherited_bindings(self, parent), name=self._name_as_text)
+        me = kernel.current()
+        self.kernel_task = task = me.kernel.spawn(self._live, inherited_bindings(me, self, parent), name=self._name_as_text)
         task.when_refused = self._refused
         if self.held:
             task.interject(lambda: obey(self))
         self.started_at = task.kernel.clock.now()
-        if truth(SAVE_TASKS.value):
+        if SAVE_TASKS.value is not None and truth(SAVE_TASKS.value):
             saved_tasks.append(self)
         return self
 
@@ -195,6 +196,10 @@ class AbstractTask:
 
     def _name_as_text(self):
         return self.name
+
+    def described(self):
+        """What waits for it waits for, as text."""
+        return f"the plan {self.name}"
 
     def _live(self, bindings):
         me = self.kernel_task
@@ -270,7 +275,7 @@ class AbstractTask:
 
     def _die(self, status, result):
         self.result = result  # before the status, so that who sees a dead status can read it
-        self.ended_at = kernel.now()
+        self.ended_at = kernel.active().clock.now()
         self.body = self.constraints = self.suspension_handlers = None
         if self.parent is not None:
             self.parent.children.pop(self, None)

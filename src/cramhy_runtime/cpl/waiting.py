@@ -58,9 +58,11 @@ def _wait(fluent, timeout):
         log_event("WAIT-FOR", lambda: ("WAIT-FOR", prin1_to_string(fluent)))
     me = kernel.current()
     why = fluent.awaited
-    if not fluent.waiters:
-        fluent.waiters = []
-    fluent.waiters.append(me)
+    waiters = fluent.waiters
+    if not waiters:
+        waiters = fluent.waiters = {}
+    again = me in waiters  # an ON-SUSPENSION form, say, waits for what its task waits for already
+    waiters[me] = True
     try:
         while True:
             in_time = pause(why, until)
@@ -70,7 +72,8 @@ def _wait(fluent, timeout):
             if not in_time and until is not None and kernel.now() >= until:
                 return None
     finally:
-        fluent.waiters.remove(me)
+        if not again:
+            del waiters[me]
 
 
 def in_seconds(time):

@@ -143,7 +143,10 @@ class Kernel(Endings, Outside):
             me.timed = True
             self._timers.add_deadline(until, me)
         me.state = PARKED
-        self.rest(me)
+        if me.dynamic is None:
+            self.hand_over(me)
+        else:
+            self.rest(me)
         if me.attention:
             me.deliver()
         return me.woken

@@ -37,7 +37,7 @@ class GreenletCarrier(greenlet):
                 self.parent = successor.stack
                 return
             idle.append(self)
-            successor.stack.switch()
+            successor.switch()
             if self.job is None:
                 return
 
@@ -49,11 +49,12 @@ class GreenletCarrier(greenlet):
 class RootCarrier:
     """The greenlet that was running when the kernel started."""
 
-    __slots__ = ("stack", "ident")
+    __slots__ = ("stack", "switch", "ident")
     started = True
 
     def __init__(self):
         self.stack = getcurrent()
+        self.switch = self.stack.switch
         self.ident = _thread.get_ident()
 
 
@@ -87,15 +88,15 @@ class GreenletBackend:
         If tasks started tasks directly, the thousandth would begin a thousand frames deep. So the root starts them all.
         """
         if mine is self.root:
-            other.stack.switch()
+            other.switch()
             while (newborn := self.newborn) is not None:
                 self.newborn = None
                 newborn.switch()
         elif other.started:
-            other.stack.switch()
+            other.switch()
         else:
             self.newborn = other
-            self.root.stack.switch()
+            self.root.switch()
 
     def run_blocking(self, kernel, task, call):
         """A helper thread runs CALL.
