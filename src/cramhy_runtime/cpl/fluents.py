@@ -106,7 +106,11 @@ class Fluent:
             self._notify(self.peek())
 
     def _notify(self, value):
-        if self.callbacks or self.sheltered:
+        if not self.nets and not self.callbacks:  # as a rule only tasks wait
+            if truth(value):
+                for task in self.waiters:
+                    task.kernel.unpark(task)
+        elif self.callbacks or self.sheltered:
             with shield(kernel.current()):
                 self._tell(value)
         else:

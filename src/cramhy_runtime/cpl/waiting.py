@@ -65,7 +65,7 @@ def _wait(fluent, timeout):
     waiters[me] = True
     try:
         while True:
-            in_time = pause(why, until)
+            in_time = me.kernel.park(why, until)
             value = fluent.read()
             if value is not None and value is not False:
                 return value
