@@ -38,6 +38,14 @@ def test_a_method_of_value_counts_for_nets_waits_and_callbacks(lisp):
                            (value (fl-funcall #'list f plain))))""") == "(8 8 108 (8) 1 5 10 10 (10 1))"
 
 
+def test_a_slow_method_of_value_keeps_no_news_from_anybody_though_its_task_is_asked_to_end(lisp):
+    assert lisp("""(defclass slow (value-fluent) ())
+                   (defmethod value ((f slow)) (let ((stored (call-next-method))) (when (> stored 0) (sleep 2)) stored))
+                   (let* ((f (make-fluent :class 'slow :value 0)) (net (+ f 1)) (above (* net 10)))
+                     (top-level (pursue (setf (value f) 1) (sleep 1)))
+                     (list (value net) (value above)))""") == "(2 20)"
+
+
 def test_a_fluent_may_compute_its_value_itself(lisp):
     assert lisp("""(defclass counter (fluent) ((n :initform 0 :accessor n)))
                    (defmethod value ((f counter)) (incf (n f)))

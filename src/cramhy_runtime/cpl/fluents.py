@@ -49,6 +49,7 @@ class Fluent:
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FLUENT"
     prefix = "FLUENT-"
     careful = False
+    foreign = False  # whether reading it calls functions of the user
     when_subclassed = staticmethod(lambda cls: None)
 
     def __init_subclass__(cls, **options):
@@ -264,11 +265,13 @@ class Net(Fluent):
         self.prefix = "FN-" + operator
         self.formula = formula
         self.inputs = inputs
-        self.careful = careful
+        self.careful = careful or any([fluent.foreign for fluent in inputs])
         super().__init__()
         self._begin()
         for fluent in inputs:
             fluent.attach(self)
+
+    foreign = property(lambda self: self.careful)
 
     def _begin(self):
         pass
@@ -295,6 +298,7 @@ class CachedNet(Net):
 
     __slots__ = ("cached", "turn")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-CACHEABLE-FLUENT"
+    foreign = False
 
     @circumstance(lambda here: f"while {_shown_net(here['self'])} was made: its first value is computed at once")
     def _begin(self):

@@ -93,9 +93,10 @@ def _pulse_through(fluent):
 
 
 def _store_and_pulse(fluent, new):
-    """`ValueFluent.set` for fluents whose value or pulses users see to: it passes through both."""
-    if fluent.stores(new):
-        fluent.pulse()
+    """`ValueFluent.set` for fluents whose value or pulses users see to: it passes through both, and no request to end between them."""
+    with kernel.shield():
+        if fluent.stores(new):
+            fluent.pulse()
     return new
 
 
@@ -111,7 +112,7 @@ def _prepare(cls):
     readers, writers, pulsers = (any(_concerns(method.specializers[place], cls) for method in opening.added)
                                  for opening, place in ((VALUE, 0), (SET_VALUE, 1), (PULSE, 0)))
     if readers:
-        _replace(cls, read=_read_through, peek=_peek_through,
+        _replace(cls, read=_read_through, peek=_peek_through, foreign=True,
                  value=property(_read_through, lambda fluent, new: fluent.set(new)) if issubclass(cls, ValueFluent) else Fluent.value)
     if pulsers:
         _replace(cls, pulse=_pulse_through)
