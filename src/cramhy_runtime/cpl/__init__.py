@@ -25,8 +25,8 @@ The page docs/plans-in-python.md tells the whole story. In short: a plan runs be
 take branches as functions, or begin a ``with`` block that starts them. When a form is left, its branches are dead, and what one of
 them failed with is raised. Waiting is for values that are not ``None`` and not ``False``; 0 and "" are true, as in Lisp.
 
-Where the parts are: ``fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``, ``suspension`` ·
-``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``orderings``, ``watching`` · ``tree``,
+Where the parts are: ``fluents``, ``pulse_fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``,
+``suspension`` · ``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``orderings``, ``watching`` · ``tree``,
 ``tree_report``, ``tags``, ``plans``, ``policies``, ``walker``, ``plan_tree`` · ``hooks``, ``logging``, ``printing`` · ``package``,
 ``readers``, ``markers``, the Lisp faces. Python's face: ``python_forms``, ``plan_run``, ``blocks``,
 ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``. Reference: cpl.md.

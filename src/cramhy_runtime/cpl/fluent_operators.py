@@ -20,14 +20,9 @@ from ..lisp.data import lisp_list, list_from, one, truth
 from ..lisp.equality import eq, eql
 from ..lisp.packages import keyword
 from .fluents import (
-    ALWAYS,
-    NEVER,
-    ONCE,
     CachedNet,
-    ChangeFluent,
     Fluent,
     Net,
-    PulseFluent,
     announce,
     check_fluent,
     function_of,
@@ -35,6 +30,7 @@ from .fluents import (
     make_fluent,
     value,
 )
+from .pulse_fluents import ALWAYS, NEVER, ONCE, ChangeFluent, PulseFluent
 from .symbols import sym
 
 _QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other

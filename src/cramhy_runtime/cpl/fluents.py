@@ -42,7 +42,7 @@ _count = itertools.count(1)
 class Fluent:
     """What all fluents share: a name, a pulse counter, callbacks, nets computed from it, and tasks that wait for it.
 
-    ``value`` reads (and may consume, see `PulseFluent`), ``peek`` reads without side effects.
+    ``value`` reads (and may consume, see ``pulse_fluents.py``), ``peek`` reads without side effects.
     """
 
     __slots__ = ("_name", "number", "pulses", "waiters", "callbacks", "nets", "sheltered", "__weakref__")
@@ -344,80 +344,20 @@ class CachedNet(Net):
                 return new
 
 
-_peeking = set()
+peekers = set()
 """The tasks of the kernel that read without side effects now."""
 
 
 def peeking(thunk):
     """Call ``thunk``; whatever it reads, through functions of the user too, it does not consume."""
     me = kernel.current()
-    if me in _peeking:
+    if me in peekers:
         return thunk()
-    _peeking.add(me)
+    peekers.add(me)
     try:
         return thunk()
     finally:
-        _peeking.discard(me)
-
-
-NEVER, ONCE, ALWAYS = "NEVER", "ONCE", "ALWAYS"
-
-
-class PulseFluent(Fluent):
-    """True while there are pulses of its parent that have not been consumed; reading it consumes (cpl.md 2.8).
-
-    ``missed`` says what becomes of pulses that nobody saw: NEVER forgets those before its creation, ONCE joins them to one,
-    ALWAYS keeps each.
-    """
-
-    __slots__ = ("parent", "missed", "seen", "processed")
-    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::PULSE-FLUENT"
-    prefix = "FN-PULSE-FLUENT"
-
-    def __init__(self, parent, missed=ONCE):
-        self.parent = parent
-        self.missed = missed
-        self.seen = parent.pulses
-        self.processed = parent.pulses if missed == NEVER else 0
-        super().__init__()
-        parent.attach(self)
-
-    def read(self):
-        if self.processed >= self.seen:
-            return None
-        if _peeking and kernel.current() in _peeking:
-            return True
-        if self.missed == ALWAYS:
-            self.processed += 1
-        else:
-            self.processed = self.seen
-        return True
-
-    def peek(self):
-        return True if self.processed < self.seen else None
-
-    def input_pulsed(self):
-        self.seen = self.parent.pulses
-        self.pulse()
-
-
-class ChangeFluent(Net):
-    """True when its parent's value is not what it was at the last reading (``fl-value-changed``)."""
-
-    __slots__ = ("parent", "test", "key", "remembered")
-
-    def __init__(self, parent, test, key):
-        self.parent, self.test, self.key = parent, test, key
-        self.remembered = one(key(value(parent)))
-        super().__init__("FL-UPDATED", self._look, (parent,), careful=True)
-
-    def _look(self):
-        current = one(self.key(value(self.parent)))
-        if truth(one(self.test(current, self.remembered))):
-            return None
-        if kernel.current() not in _peeking:
-            self.remembered = current
-        return True
+        peekers.discard(me)
 
 
 class FunctionNamed:

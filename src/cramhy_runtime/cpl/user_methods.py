@@ -42,7 +42,7 @@ def _value(fluent):
     """The value of a fluent; any other object is its own value."""
     if not isinstance(fluent, Fluent):
         return fluent
-    return _original(fluent, "peek" if kernel.current() in fluents._peeking else "read")(fluent)
+    return _original(fluent, "peek" if kernel.current() in fluents.peekers else "read")(fluent)
 
 
 def _set_value(new, fluent):
