@@ -7,6 +7,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 (require cramhy.operators [defoperator])
 (import itertools
         cramhy.operators *
+        cramhy_runtime.cpl.logging [check-constant-tags]
         cramhy_runtime.cpl.retry_counters [counter-variable]
         cramhy_runtime.lisp.conditions [CompileError SimpleWarning]
         cramhy_runtime.lisp.evaluation.compilation_unit [mention-type warn-of]
@@ -182,57 +183,101 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 ;; --------------------------------------------------------------------------------------------------------- 9: policies
 
-(defn policy-parts [parameters rest]
+(setv policy-clauses [":INIT" ":CHECK" ":RECOVER" ":CLEAN-UP"])
+
+(defn policy-parts [operator name parameters rest]
   "(documentation, list of the clauses as functions of the store and the parameters)"
-  (setv documentation (if (and rest (isinstance (get rest 0) str)) (get rest 0) None))
-  (setv clauses (if documentation (cut rest 1 None) rest) store (gensym "STORE"))
-  #(documentation
-    `(list ~@(lfor clause clauses
-       `(list ~clause.car
-              (lambda [~store ~@(elements parameters)]
-                (flet [[policy-get [symbol] (%policy-get ~store symbol)]
-                       [policy-setf [symbol value] (%policy-set ~store symbol value)]]
-                  ~@(elements clause.cdr))))))))
+  (defn no-policy [part why]
+    (wrong "A policy is written (define-policy name (parameter*) (:init form*) (:check form*) (:recover form*) (:clean-up form*))."
+           operator part why))
+  (when (or (not (is-symbol name)) (is name None))
+    (no-policy name "its name must be a symbol."))
+  (when (not (or (is parameters None) (listp parameters)))
+    (no-policy parameters "after the name comes the list of its parameters."))
+  (setv documentation None clauses {} store (gensym "STORE"))
+  (setv variables (lfor part (elements parameters) (if (listp part) part.car part)))
+  (setv variables (lfor variable variables :if (and (is-symbol variable) (not (.startswith (symbol-name variable) "&"))) variable))
+  (for [part rest]
+    (cond
+      (and (isinstance part str) (is documentation None)) (setv documentation part)
+      (not (and (listp part) (in part.car (map sym policy-clauses))))
+      (no-policy part (+ "it is none of the clauses " (.join " " policy-clauses) "."))
+      (in part.car clauses) (no-policy part "there is a clause of this name already.")
+      True (setv (get clauses part.car) (elements part.cdr))))
+  (defn clause-function [body]
+    (setv #(declarations forms) (split-declarations body))
+    `(lambda [~store ~@(elements parameters)]
+       (declare (ignorable ~@variables))
+       ~@declarations
+       (flet [[policy-get [symbol] (%policy-get ~store symbol)]
+              [policy-setf [symbol value] (%policy-set ~store symbol value)]]
+         ~@forms)))
+  #(documentation `(list ~@(lfor #(key body) (.items clauses) `(list ~key ~(clause-function body))))))
 
 (defoperator make-policy [name parameters #* rest]
-  (setv #(documentation clauses) (policy-parts parameters rest))
+  (setv #(documentation clauses) (policy-parts "MAKE-POLICY" name parameters rest))
   `(%make-policy (quote ~name) (quote ~parameters) ~documentation ~clauses))
 
 (defoperator define-policy [name parameters #* rest]
-  (setv #(documentation clauses) (policy-parts parameters rest))
+  (setv #(documentation clauses) (policy-parts "DEFINE-POLICY" name parameters rest))
   `(progn
      (declaim (special ~name))
      (%define-policy (quote ~name) (quote ~parameters) ~documentation ~clauses)))
 
-(defoperator with-policy [policy parameters #* body]
+(defn under-policy [operator policy parameters body]
+  (when (not (or (is parameters None) (listp parameters)))
+    (wrong (+ "It is written (" (.lower operator) " policy (parameter*) form*).") operator parameters
+           "after the policy comes the list of its parameters."))
   `(%with-policy ~policy (lambda [] (list ~@(elements parameters))) (quote ~parameters) (lambda [] ~@body)))
 
-(defoperator with-named-policy [name parameters #* body]
-  `(with-policy (%named-policy ~name) ~parameters ~@body))
+(defoperator with-policy [policy parameters #* body]
+  (under-policy "WITH-POLICY" policy parameters body))
 
-(defn nested [operator policies body]
+(defoperator with-named-policy [name parameters #* body]
+  (under-policy "WITH-NAMED-POLICY" `(%named-policy ~name) parameters body))
+
+(defn nested [operator inner policies body]
   (setv form `(progn ~@body))
-  (for [#(policy parameters) (reversed (elements policies))]
-    (setv form `(~operator ~policy ~parameters ~form)))
+  (for [part (reversed (elements policies))]
+    (when (not (and (listp part) (listp part.cdr) (is part.cdr.cdr None)))
+      (wrong (+ "It is written (" (.lower operator) " ((policy (parameter*))*) form*).") operator part
+             "each policy is a list of it and the list of its parameters."))
+    (setv form `(~inner ~part.car ~part.cdr.car ~form)))
   form)
 
 (defoperator with-policies [policies #* body]
-  (nested 'with-policy policies body))
+  (nested "WITH-POLICIES" 'with-policy policies body))
 
 (defoperator with-named-policies [policies #* body]
-  (nested 'with-named-policy policies body))
+  (nested "WITH-NAMED-POLICIES" 'with-named-policy policies body))
 
 ;; --------------------------------------------------------------------------------------------------------- 10: logging
 
 (defoperator log-event [#* clauses]
-  (setv parts (dfor clause clauses clause.car.name (elements clause.cdr)))
-  (when (not-in "TAGS" parts)
-    (raise (ValueError "Missing (:TAGS ...) clause.")))
-  `(%log-line (lambda [] (format nil ~@(.get parts "CONTEXT" [""]))) (lambda [] (format nil ~@(.get parts "DISPLAY" [""])))
-              (quote ~(list-from (get parts "TAGS")))))
+  (setv parts {})
+  (for [clause clauses]
+    (when (not (and (listp clause) (in clause.car (map sym [":CONTEXT" ":DISPLAY" ":TAGS"])) (not-in clause.car.name parts)))
+      (wrong "It is written (log-event (:context control argument*) (:display control argument*) (:tags tag*))." "LOG-EVENT" clause
+             "it is none of the clauses :CONTEXT, :DISPLAY and :TAGS, or the second of its name."))
+    (setv (get parts clause.car.name) (elements clause.cdr)))
+  (when (not (.get parts "TAGS"))
+    (error (CompileError "Missing (:TAGS ...) clause.")))
+  (check-constant-tags (get parts "TAGS"))
+  (defn formatted [part]
+    (setv #(control #* arguments) (or (.get parts part) [""]))
+    [control `(list ~@arguments)])
+  `(progn
+     (%log-event (quote ~(list-from (get parts "TAGS")))
+                 (lambda [] (list ~@(formatted "CONTEXT") ~@(formatted "DISPLAY"))))
+     (values)))
 
 (defoperator logging-enabled-p [#* tags]
-  `(%logging-enabled (quote ~tags)))
+  (check-constant-tags tags)
+  `(%logging-enabled (quote ~(list-from tags))))
+
+(defoperator define-log-tags [#* tags]
+  `(eval-when [:compile-toplevel :load-toplevel :execute]
+     (%define-log-tags (quote ~(list-from tags)))))
 
 (defoperator log-block [begin-hook parameters end-hook #* body]
   "The body between two hooks; the second gets the first result of the first, and whether the body called `log-succeed` last."

@@ -136,3 +136,14 @@
   (when (!= (len parameters) (len generators))
     (error "~S has ~D parameters and ~D generators; each parameter needs one." tag (len parameters) (len generators)))
   `(:tag ~tag (let* [~@(lfor #(parameter generator) (zip parameters generators) [parameter generator])] ~(.get options "BODY"))))
+
+(defoperator define-hook [name lambda-list #* options]
+  "A generic function that calls all applicable methods, the most specific first, and gives the list of their results.
+
+  The option `(:method-combination :hook-combination operator)` has `operator` called with the results instead."
+  (setv combination (sym ":METHOD-COMBINATION"))
+  (setv wanted (sum (lfor option options :if (and (listp option) (is option.car combination)) (elements option.cdr)) []))
+  (setv wanted (cut wanted (if (in (sym ":HOOK-COMBINATION") wanted) (.index wanted (sym ":HOOK-COMBINATION")) (len wanted)) None))
+  `(defgeneric ~name ~lambda-list
+     (:method-combination cut:hooks ~@wanted)
+     ~@(lfor option options :if (not (and (listp option) (is option.car combination))) option)))

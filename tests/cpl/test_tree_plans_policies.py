@@ -1,16 +1,14 @@
-"""Tags, the task tree, plan functions, goals, policies, logging: cpl.md section 16, invariants 98 to 111 and 120 to 121."""
-
-import io
+"""Tags, the task tree, plan functions, goals, policies: cpl.md section 16, invariants 98 to 111."""
 
 import pytest
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import logging, plans, policies, tags, tree
+from cramhy_runtime.cpl import plans, policies, tags, tree
 from cramhy_runtime.cpl.failures import attempt
 from cramhy_runtime.cpl.statuses import CREATED, SUCCEEDED
 from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import Cons, lisp_list, list_from, python_list
-from cramhy_runtime.lisp.packages import intern, keyword, sym
+from cramhy_runtime.lisp.data import Cons, lisp_list
+from cramhy_runtime.lisp.packages import intern, sym
 from cramhy_runtime.lisp.printer.printer import princ_to_string
 
 
@@ -218,37 +216,3 @@ def test_clauses_share_a_store_for_one_use():
     with pytest.raises(cpl.PolicyCheckConditionMet):
         under(policy(log, check=check), lambda: cpl.sleep(9), 1)
     assert log.count("check") == 3
-
-
-# ------------------------------------------------------------------------------------------------------------------- logging
-
-
-@pytest.fixture
-def log():
-    stream = io.StringIO()
-    logging.LOG_OUTPUT.value = stream
-    yield stream
-    logging.LOG_OUTPUT.value = None
-    logging.log_set(None)
-
-
-def test_nothing_is_computed_for_an_inactive_tag(log):
-    logging.log_event(lambda: pytest.fail("computed"), "FAIL")
-    assert log.getvalue() == ""
-
-
-def test_active_tags_are_listed_in_the_order_of_the_table_and_unknown_ones_are_errors(log):
-    def names(tags_):
-        return [tag.name for tag in python_list(tags_)]
-
-    assert names(logging.log_set(list_from([keyword("PAR"), keyword("FAIL")]))) == ["FAIL", "PAR"]
-    assert names(logging.log_enable(lisp_list(keyword("DEBUG")))) == ["DEBUG", "FAIL", "PAR"]
-    with pytest.raises(Error):
-        logging.log_enable(lisp_list(keyword("NO-SUCH-TAG")))
-    assert names(logging.log_disable(lisp_list(keyword("FAIL")))) == ["DEBUG", "PAR"]
-
-
-def test_a_failure_is_logged(log):
-    logging.log_set(lisp_list(keyword("FAIL")))
-    plan(lambda: attempt(lambda: cpl.fail("no fuel")))
-    assert "> FAIL" in log.getvalue() and log.getvalue().endswith("; no fuel\n")

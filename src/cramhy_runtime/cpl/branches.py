@@ -20,6 +20,7 @@ from .failure_types import CompositeFailure, PlanFailure, opened
 from .failures import signal_failure
 from .current import inside_plan
 from .ending import end_tasks
+from .logging import active_tags, log
 from .pausing import pause
 from .statuses import DEAD, FAILED
 from .tasks import Task
@@ -114,9 +115,13 @@ class Branches:
 def run(form, tasks, ready, choose, late_failures_count=True):
     """Start ``tasks`` as children of the current one, wait until ``ready(branches)``, end the rest, and return what
     ``choose(branches)`` returned at that moment: (values, failure), failure ``None`` on success."""
+    if active_tags:
+        log(form, "branches: ~d", len(tasks))
     branches = Branches(form, tasks)
     try:
         branches.wait(ready)
+        if active_tags:
+            log(form, "decided: ~d running, ~d done, ~d failed", branches.living, branches.done, branches.failed)
         values, failure = choose(branches)
     except BaseException as exception:
         branches.abort(exception)

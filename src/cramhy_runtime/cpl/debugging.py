@@ -26,6 +26,7 @@ from ..lisp.conditions import (
 from ..lisp.data import truth
 from .current import current_task
 from .failure_types import PlanFailure, SimplePlanFailure
+from .logging import active_tags, log
 from .symbols import sym
 from .task_variables import inherit
 
@@ -42,6 +43,8 @@ def end_the_task(condition):
     if find_restart(TEARDOWN) is not None:  # an error of a form that was typed into this task's debugger
         enter_debugger(condition)
     elif truth(DEBUG_ON_LISP_ERRORS.value) and not isinstance(condition, PlanFailure):
+        if active_tags:
+            log("DEBUGGER", "~s: ~_~a", condition, condition)
         restart_case([(RETHROW, lambda: None, lambda: f"Rethrow condition `{shown(condition)}'"),
                       (TEARDOWN, abort_task, lambda: f"Tear down {shown(task)}")],
                      lambda: enter_debugger(condition))

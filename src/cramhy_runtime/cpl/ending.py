@@ -21,7 +21,9 @@ from cramhy_runtime.kernel.tasks import PARKED, shield
 
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import warn
+from ..lisp.data import list_from
 from ..lisp.dynamic import binding
+from .logging import active_tags, log
 from .statuses import DEAD
 from .task_variables import define_task_state, inherit
 
@@ -60,6 +62,8 @@ class awaiting_death(shield):  # noqa: N801 (reads as a statement)
 
 def end_tasks(tasks, reason=None):
     """Evaporate ``tasks`` and wait until they are dead; a request to end the current task waits for that too."""
+    if active_tags and tasks:
+        log("TEARDOWN", "~@[~a ~]~{~a~^, ~:_~}", reason, list_from([task.name for task in tasks]))
     for task in tasks:
         task.evaporate(reason)
     with awaiting_death(tasks):

@@ -26,7 +26,7 @@ from .hooks import (
     on_with_failure_handling_handled,
     on_with_failure_handling_rethrown,
 )
-from .logging import active_tags, log_event
+from .logging import active_tags, log
 from .symbols import sym
 
 
@@ -37,7 +37,7 @@ def fail(*arguments):
     """
     condition = _designated(*arguments) if arguments else SimplePlanFailure("Plan failure.")
     if active_tags:
-        log_event("FAIL", lambda: ("FAIL", f"{condition}"))
+        log("FAIL", "~s: ~_~a", condition, condition)
     if on_fail:
         on_fail(arguments[0] if arguments else None)
     if kernel.current().owner is None or not isinstance(condition, PlanFailure):

@@ -1,18 +1,26 @@
 """The event log of the plan language: what each task does, one line per event, by topic.
 
-Off by default and then free: arguments are computed only if one of an event's tags is active. The line goes to ``*log-output*``
-with real time, run time, task, context and text. Source: cpl.md section 10. Tags are keywords; the mask is global, as there.
+Topics are keywords, the log tags; the set of active ones is global, and empty at first. A line goes to ``*log-output*`` and says
+when (seconds since the plan began, by the clock and by the processor), which task, what kind of event, and the event. Source:
+cpl.md section 10; the line is the original's to the letter. In virtual time both times are the plan's, so that equal runs log
+equal lines.
+
+Logging costs nothing when no tag is active: the runtime asks ``if active_tags`` before it says anything, and `log-event` does not
+evaluate its arguments then.
 """
 
 from __future__ import annotations
 
-import sys
+import time
 
 from cramhy_runtime import kernel
 
-from ..lisp.conditions import error
-from ..lisp.data import Symbol, list_from, python_list
+from ..lisp.conditions import CompileError, error
+from ..lisp.data import Keyword, list_from, python_list
+from ..lisp.dynamic import binding
+from ..lisp.format.format import format_to_string
 from ..lisp.packages import keyword
+from ..lisp.streams.streams import TRACE_OUTPUT, output_stream
 from .current import current_task
 from .symbols import sym
 
@@ -25,7 +33,13 @@ LANGUAGE = "FAIL PAR PURSUE TRY-ALL TRY-IN-ORDER WITH-PARALLEL-CHILDS WITH-TAGS"
 
 LOG_OUTPUT = sym("CPL-IMPL::*LOG-OUTPUT*")
 RIGHT_MARGIN = sym("CPL-IMPL::*LOG-RIGHT-MARGIN*")
+LINE = "~8@A , ~8A - ~20A > ~30@<~?~> ; ~@<~?~:>~%"
+EVENT = "#<EVENT :~a~@[ ~s~]>"
+NAME_WIDTH = 20
+
+known_tags = list(TAGS)
 active_tags = set()
+"""The names of the active tags. Who wants to log asks first whether there are any."""
 
 
 def tag_list(names):
@@ -33,26 +47,50 @@ def tag_list(names):
     return list_from([keyword(name) for name in names])
 
 
-def log_event(tag, event):
-    """Log ``event()``, a pair (context, text), if one of ``tags`` is active."""
-    tags = [tag]
-    if active_tags and not active_tags.isdisjoint(tags):
-        context, display = event()
-        task = current_task()
-        name = task.name if task else str(kernel.current().name)
-        time = f"{kernel.now():.3f}" if task else "n/a"
-        _write(f"{time:<8} , {time:<8} - {shortened(name):<20} > {context:<30} ; {display}\n")
+def log(tag, control, *arguments):
+    """Log an event of the runtime's: its kind is its tag. To be called only when there are `active_tags`."""
+    if tag in active_tags:
+        write_line("~a", (tag,), control, arguments)
 
 
-def _write(line):
-    stream = LOG_OUTPUT.value
-    if hasattr(stream, "write"):
-        stream.write(line)
-    else:
-        sys.stderr.write(line)
+def log_sending(kind, task, reason):
+    """Log a request to a task; to be called only when there are `active_tags`."""
+    log("SEND-EVENT", EVENT + " to ~a", kind, reason, task.name)
 
 
-def shortened(name, width=20):
+def log_event(tags, event):
+    """``log-event``: if one of the tags (a Lisp list of keywords) is active, log what ``event()`` tells.
+
+    That is a sequence: a format control for the kind of event, its arguments, one for what happened, and its arguments.
+    """
+    if not active_tags.isdisjoint(tag.name for tag in tags):
+        context, context_arguments, display, arguments = event()
+        write_line(context, python_list(context_arguments), display, python_list(arguments))
+
+
+def write_line(context, context_arguments, display, arguments):
+    """Write one line: format controls and arguments for the kind of event and for what happened."""
+    task = current_task()
+    with binding(sym("*PRINT-PRETTY*"), True, sym("*PRINT-RIGHT-MARGIN*"), RIGHT_MARGIN.value):
+        line = format_to_string(LINE, *_times(task), shortened(task.name if task else str(kernel.current().name)),
+                                context, list_from(context_arguments), display, list_from(arguments))
+    stream = output_stream(LOG_OUTPUT.value if LOG_OUTPUT.value is not None else TRACE_OUTPUT.value)
+    stream.write(line)
+    stream.flush()
+
+
+def _times(task):
+    """Seconds since the plan of ``task`` began: by the clock, and of the processor."""
+    while task is not None and task.parent is not None:
+        task = task.parent
+    if task is None or task.started_at is None:
+        return "n/a", "n/a"
+    passed = kernel.now() - task.started_at
+    worked = passed if kernel.active().clock.virtual else time.process_time() - task.processor_time
+    return f"{passed:.3f}", f"{worked:.3f}"
+
+
+def shortened(name, width=NAME_WIDTH):
     """``name`` cut to ``width`` by replacing its middle with two dots."""
     return name if len(name) <= width else name[:(width - 2) // 2] + ".." + name[-(width - 2) // 2:]
 
@@ -64,32 +102,59 @@ def log_enable(tags):
 
 
 def log_disable(tags):
+    """Make ``tags`` inactive; returns the list of those that are active still."""
     active_tags.difference_update(_checked(tags))
     return list_active_log_tags()
 
 
 def log_set(tags):
-    """Make ``tags`` the active ones."""
+    """Make ``tags``, and no others, the active ones; returns them."""
     names = _checked(tags)
     active_tags.clear()
     active_tags.update(names)
     return list_active_log_tags()
 
 
+def _is_known(tag):
+    return isinstance(tag, Keyword) and tag.name in known_tags
+
+
 def _checked(tags):
     for tag in python_list(tags):
-        if not isinstance(tag, Symbol) or tag.name not in TAGS:
+        if not _is_known(tag):
             error("Do not know about log tag ~S; you probably forgot to adjust DEFINE-LOG-TAGS.", tag)
     return [tag.name for tag in python_list(tags)]
 
 
+def check_constant_tags(tags):
+    """At expansion time: ``tags`` (a Python list) must be known."""
+    for tag in tags:
+        if not _is_known(tag):
+            unknown = CompileError("~S not a known log tag. See DEFINE-LOG-TAGS.", tag)
+            unknown.hint = f"The log tags are {' '.join(f':{name}' for name in known_tags).lower()}."
+            error(unknown)
+
+
+def define_log_tags(tags):
+    """``(define-log-tags tag...)``: make keywords log tags, after those that there are; the list of all."""
+    for tag in python_list(tags):
+        if not isinstance(tag, Keyword):
+            error("A log tag is a keyword, which ~S is not.", tag)
+        if tag.name not in known_tags:
+            known_tags.append(tag.name)
+    return list_available_log_tags()
+
+
 def list_available_log_tags():
-    return tag_list(TAGS)
+    """All tags, in table order."""
+    return tag_list(known_tags)
 
 
 def list_active_log_tags():
-    return tag_list(name for name in TAGS if name in active_tags)
+    """The active tags, in table order."""
+    return tag_list(name for name in known_tags if name in active_tags)
 
 
-def logging_enabled_p(*tags):
-    return None if active_tags.isdisjoint(tag.name for tag in tags) else True
+def logging_enabled_p(tags):
+    """Whether one of ``tags``, a Lisp list of keywords, is active."""
+    return None if active_tags.isdisjoint(tag.name for tag in python_list(tags)) else True

@@ -76,11 +76,6 @@ def with_policy(policy, arguments, forms, body):
     return policies.with_policy(policy, lambda: python_list(arguments()), body, forms)
 
 
-def log_line(context, display, tags_):
-    """Log one line, made by the functions ``context`` and ``display``, if one of the tags is active."""
-    pass
-
-
 FUNCTIONS = {
     "retry-counter": retry_counters.known_counter,
     "assert-no-returning": failures.assert_no_returning, "assert-no-nlx": failures.assert_no_nlx,
@@ -106,7 +101,7 @@ FUNCTIONS = {
     "declare-goal": plans.declare_goal, "goal-call": plans.call_goal, "define-goal": plans.define_goal,
     "policy-get": lambda store, symbol: store.get(symbol), "policy-set": lambda store, symbol, value: store.set(symbol, value),
     "make-policy": make_policy, "define-policy": define_policy, "with-policy": with_policy, "named-policy": policies.named_policy,
-    "log-line": log_line, "logging-enabled": lambda tags_: logging.logging_enabled_p(*python_list(tags_)),
+    "log-event": logging.log_event, "logging-enabled": logging.logging_enabled_p, "define-log-tags": logging.define_log_tags,
 }
 
 

@@ -1,6 +1,6 @@
 """Names that mean something only in a certain place: ``retry`` in a failure handler, ``succeed`` in a goal (cpl.md 1.3).
 
-CRAM exports nine names without a definition; macros give them one locally, or look for them. Called anywhere else they are, there as
+There are names without a definition, nine in CRAM; macros give them one locally, or look for them. Called anywhere else they are, there as
 here, undefined functions, but here the error says where they belong. The names of counters are no variables, so such a call does
 not evaluate them first.
 """
@@ -20,6 +20,8 @@ WHERE = {
     "RESET-COUNTER": f"(reset-counter name) {_COUNTERS}",
     "GET-COUNTER": f"(get-counter name) {_COUNTERS}",
     "SUCCEED": "(succeed value...) belongs inside the body of a goal: (def-goal (name pattern...) ...).",
+    "POLICY-GET": "(policy-get 'name) belongs inside the clauses of a policy: (define-policy name (parameter...) (:check ...)).",
+    "POLICY-SETF": "(policy-setf 'name value) belongs inside the clauses of a policy: (define-policy name (parameter...) (:init ...)).",
     "TAG": "A tag is written with the keyword, (:tag name form...), inside (with-tags ...) or a plan function or goal.",
     "TAGGED": "TAGGED " + _PATH.format("as in (task '((tagged name)))"),
     "GOAL": "GOAL " + _PATH.format("as in ((goal (name . pattern)))") + " A goal is called by its own name: (name argument...).",

@@ -31,6 +31,7 @@ from .hooks import (
     on_with_failure_handling_begin,
     on_with_failure_handling_end,
 )
+from .logging import active_tags, log
 from .current import inside_plan
 from .ending import close_plan
 from .statuses import DEAD, DONE, FAILED
@@ -205,6 +206,8 @@ def _try(thunks):
         values, failure = attempt(thunk)
         if failure is None:
             return values
+        if active_tags:
+            log("TRY-IN-ORDER", "failed: ~a", failure)
         failures.append(failure)
         kernel.checkpoint()
     return composite_failure(failures)

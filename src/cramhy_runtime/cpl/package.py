@@ -83,8 +83,8 @@ IMPLEMENTATION_ONLY = """fl< fl> fl= fl+ fl- fl* fl/ fl-eq fl-eql fl-not fl-puls
 """Exported by CPL-IMPL but not by CPL (cpl.md 1.4)."""
 
 REACHED_FOR = """fl-member child-tasks parent-task task-constraints execute remove-top-level-task-tree replace-task-code register-task-code
-    named-top-level with-parallel-childs with-task log-block unwind-and-teardown policy-setf policy-get policy-name policy-parameters
-    policy-init policy-check policy-recover policy-clean-up make-code copy-code code-p copy-task-tree-node
+    named-top-level with-parallel-childs with-task log-block unwind-and-teardown define-log-tags log-succeed log-fail policy-name
+    policy-parameters policy-init policy-check policy-recover policy-clean-up make-code copy-code code-p copy-task-tree-node
     task-tree-node-code-replacements make-plan-tree-node copy-plan-tree-node plan-tree-node-p plan-type plan-lambda-list plan-sexp
     *task-tree-node-print-path* *task-tree-node-print-code* *task-tree-node-print-children* *task-tree-node-print-identity*
     on-preparing-named-top-level on-finishing-named-top-level on-begin-execute-tag-task on-finish-execute-tag-task
@@ -102,7 +102,8 @@ MACROS_AND_MARKERS = """fluent value-fluent whenever def-cpl-parameter current-t
     top-level seq par par-loop pursue try-all try-in-order try-each-in-order partial-order with-task-suspended with-tags tag tagged
     code with-task-tree-node replaceable-function def-cram-function def-top-level-cram-function def-plan def-top-level-plan
     declare-goal def-goal goal goal-context succeed with-policy with-named-policy with-policies with-named-policies make-policy
-    define-policy timeout-policy policy-condition policy-not-found policy-failure policy-init-failed policy-check-condition-met
+    define-policy policy-get policy-setf timeout-policy policy-condition policy-not-found policy-failure policy-init-failed
+    policy-check-condition-met
     plan-tree-node logging-enabled-p log-event"""
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from .failures import assert_no_nlx
+from .logging import EVENT, active_tags, log
 from .statuses import CREATED, DEAD, RUNNING, SUSPENDED
 
 
@@ -62,20 +63,35 @@ def obey(task):
             block.remind()  # what was to end a part of this task waited for the wake-up
 
 
+def _pass_on(kind, child):
+    if active_tags:
+        log("PROPAGATE-EVENT", EVENT + " to ~a", kind, None, child.name)
+
+
 def _be_suspended(task):
     try:
+        if active_tags:
+            log("RECEIVE-EVENT", EVENT, "SUSPEND", None)
+            if task.suspension_handlers:
+                log("ON-SUSPENSION", "~d handler~:p", len(task.suspension_handlers))
         for handler in reversed(task.suspension_handlers or ()):
             assert_no_nlx("ON-SUSPENSION", handler)
         children = list(task.children)
         for child in children:
+            _pass_on("SUSPEND", child)
             request(child)
         for child in children:
             child.park_until(AT_REST, lambda child=child: f"the suspension of {child.name}", lambda child=child: not child.held)
         task.change_status(SUSPENDED)
+        if active_tags:
+            log("EVENT-LOOP", "waiting for the wake-up")
         while task.held:
             kernel.park(lambda: "its wake-up: it is suspended")
         children = list(task.children)
+        if active_tags:
+            log("RECEIVE-EVENT", EVENT, "WAKEUP", None)
         for child in children:
+            _pass_on("WAKEUP", child)
             release(child)
         for child in children:
             child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}", lambda child=child: child.held)

@@ -14,9 +14,13 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import Any
 
+from ..lisp import condition_types as types
+from ..lisp.condition_types import shown
 from ..lisp.conditions import error
-from ..lisp.data import list_from, one, truth
+from ..lisp.data import UNSUPPLIED, list_from, one, python_list, truth
+from ..lisp.packages import is_symbol, symbol_name
 from .failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
+from .failures import fail
 from .hooks import on_with_policy_begin, on_with_policy_end
 from .operators import pursue
 from .symbols import sym
@@ -32,8 +36,9 @@ class Policy:
 
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY"
 
-    def __init__(self, name, parameters=None, description=None, init=None, check=None, recover=None, clean_up=None):
-        self.name, self.parameters, self.description = name, parameters, description
+    def __init__(self, name, parameters=UNSUPPLIED, description=None, init=None, check=None, recover=None, clean_up=None):
+        self.counted = parameters is not UNSUPPLIED  # Python's functions count their arguments themselves
+        self.name, self.parameters, self.description = name, parameters if self.counted else None, description
         self.init, self.check, self.recover, self.clean_up = init, check, recover, clean_up
 
 
@@ -51,12 +56,12 @@ class Store:
         return value
 
 
-def make_policy(name: Any, parameters: Any = None, description: str | None = None, **clauses: Any) -> Policy:
+def make_policy(name: Any, parameters: Any = UNSUPPLIED, description: str | None = None, **clauses: Any) -> Policy:
     """A policy object; clauses are ``init``, ``check``, ``recover`` and ``clean_up``."""
     return Policy(name, parameters, description, **clauses)
 
 
-def define_policy(name, parameters=None, description=None, **clauses):
+def define_policy(name, parameters=UNSUPPLIED, description=None, **clauses):
     """Make a policy, keep it under ``name`` and in the variable ``name``; returns it."""
     policy = _named[name] = make_policy(name, parameters, description, **clauses)
     name.special = True
@@ -67,7 +72,24 @@ def define_policy(name, parameters=None, description=None, **clauses):
 def named_policy(name):
     """The policy called ``name``; it is a failure ``policy-not-found`` if there is none."""
     policy = _named.get(name)
-    return policy if policy is not None else error(PolicyNotFound(name=name))
+    if policy is not None:
+        return policy
+    missing = PolicyNotFound(name=name)
+    missing.hint = f"DEFINE-POLICY makes a policy with a name. There are {', '.join(map(shown, _named))}."
+    return fail(missing)
+
+
+def _check_use(policy, count):
+    """What ``with-policy`` is given must be a policy, and as many parameters as it has."""
+    if not isinstance(policy, Policy):
+        no_policy = types.TypeError_(policy, sym("CPL-IMPL::POLICY"))
+        no_policy.hint = "WITH-POLICY takes a policy, WITH-NAMED-POLICY the name of one."
+        error(no_policy)
+    names = [symbol_name(name) for name in python_list(policy.parameters) if is_symbol(name)]
+    if policy.counted and count != len(names) and not any(name.startswith("&") for name in names):
+        wrong = types.SimpleProgramError("invalid number of arguments: ~S", count)
+        wrong.hint = f"The parameters of the policy {shown(policy.name)} are {shown(policy.parameters)}."
+        error(wrong)
 
 
 def with_policy(policy, arguments, body, forms=None):
@@ -81,19 +103,21 @@ def in_force(policy, arguments, forms=None):
     """The block runs under ``policy``, beside the function that it gets: that of the check, which returns when it is met.
 
     ``arguments()`` evaluates the parameter forms to a Python sequence, again at each call of a clause; ``forms`` are the forms
-    themselves, which the conditions show.
+    themselves, a Lisp list, which the conditions show.
     """
     inside_plan("PURSUE")
+    if forms is None:
+        forms = list_from(arguments())
+    _check_use(policy, len(python_list(forms)))
     store = Store()
-    shown = forms if forms is not None else list_from(arguments())
 
     def clause(function):
         return one(function(store, *arguments()))
 
     if policy.init is not None and not truth(clause(policy.init)):
-        error(PolicyInitFailed(name=policy.name, parameters=shown))
+        fail(PolicyInitFailed(name=policy.name, parameters=forms))
     run_id = on_with_policy_begin.first(policy.name, None)
-    met = False
+    met = succeeded = False
 
     def check():
         nonlocal met
@@ -101,10 +125,9 @@ def in_force(policy, arguments, forms=None):
             sleep(POLL)
         met = True
 
-    succeeded = False
     try:
         yield None if policy.check is None else check
-        succeeded = True
+        succeeded = not met
     finally:
         try:
             if met and policy.recover is not None:
@@ -112,10 +135,9 @@ def in_force(policy, arguments, forms=None):
         finally:
             if policy.clean_up is not None:
                 clause(policy.clean_up)
-        if on_with_policy_end:
-            on_with_policy_end(run_id, True if succeeded and not met else None)
-        if met and succeeded:
-            error(PolicyCheckConditionMet(name=policy.name, parameters=shown))
+        on_with_policy_end(run_id, True if succeeded else None)
+    if met:
+        fail(PolicyCheckConditionMet(name=policy.name, parameters=forms))
 
 
 def with_policies(policies, body):

@@ -14,6 +14,7 @@ from ..lisp.conditions import CompileError, error
 from ..lisp.data import Cons, Symbol, lisp_list
 from .branches import run_one
 from .hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
+from .logging import active_tags, log
 from .symbols import sym
 from .current import inside_plan
 from .tree import current_path, make_task
@@ -50,6 +51,8 @@ def execute_tag(task, body, sexp=None):
         if code.function is None:
             code.function, code.sexp = body, sexp
         task.body = lambda: code.function(*(code.parameters or ()))
+    if active_tags:
+        log("WITH-TAGS", "~s", task.path)
     if not (on_begin_execute_tag_task or on_finish_execute_tag_task):
         return run_one(task, "TAG")
     run_id = on_begin_execute_tag_task.first(task)

@@ -15,6 +15,7 @@ How a task parks and obeys is in ``pausing.py``, who may ask it to in ``suspensi
 from __future__ import annotations
 
 import itertools
+import time
 from collections import deque
 from typing import Any, Self
 
@@ -32,6 +33,7 @@ from .failure_types import PlanFailure, envelope
 from .failures import signal_failure
 from .fluent_operators import fl_and
 from .fluents import function_of, make_fluent
+from .logging import EVENT, active_tags, log, log_sending
 from .pausing import AT_REST, AWAKE, obey, pause, release, request
 from .statuses import CREATED, DEAD, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED
 from .symbols import sym
@@ -136,6 +138,8 @@ class AbstractTask:
         """Go to the status ``new``; what cpl.md 3.2 does not allow is an error."""
         if new not in NEXT.get(self.status, ()):
             error("Invalid status transition from ~S to ~S.", self.status, new)
+        if active_tags:
+            log("CHANGE-STATUS", "~s -> ~s", self.status, new)
         self.status = new
         if self._status_fluent is not None:
             self._status_fluent.set(new)
@@ -170,6 +174,8 @@ class AbstractTask:
             if self.depth > DEEPEST:
                 error(types.StorageCondition(f"Branches within branches, {DEEPEST} deep: a plan starts itself, perhaps without end."))
             parent.children[self] = True
+            if active_tags:
+                log("REGISTER-CHILD", "~s", self)
             if parent.record is not None:
                 self.record = parent.record
                 self.record.append(self)
@@ -284,6 +290,8 @@ class AbstractTask:
                 self.change_status(status)
         else:
             self.change_status(status)
+        if active_tags:
+            log("FINISH", "~a is ~s.~@[ ~s~]", self.name, status, result if status is FAILED else None)
         if self.cleanup_limit is not None:
             self.cleanup_limit.end()
         ended, self.ended = self.ended, None
@@ -297,6 +305,8 @@ class AbstractTask:
         """
         if self.status in DEAD:
             return
+        if active_tags:
+            log_sending("EVAPORATE", self, reason)
         kernel_task = self.kernel_task
         if kernel_task is None or self.status is CREATED:
             if kernel_task is not None:
@@ -308,6 +318,8 @@ class AbstractTask:
     def _begin_to_end(self, reason):
         """The request to end is delivered, in the task itself: what it raises. Cleanup begins after that."""
         if kernel.current() is self.kernel_task:
+            if active_tags:
+                log("RECEIVE-EVENT", EVENT, "EVAPORATE", reason)
             strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
             if strays:
                 end_tasks(strays, reason)
@@ -316,6 +328,8 @@ class AbstractTask:
 
     def suspend(self, reason: str | None = None, sync: Any = True) -> None:
         """Ask the task, and all below it, to stand still; with ``sync`` wait until they do."""
+        if active_tags:
+            log_sending("SUSPEND", self, reason)
         request(self)
         if self is current_task():
             if truth(sync):
@@ -325,6 +339,8 @@ class AbstractTask:
 
     def wake_up(self, reason: str | None = None, sync: Any = True) -> None:
         """Let the task, and all below it, go on; with ``sync`` wait until they do."""
+        if active_tags:
+            log_sending("WAKEUP", self, reason)
         release(self)
         if truth(sync) and self is not current_task():
             self.park_until(AWAKE, lambda: f"the wake-up of {self.name}", lambda: self.held)
@@ -333,6 +349,8 @@ class AbstractTask:
         """Wait until the task is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
         if self is current_task():
             error("Cannot join current task.")
+        if active_tags:
+            log("JOIN-TASK", "~s", self)
         self.park_until(DEAD, lambda: f"the end of {self.name}")
         if self.status is FAILED:
             signal_failure(self.result)
@@ -368,6 +386,7 @@ class ToplevelTask(AbstractTask):
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TOPLEVEL-TASK"
 
     def _find_parent(self):
+        self.processor_time = time.process_time()
         if truth(RECORD.value):
             self.record = [self]
             recorded.append(self)

@@ -205,8 +205,10 @@ def with_task_tree_node(path_part, function, *, name="WITH-TASK-TREE-NODE", sexp
     """
     _tree_or_error()
     observed = on_preparing_task_execution.methods or on_finishing_task_execution.methods
-    run_id = on_preparing_task_execution.first(name, log_parameters, log_pattern, lambda_list, parameters) if observed else None
     label = name if callable(name) else (lambda: f"[{name}]")
+    run_id = None
+    if observed:
+        run_id = on_preparing_task_execution.first(label()[1:-1], log_parameters, log_pattern, lambda_list, parameters)
     task = _task_of(_next_free(path_part, _current_node()), label, sexp, function, parameters, called_with)
     if not observed:
         return run_one(task, "TASK")

@@ -17,9 +17,8 @@ from cramhy_runtime import kernel
 from ..lisp.conditions import error, type_error
 from ..lisp.data import truth
 from ..lisp.packages import keyword
-from ..lisp.printer.printer import prin1_to_string
 from .fluents import Fluent
-from .logging import active_tags, log_event
+from .logging import active_tags, log
 from .pausing import pause
 
 TIMEOUT = keyword("TIMEOUT")
@@ -55,7 +54,7 @@ def _wait(fluent, timeout):
     if until is not None and timeout <= 0:
         return None
     if active_tags:
-        log_event("WAIT-FOR", lambda: ("WAIT-FOR", prin1_to_string(fluent)))
+        log("WAIT-FOR", "~s", fluent)
     me = kernel.current()
     why = fluent.awaited
     waiters = fluent.waiters

@@ -12,6 +12,7 @@ from cramhy_runtime import kernel
 
 from ..lisp.data import list_from
 from .ending import end_tasks
+from .logging import active_tags, log
 from .pausing import pause
 from .statuses import DEAD, DONE, FAILED
 
@@ -38,6 +39,8 @@ def watch(tasks, watcher):
                 pause(lambda: "a change of its children")
             del changed[next(iter(changed))]
             newest_first = list(reversed(tasks))
+            if active_tags:
+                log("WITH-PARALLEL-CHILDS", "~{~a~^, ~:_~}", list_from([f"{task.name} {task.status!r}" for task in tasks]))
             watcher(list_from([task for task in newest_first if task.status not in DEAD]),
                     list_from([task for task in newest_first if task.status in DONE]),
                     list_from([task for task in newest_first if task.status is FAILED]))
