@@ -43,6 +43,7 @@ def boot():
         importlib.import_module(f"cramhy_runtime.{room}.macro_support")
     systems.provide_system(SYSTEMS)
     packages.on_demand.update(systems.LIBRARY_PACKAGES)
+    packages.on_demand.update(dict.fromkeys(("CRAMHY-TESTING", "TESTING-USER"), define_testing))
     ros_load.define_faces()
     asdf.define_faces()
     uiop.define_faces()
@@ -51,6 +52,13 @@ def boot():
     kernel.describe_frame = places_in_source.describe_frame
     kernel.unhandled = advice.tell_unhandled
     evaluator.PACKAGE.value = COMMON_LISP_USER
+
+
+def define_testing():
+    """Make the packages of the room ``testing``, which most sessions never name."""
+    from cramhy_runtime.testing import package
+
+    package.define_faces()
 
 
 def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, turtlesim=True):

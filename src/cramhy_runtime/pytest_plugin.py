@@ -2,7 +2,8 @@
 
 Lisp systems can be imported as Python modules from the first test on. Every test starts with a fresh kernel in virtual time, so
 no test waits on the wall clock and none hears of another's tasks; the turtlesim starts with the first ROS node, as in the REPL.
-Nothing is loaded before a test imports a Lisp system, asks for the fixture ``cramhy``, or a Lisp file of tests is collected:
+The fixture ``virtual_time`` gives a test a kernel of its own, on either back end (docs/testing.md). Nothing is loaded before a test
+imports a Lisp system, asks for one of the fixtures, or a Lisp file of tests is collected:
 one named ``test*``, ``*-test`` or ``*-tests`` or in a folder ``tests``, that defines tests of lisp-unit or FiveAM. It is loaded with
 the system of which it is a part. A ``.asd`` file is collected when it is named on the command line.
 """
@@ -51,6 +52,20 @@ def cramhy():
 
     yield Session(time="virtual")
     kernel.stop()
+
+
+@pytest.fixture
+def virtual_time(request):
+    """A kernel in virtual time, as `cramhy_runtime.testing.virtual_time` gives it; ``virtual_time.now()``.
+
+    Its parameter, if it is given one, is the back end, or a dictionary of options: for a test on both back ends
+    ``@pytest.mark.parametrize("virtual_time", ["threads", "greenlet"], indirect=True)``.
+    """
+    from cramhy_runtime import testing
+
+    options = getattr(request, "param", {})
+    with testing.virtual_time(**({"backend": options} if isinstance(options, str) else options)) as clock:
+        yield clock
 
 
 @pytest.fixture(autouse=True)

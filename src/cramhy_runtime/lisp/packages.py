@@ -138,8 +138,9 @@ class Package:
 
 
 _packages: dict[str, Package] = {}
-on_demand: dict[str, str] = {}
-"""Packages of libraries that come with cramhy → the system that defines each; it is loaded when somebody asks for the package."""
+on_demand: dict = {}
+"""Packages of libraries that come with cramhy → the system that defines each, or a function that makes it; either is called upon when
+somebody asks for the package."""
 CURRENT = Symbol("*PACKAGE*")  # that of COMMON-LISP takes its place below
 
 
@@ -234,7 +235,11 @@ def find_package(designator):
     if nicknames and name in nicknames:
         return nicknames[name]
     if name in on_demand:
-        late.load_system(on_demand[name])
+        maker = on_demand[name]
+        if callable(maker):
+            maker()
+        else:
+            late.load_system(maker)
     return _packages.get(name)
 
 

@@ -17,15 +17,17 @@ from .labels import label, plain_name
 
 def leftovers(watched):
     """What is left on a kernel of `virtual_time`, as texts; an empty list when nothing is."""
-    found = []
-    found += [f"task {label(task)} is alive ({task.state}, waits for {task.describe_why() or 'nothing'})"
-              for task in watched.tasks if task is not watched.main and not (task.carrier is None and task.cancelled)]
+    found = [f"task {label(task)} is alive ({task.state}, waits for {task.describe_why() or 'nothing'})"
+             for task in watched.tasks if task is not watched.main and (task.carrier is not None or not task.cancelled)]
+    alive = len(found)
+    if len(watched.tasks) > 1 + alive:
+        watched.settle()  # those that were ended before their first step are only waiting to be forgotten
     when = watched.next_timer()
     if when is not None:
         found.append(f"a timer for {when:g} s is left")
     if watched.main.shielded:
         found.append("the main task is still shielded")
-    threads = watched.threads_kept() - sum(task is not watched.main for task in watched.tasks)
+    threads = watched.threads_kept() - alive
     if threads > 0:
         found.append(f"{threads} threads more than before are in use")
     for generation in range(3):  # a net and its formula may hold each other; the youngest generation is collected in no time

@@ -34,12 +34,10 @@ def with_lisp(thunk):
     from .. import image
     from ..lisp.dynamic import binding
     from ..lisp.evaluation.evaluator import PACKAGE
-    from . import package
 
     with kernel.aside():
         kernel.start()
         image.boot()
-        package.define_faces()
         with binding(PACKAGE, find_package_or_error("TESTING-USER")):
             return thunk()
 

@@ -48,7 +48,7 @@ def every_plan(test):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_without_a_fault_a_plan_gives_its_value_and_leaves_nothing(plan, backend):
     outcome, wrong = check_run(plan, backend=backend)
-    assert str(outcome) == plan.value and not wrong
+    assert str(outcome) in (plan.value, *plan.free) and not wrong
 
 
 @every_plan
@@ -56,7 +56,7 @@ def test_without_a_fault_a_plan_gives_its_value_and_leaves_nothing(plan, backend
 @pytest.mark.parametrize("action", faults.ACTIONS)
 def test_a_fault_at_any_park_point(plan, backend, action, record_property):
     entering = (False, True) if SOAK else (False,) if backend == "threads" else (True,)
-    count = 0
+    count = -1  # the first is the run without a fault
     for fault, _, wrong in faults_of(plan, backend, [action], entering, every=1 if SOAK else 2):
         count += 1
         assert not wrong, f"{plan.name}, {fault}, {backend}:\n  " + "\n  ".join(wrong)
@@ -67,12 +67,15 @@ def test_a_fault_at_any_park_point(plan, backend, action, record_property):
 @every_plan
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_two_faults_in_one_run(plan, backend, record_property):
-    """The second may hit the cleanup after the first. Which outcomes are right then is not asked, only what is left."""
+    """The second may hit the cleanup after the first, and a seed shuffles who goes first. Which outcomes are right then is not asked,
+    but a deadlock is not, and nothing may be left."""
     lots = random.Random(plan.name)
     points = check_run(plan, backend=backend)[0].points
-    for _ in range(PAIRS):
+    happened = 0
+    for seed in range(PAIRS):
         pair = [faults.at(point.task, nth=point.number + lots.choice((0, 0, 1, 2)), action=lots.choice(faults.ACTIONS),
-                          entering=lots.random() < 0.5) for point in lots.choices(points, k=2)]
-        _, wrong = check_run(plan, faults=pair, backend=backend)
-        assert not wrong, f"{plan.name}, {pair}, {backend}:\n  " + "\n  ".join(wrong)
-    record_property("faults", 2 * PAIRS)
+                          seconds=lots.choice((0, 0.1, 0.25)), entering=lots.random() < 0.5) for point in lots.choices(points, k=2)]
+        _, wrong = check_run(plan, faults=pair, backend=backend, seed=seed or None)
+        assert not wrong, f"{plan.name}, {pair}, seed {seed or None}, {backend}:\n  " + "\n  ".join(wrong)
+        happened += sum(fault.happened is not None for fault in pair)
+    record_property("faults", happened)

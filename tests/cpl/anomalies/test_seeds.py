@@ -1,0 +1,44 @@
+"""No plan of the anomaly loop depends on luck: many seeds, the same result up to what the plan declares as ``free``, nothing left.
+
+``make soak`` (CRAMHY_SOAK=1) takes 1,000 seeds of each plan, the ordinary suite 20.
+"""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.testing import Schedule
+
+from .harness import check_run
+from .plans import PLANS
+
+SEEDS = 1000 if os.environ.get("CRAMHY_SOAK") else 20
+
+
+@pytest.fixture(autouse=True)
+def fresh_kernel():
+    """The runs bring kernels of their own."""
+    kernel.stop()
+
+
+@pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)
+def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
+    different = set()
+    for seed in range(1, SEEDS + 1):
+        schedule = Schedule(seed=seed)
+        outcome, wrong = check_run(plan, schedule=schedule, backend="greenlet" if seed % 2 else "threads")
+        assert not wrong, f"{plan.name}, seed {seed}, schedule {schedule.choices}:\n  " + "\n  ".join(wrong)
+        different.add((tuple(schedule.choices), str(outcome)))
+    record_property("schedules", len(different))
+
+
+@pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)
+def test_both_back_ends_take_the_same_way_with_a_seed(plan):
+    ways = []
+    for backend in ("threads", "greenlet"):
+        outcome, _ = check_run(plan, seed=7, backend=backend)
+        ways.append((str(outcome), [str(point) for point in outcome.points]))
+    assert ways[0] == ways[1]
