@@ -7,6 +7,7 @@ functions that ``defstruct`` would have made stand in this module. `WRITERS` are
 from __future__ import annotations
 
 from ..lisp.conditions import type_error
+from .failure_types import PolicyFailure
 from .plan_tree import PlanTreeNode
 from .policies import Policy
 from .tree import Code, TaskTreeNode
@@ -24,10 +25,9 @@ def name(thing):
 # ---------------------------------------------------------------------------------------------------------------- policies
 
 
-@of(Policy)
-def parameters(policy):
-    """The parameter names of a policy."""
-    return policy.parameters
+def parameters(thing):
+    """The parameter names of a policy; the parameter forms of the use of a policy that a ``policy-failure`` tells of."""
+    return thing.parameters if isinstance(thing, Policy | PolicyFailure) else type_error(thing, "(OR POLICY POLICY-FAILURE)")
 
 
 @of(Policy)
@@ -35,7 +35,9 @@ def policy_name(policy):
     return policy.name
 
 
-policy_parameters = parameters
+@of(Policy)
+def policy_parameters(policy):
+    return policy.parameters
 
 
 @of(Policy)
