@@ -15,9 +15,10 @@ from operator import eq as same_number
 from typing import Any
 
 from ..lisp.condition_types import CaseFailure
-from ..lisp.conditions import error
-from ..lisp.data import lisp_list, list_from, one, truth
+from ..lisp.conditions import error, type_error
+from ..lisp.data import Cons, lisp_list, list_from, one, truth
 from ..lisp.equality import eq, eql
+from ..lisp.evaluation.functions import identity
 from ..lisp.packages import keyword
 from .fluents import (
     CachedNet,
@@ -183,6 +184,8 @@ def fl_apply(function: Any, argument: Any, *more: Any) -> Any:
     """A net of ``function`` on the values of the leading arguments and, last, a *list* of the values in the last argument."""
     function = function_of(function)
     *leading, last = argument, *more
+    if last is not None and not isinstance(last, (Cons, list, tuple)):
+        return type_error(last, "LIST")
     elements = [] if last is None else list(last)
 
     def formula():
@@ -211,7 +214,7 @@ pulsed = fl_pulsed
 def fl_value_changed(fluent: Fluent, *, test: Any = None, key: Any = None) -> Fluent:
     """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
     check_fluent(fluent)
-    return announce(ChangeFluent(fluent, function_of(test) or eql, function_of(key) or (lambda current: current)))
+    return announce(ChangeFluent(fluent, function_of(eql if test is None else test), function_of(identity if key is None else key)))
 
 
 _parameters = {}

@@ -208,7 +208,7 @@ class ValueFluent(Fluent):
 
     def __init__(self, name=None, value=None, test=None):
         self.stored = value
-        self.test = function_of(test)
+        self.test = None if test is None else function_of(test)
         super().__init__(name)
 
     def read(self):
@@ -373,10 +373,8 @@ class FunctionNamed:
 
 
 def function_of(designator):
-    """The function that a function or symbol stands for; ``None`` stays ``None``. Of a symbol it is always the present one."""
-    if isinstance(designator, Symbol):
-        return FunctionNamed(designator)
-    return None if designator is None else functions.function_of(designator)
+    """The function that a function or symbol stands for; of a symbol it is always the present one."""
+    return FunctionNamed(designator) if isinstance(designator, Symbol) else functions.function_of(designator)
 
 
 def is_cacheable(fluent):
