@@ -65,7 +65,7 @@ def end_tasks(tasks, reason=None):
     if active_tags and tasks:
         log("TEARDOWN", "~@[~a ~]~{~a~^, ~:_~}", reason, list_from([task.name for task in tasks]))
     for task in tasks:
-        task.evaporate(reason)
+        task.ask_to_end(reason)
     with awaiting_death(tasks):
         for task in tasks:
             task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}")

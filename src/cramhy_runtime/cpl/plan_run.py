@@ -67,7 +67,7 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
 
 def _end(children: list[Task]) -> None:
     for child in children:
-        child.evaporate("The plan is over.")
+        child.ask_to_end("The plan is over.")
     for child in children:
         close_plan(child, "The plan is over.")
 

@@ -299,10 +299,17 @@ class AbstractTask:
             ended(self)
 
     def evaporate(self, reason: str | None = None) -> None:
-        """Ask the task to end. It unwinds from its next waiting point or checkpoint; nobody waits for that here.
+        """Ask the task to end; it unwinds from its next waiting point or checkpoint, and nobody waits for that here.
 
-        Forms ask like this. The function `evaporate` is for programs; asking a second time, it ends waits in the cleanup.
+        Asked a second time, it ends the wait that the cleanup of the task, or of one below it, is stuck in.
         """
+        self.ask_to_end(reason)
+        if self.asked_to_end:
+            end_waits(self)
+        self.asked_to_end = True
+
+    def ask_to_end(self, reason: str | None = None) -> None:
+        """The request of a form to its branches: like `evaporate`, however often, but it disturbs no cleanup."""
         if self.status in DEAD:
             return
         if active_tags:
@@ -431,9 +438,6 @@ A second such request ends the wait that the cleanup of the task, or of a task b
 def _evaporate(task, *, reason=None, sync=True):
     check_reason(reason)
     task.evaporate(reason)
-    if task.asked_to_end:
-        end_waits(task)
-    task.asked_to_end = True
     if task is current_task():
         if truth(sync):
             kernel.checkpoint()

@@ -84,7 +84,7 @@ class Request:
         self.cancelled = True
         if self.branches is not None:
             for task in self.branches.tasks:
-                task.evaporate("Cancelled.")
+                task.ask_to_end("Cancelled.")
 
 
 class AbstractProcessModule:

@@ -60,7 +60,7 @@ class Fault:
         if task.dead:
             return
         if self.action == "evaporate":
-            task.evaporate(f"fault at {self.happened}")
+            task.ask_to_end(f"fault at {self.happened}")
         elif self.action == "suspend-and-resume":
             request(task)
             self.timer = kernel.call_at(kernel.now() + self.seconds, lambda: release(task))

@@ -213,6 +213,28 @@ def test_a_plan_in_python_has_its_waits_ended_too():
     assert cpl.top_level(body) == ":EVAPORATED" and order == ["begins", "outer"] and kernel.now() == 3
 
 
+def test_the_method_of_tasks_ends_waits_when_it_is_called_a_second_time():
+    order = []
+
+    def worker():
+        try:
+            cpl.sleep(1000)
+        finally:
+            cpl.sleep(1000)
+            order.append("not reached")
+
+    def body():
+        task = cpl.Task(worker).execute()
+        cpl.sleep(1)
+        task.evaporate()
+        cpl.sleep(1)
+        task.evaporate()
+        task.join()
+
+    cpl.top_level(body)
+    assert order == [] and kernel.now() == 2
+
+
 def test_the_limit_can_be_set_from_python_and_the_failure_that_led_into_the_cleanup_is_kept():
     never = cpl.make_fluent(name="never")
 
