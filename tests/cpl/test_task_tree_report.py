@@ -63,6 +63,20 @@ def test_a_branch_sees_the_whole_plan_with_what_each_task_waits_for_and_where(li
     assert lisp.numberless(lisp("(get-output-stream-string *out*)")[0]) == RUNNING
 
 
+def test_a_thread_that_a_task_spawned_stands_below_it(lisp):
+    lisp("""(defvar *seen*)
+(top-level
+  (cut:spawn-thread "listener"
+    (lambda () (sleep 9)))
+  (par (sleep 3) (seq (sleep 1) (setf *seen* (with-output-to-string (*standard-output*) (describe-task-tree))))))""")
+    assert lisp.numberless(lisp("*seen*")[0]) == """\
+[TOP-LEVEL]  running for 1 s, waits for the branches of PAR at <repl 1>:5:3
+├─ [PAR-CHILD-#1/2]  running for 1 s, waits for the time 3 s (sleep 3) at <repl 1>:5:8
+├─ [PAR-CHILD-#2/2]  running for 1 s, prints this
+└─ thread listener  running, waits for the time 9 s (sleep 9) at <repl 1>:4:16
+"""
+
+
 def test_dead_tasks_are_left_out_on_demand_and_depth_says_what_it_hides():
     found = {}
 

@@ -161,9 +161,12 @@ class Forest:
             task = task.parent
 
     def below(self, task, dead):
-        """Its children in the order in which they were started."""
+        """Its children in the order in which they were started, then the threads that it spawned and that live."""
+        if isinstance(task, kernel.Task):
+            return []
         known = [child for child in self.children.get(task, ()) if dead or child.alive]
-        return sorted(known, key=lambda child: child.kernel_task.id)
+        known.sort(key=lambda child: child.kernel_task.id if child.kernel_task is not None else 0)
+        return known + [thread for thread in task.threads if not thread.dead]
 
     def lines(self, depth, dead):
         """The lines of the report; a level further to the right for each level down."""
@@ -203,7 +206,10 @@ class Line:
 
 
 def described(task, more=""):
-    """(name and place, (status, its word), the rest) of ``task``."""
+    """(name and place, status, the rest) of ``task``, which may also be a thread of one, a task of the kernel."""
+    if isinstance(task, kernel.Task):
+        text = "running, is being killed" if task.cancelled else "running"
+        return f"thread {task.name}", RUNNING, ", ".join(text for text in (_waiting(task, text), more) if text)
     name = _name(task)
     if task.path is not None and (task.parent is None or task.parent.path is not task.path):
         name += f" {_part(task)}"
@@ -214,7 +220,7 @@ def described(task, more=""):
 def _name(task):
     """Its name; without the number if nobody has asked for it yet, so that a report changes no name."""
     name = task._name
-    return name() if callable(name) else task.name
+    return name() if callable(name) else name or "UNKNOWN"
 
 
 def _part(task):
@@ -276,10 +282,17 @@ def _doing(task):
         text += ", is being evaporated"
     elif task.held and task.status is RUNNING:
         text += ", is being suspended"
-    place = kernel.reports.where(here.frame_of(kernel_task))
+    return _waiting(kernel_task, text, task.status is SUSPENDED)
+
+
+def _waiting(kernel_task, text, stopped=False):
+    """``text``, and what ``kernel_task`` waits for, and where."""
+    place = kernel.reports.where(kernel_task.kernel.frame_of(kernel_task))
     at = f" at {place}" if place else ""
-    if task.status is SUSPENDED:
+    if stopped:
         return f"{text}, stopped{at}"
+    if kernel_task is kernel.current():
+        return f"{text}, prints this"
     if kernel_task.ready:
         return f"{text}, can go on{at}"
     owner = getattr(kernel_task.why, "__self__", None)
