@@ -401,3 +401,43 @@ def test_return_means_the_innermost_block_named_nil_in_every_form_that_has_one(p
     assert plan_text("(top-level (list (block nil (list " + form.format("(return (values :inner 2))") + ") :after)))") == "(:AFTER)"
     assert plan_text("(top-level (multiple-value-list " + form.format("(return (values :inner 2))") + "))") == "(:INNER 2)"
     assert plan_text("(top-level (list (block around " + form.format("(return-from around :outer)") + ")))") == "(:OUTER)"
+
+
+@pytest.fixture(params=range(8))
+def shuffled(request, fresh_kernel):
+    """A kernel in which a seed decides who runs next."""
+    kernel.stop()
+    return kernel.start(clock="virtual", backend=fresh_kernel.backend.name, seed=request.param, time_limit=3600)
+
+
+@pytest.mark.law(97)
+@pytest.mark.parametrize("form", [cpl.par, cpl.pursue, cpl.try_all])
+def test_in_whatever_order_tasks_run_all_branches_have_started_before_the_first_decision(shuffled, form):
+    started = []
+    branches = [lambda: started.append(1), failing("x"), *[lambda n=n: (started.append(n), cpl.sleep(9)) for n in range(2, 8)]]
+    try:
+        plan(lambda: form(*branches))
+    except cpl.PlanFailure:
+        pass
+    assert sorted(started) == list(range(1, 8))
+
+
+@pytest.mark.law(84)
+def test_in_whatever_order_tasks_run_the_last_of_the_immediate_failures_is_reported(shuffled):
+    assert failure_of(lambda: cpl.par(*[failing(str(n)) for n in range(6)])).format_control == "5"
+    assert plan(lambda: cpl.pursue(*[lambda n=n: n for n in range(6)])) == 5
+    assert plan(lambda: cpl.try_all(*[lambda n=n: n for n in range(6)])) == 0
+
+
+@pytest.mark.law(92)
+def test_in_whatever_order_tasks_run_a_constrained_step_does_not_begin_while_its_plan_is_ended(shuffled):
+    log = []
+
+    def body():
+        tasks, step = steps_with_tags(log, "A", "B")
+        other = tags.make_tag_task(keyword("C"))
+        cpl.par(lambda: cpl.partial_order([step("B", 0), step("A", 50)], [(tasks["A"], tasks["B"])]),
+                lambda: tags.execute_tag(other, failing("over", 1)))
+
+    failure_of(body)
+    assert log == []

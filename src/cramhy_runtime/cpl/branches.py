@@ -22,7 +22,7 @@ from .current import inside_plan
 from .ending import end_tasks
 from .logging import active_tags, log
 from .pausing import pause
-from .statuses import DEAD, FAILED
+from .statuses import CREATED, DEAD, FAILED
 from .tasks import Task
 
 
@@ -64,11 +64,13 @@ class Branches:
             self.waiter.kernel.unpark(self.waiter)
 
     def wait(self, ready):
-        """Wait until ``ready(self)``."""
+        """Wait until ``ready(self)``, and all branches have started, however early one of them decides the matter (invariant 97)."""
         self.waiter = kernel.current()
         self.ready = ready
         while not ready(self):
             pause(self._why)
+        while self.living and any(task.status is CREATED for task in self.tasks):  # only where a seed shuffles who runs next
+            kernel.yield_()
 
     def _why(self):
         return f"the branches of {self.form.upper()}: " + ", ".join(task.name for task in self.tasks if task.alive)

@@ -252,8 +252,8 @@ class AbstractTask:
 
     def _await_constraints(self):
         wait_for(fl_and(*self.constraints))
-        if any(before.status is FAILED for before in self.predecessors):
-            kernel.settle()  # a failure that nobody takes ends the form around us before our body begins
+        if any(before.status is not SUCCEEDED for before in self.predecessors):
+            kernel.settle()  # what ended it, a failure that nobody takes or the end of the plan, may end us before our body begins
             if self.held:
                 obey(self)
 
