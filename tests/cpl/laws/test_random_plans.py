@@ -4,6 +4,8 @@ A plan is a tree of steps: branches, tasks made by hand, protected bodies, regio
 happens is recorded with its time, and looked at while it happens and at the end.
 """
 
+from contextlib import suppress
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -44,16 +46,20 @@ MOST_TASKS = 25
 class Run:
     """One run of a plan; what must hold at each moment is checked then, by `complain`, since an error in a branch is data here."""
 
-    def __init__(self, plan, backend, seed):
+    def __init__(self, plan, backend, seed, interrupts=()):
         self.kernel = kernel.start(backend=backend, seed=seed, time_limit=500)
         self.tasks, self.trace, self.wrong = [], [], []
         self.paths, self.results, self.asked, self.cleanups = {}, {}, {}, []
         self.wakes = 0
         self.fluents = [cpl.make_fluent(name=f"f{index}") for index in range(3)]
+        for time in interrupts:
+            kernel.call_at(time, kernel.interrupt)
         try:
             cpl.top_level(lambda: self.body(plan))
-        except (cpl.PlanFailure, Exception) as problem:
+        except (cpl.PlanFailure, Exception, kernel.Interrupted, kernel.Abandoned) as problem:
             self.trace.append(type(problem).__name__)
+        with suppress(kernel.Interrupted, kernel.Abandoned):  # one that came at the very end
+            kernel.settle()
         kernel.settle()  # what was evaporated before its first step leaves the queue
         if self.kernel.tasks != [self.kernel.main]:
             self.complain("tasks are left", *self.kernel.tasks)
@@ -267,3 +273,13 @@ def test_the_laws_of_tasks_hold_and_both_back_ends_agree(plan, seed):
     on_threads = Run(plan, "threads", seed)
     check(on_threads)
     assert on_threads.trace == on_greenlets.trace and on_threads.end == on_greenlets.end
+
+
+@few
+@given(plans, st.sampled_from([None, 1, 2]), st.lists(st.sampled_from([0.0, 0.5, 1.0, 1.25, 2.0, 4.25]), min_size=1, max_size=2))
+def test_a_plan_that_is_interrupted_at_any_moment_comes_down_whole(plan, seed, interrupts):
+    """One interrupt ends it in order. A second one gives up cleanup, and with it the order, but nobody is left then either."""
+    run = Run(plan, "greenlet", seed, interrupts)
+    assert run.kernel.tasks == [run.kernel.main] and all(task.dead for task in run.tasks)
+    if "Abandoned" not in run.trace:
+        check(run)
