@@ -221,8 +221,9 @@ class Kernel(Endings, Outside):
         if me.carrier.ident != get_ident():
             budget.end()  # an outside thread came by; the task whose slice it is shall find it over
             return
-        if me.attention:
-            me.deliver()
+        if me.attention and me.deliver():
+            budget.renew()  # the slice was ended for this, and not because the task is busy: no time passes
+            return
         need_headroom()
         me.state = RUNNABLE
         me.preempted = True

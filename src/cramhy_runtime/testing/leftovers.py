@@ -45,7 +45,9 @@ def _observed(watched):
             found.append(f"fluent {fluent!r} has waiters: {', '.join(label(task) for task in fluent.waiters)}")
         if fluent.callbacks:
             found.append(f"fluent {fluent!r} has callbacks: {', '.join(map(str, fluent.callbacks))}")
-        if fluent.__class__ is not ValueFluent or fluent.living_nets():
+        if fluent.living_nets():
+            found.append(f"fluent {fluent!r} has nets: {', '.join(map(repr, fluent.living_nets()))}")
+        elif fluent.__class__ is not ValueFluent:
             found.append(f"the net {fluent!r} is still held by somebody")
     return found
 
