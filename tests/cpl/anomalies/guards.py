@@ -7,6 +7,8 @@ task, or in a task above, when it began.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.faces import define_face
 from cramhy_runtime.testing.labels import label
@@ -74,7 +76,7 @@ def enter(name):
     while not above and holder.parent is not None:
         above = [guard for guard in getattr(holder.parent.local, "guards", ()) if guard.tasks_before <= holder.id]
         holder = holder.parent
-    guard = Guard(name.name.lower(), task, above[-1] if above else None)
+    guard = Guard(getattr(name, "name", name).lower(), task, above[-1] if above else None)
     current.all.append(guard)
     stack.append(guard)
     return guard
@@ -92,6 +94,17 @@ def left(guard):
     guard.state = "left"
     kernel.current().local.guards.remove(guard)
     return None
+
+
+@contextmanager
+def guarded(name):
+    """The same for plans in Python."""
+    guard = enter(name)
+    try:
+        yield
+    finally:
+        leave(guard)
+        left(guard)
 
 
 def define():

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 @dataclass
 class Plan:
     name: str
-    text: str
+    text: str  # or a function
     value: str
     evaporated: tuple = ()
     suspended: tuple = ()

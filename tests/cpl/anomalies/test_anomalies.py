@@ -18,6 +18,7 @@ from cramhy_runtime.testing import faults
 
 from .harness import check_run, faults_of
 from .plans import PLANS
+from .python_plans import PYTHON_PLANS
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 PAIRS = 200 if SOAK else 3
@@ -41,7 +42,7 @@ def unheard(monkeypatch):
 
 
 def every_plan(test):
-    return pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)(test)
+    return pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)(test)
 
 
 @every_plan

@@ -14,6 +14,7 @@ from cramhy_runtime.testing import Schedule
 
 from .harness import check_run
 from .plans import PLANS
+from .python_plans import PYTHON_PLANS
 
 SEEDS = 1000 if os.environ.get("CRAMHY_SOAK") else 20
 
@@ -24,7 +25,7 @@ def fresh_kernel():
     kernel.stop()
 
 
-@pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)
+@pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
 def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
     different = set()
     for seed in range(1, SEEDS + 1):
@@ -35,7 +36,7 @@ def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
     record_property("schedules", len(different))
 
 
-@pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)
+@pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
 def test_both_back_ends_take_the_same_way_with_a_seed(plan):
     ways = []
     for backend in ("threads", "greenlet"):
