@@ -12,6 +12,8 @@ around this (6, 6.9), and does not wait when the form fails.
 
 from __future__ import annotations
 
+from functools import partial
+
 from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
@@ -21,7 +23,6 @@ from .failures import signal_failure
 from .current import inside_plan
 from .ending import end_tasks
 from .logging import active_tags, log
-from .pausing import pause
 from .statuses import CREATED, DEAD, FAILED
 from .tasks import Task
 
@@ -68,7 +69,7 @@ class Branches:
         self.waiter = kernel.current()
         self.ready = ready
         while not ready(self):
-            pause(self._why)
+            self.waiter.kernel.park(self._why)
         while self.living and any(task.status is CREATED for task in self.tasks):  # only where a seed shuffles who runs next
             kernel.yield_()
 
@@ -151,19 +152,11 @@ def _warn_of_lost(tasks):
 def branch_tasks(form, thunks):
     """A new task per thunk, named after its position: ``[PAR-CHILD-#1/2]-7``."""
     count = len(thunks)
-    return [Task(thunk, _BranchName(form, index, count)) for index, thunk in enumerate(thunks, 1)]
+    return [Task(thunk, partial(_branch_name, form, index, count)) for index, thunk in enumerate(thunks, 1)]
 
 
-class _BranchName:
-    """A name that is made when somebody asks."""
-
-    __slots__ = ("form", "index", "count")
-
-    def __init__(self, form, index, count):
-        self.form, self.index, self.count = form, index, count
-
-    def __call__(self):
-        return f"[{self.form}-CHILD-#{self.index}/{self.count}]"
+def _branch_name(form, index, count):
+    return f"[{form}-CHILD-#{index}/{count}]"
 
 
 def run_forms(form, thunks, ready, choose, late_failures_count=True):

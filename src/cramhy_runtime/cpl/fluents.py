@@ -227,7 +227,9 @@ class ValueFluent(Fluent):
         """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
         if self.test is None:
             old = self.stored
-            if old is new or eql(old, new):
+            if old is new:
+                return new
+            if (old.__class__ is new.__class__ or old is False or new is False) and eql(old, new):  # of two classes only False is nil
                 return new
         elif self._same(new):
             return new
@@ -383,7 +385,8 @@ def is_cacheable(fluent):
 
 def value(fluent: Any) -> Any:
     """``(value x)``: the value of a fluent; any other object is its own value."""
-    if fluent.__class__ is ValueFluent:  # the commonest by far
+    kind = fluent.__class__
+    if kind is ValueFluent or kind is CachedNet:  # the commonest by far
         return fluent.read()
     return fluent.read() if isinstance(fluent, Fluent) else fluent
 

@@ -20,6 +20,8 @@ _forsaken = []  # greenlets of tasks that never ended: collecting one would run 
 class GreenletCarrier(greenlet):
     """A greenlet that carries task after task."""
 
+    __slots__ = ("backend", "job", "ident", "started")
+
     def __init__(self, backend, job):
         super().__init__(parent=backend.root.stack)
         self.backend = backend
