@@ -115,3 +115,11 @@ def test_who_handles_a_failure_has_handled_what_came_along():
 
     assert warnings_of(plan) == ([], ["the brake is stuck"])
     assert kernel.now() == 1.0
+
+
+def test_a_failure_wins_over_a_request_to_end_that_has_not_been_delivered():
+    def asked_to_end():
+        cpl.current_task().ask_to_end()
+        cpl.fail("just then")
+
+    assert str(failure_of(asked_to_end, lambda: cpl.sleep(9))) == "just then"

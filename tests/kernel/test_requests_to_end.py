@@ -268,3 +268,91 @@ def test_a_wake_up_during_what_is_called_before_a_park_is_not_lost(k):
     ready.append(True)
     kernel.unpark(task)
     assert task.join() == 2
+
+
+def test_who_swallows_it_gets_it_again_at_the_next_point(k):
+    log = []
+
+    def stubborn():
+        for _ in range(3):
+            try:
+                kernel.park("for ever")
+            except:  # noqa: E722  what is tested
+                log.append("swallowed")
+        log.append("through the loop, which has no point after the last")
+
+    task = kernel.spawn(stubborn)
+    kernel.yield_()
+    task.cancel()
+    task.join()
+    assert log == ["swallowed"] * 3 + ["through the loop, which has no point after the last"]
+    assert task.dead and kernel.now() == 0
+
+
+def test_a_busy_loop_that_swallows_it_gets_it_again(k):
+    log = []
+
+    def stubborn():
+        while len(log) < 3:
+            try:
+                while True:
+                    kernel.checkpoint()
+            except kernel.Cancelled:
+                log.append("swallowed")
+
+    task = kernel.spawn(stubborn)
+    kernel.yield_()
+    task.cancel()
+    task.join()
+    assert log == ["swallowed"] * 3
+
+
+def test_a_cleanup_that_leaves_by_an_exit_of_its_own_does_not_bring_the_task_back(k):
+    log = []
+
+    class Exit(BaseException):
+        pass
+
+    def body():
+        try:
+            try:
+                kernel.park("for ever")
+            finally:
+                log.append("cleanup")
+                raise Exit
+        except Exit:
+            log.append("exit")
+        log.append("on")
+        kernel.sleep(100)
+        log.append("never")
+
+    task = kernel.spawn(body)
+    kernel.yield_()
+    task.cancel()
+    task.join()
+    assert log == ["cleanup", "exit", "on"] and kernel.now() == 0
+
+
+def test_cleanup_may_wait_fail_and_handle_its_failure_without_getting_it_again(k):
+    log = []
+
+    def body():
+        try:
+            kernel.park("for ever")
+        finally:
+            kernel.sleep(1)
+            try:
+                kernel.sleep(1)
+                raise ValueError
+            except ValueError:
+                kernel.sleep(1)
+                log.append("handled")
+            kernel.sleep(1)
+            log.append("done")
+
+    task = kernel.spawn(body)
+    kernel.yield_()
+    task.cancel()
+    task.join()
+    assert log == ["handled", "done"] and kernel.now() == 4
+    assert isinstance(task.exception, kernel.Cancelled)

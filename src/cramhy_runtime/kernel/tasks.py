@@ -9,6 +9,7 @@ that is not disturbed by another one; a task that is cancelled before it ran nev
 for whoever does not look at it is told about it (`kernel.unhandled`).
 """
 
+import sys
 from contextvars import copy_context
 from types import SimpleNamespace
 
@@ -22,7 +23,7 @@ SETTLING = "settling"
 BLOCKED = "blocked"  # outside of the kernel, in `run_blocking`
 DEAD = "dead"
 
-HOPELESS = 100  # times that a task may swallow `Abandoned` before it is left where it is, for good
+HOPELESS = 100  # times that a task may swallow what ends it before it gets no more; after as many `Abandoned` it is left for dead
 
 
 class Task:
@@ -108,7 +109,9 @@ class Task:
         return self.cancel_request is not None
 
     def cancel(self, reason=None):
-        """Ask the task to end: `Cancelled(REASON)` is raised once, at its next park point or checkpoint.
+        """Ask the task to end: `Cancelled(REASON)` is raised at its next park point or checkpoint.
+
+        While it unwinds the stack nothing disturbs the cleanup. Code that swallows it gets it again at the next such point.
 
         REASON may also be an exception, or a function of no arguments that returns one; that is raised instead.
         Wakes the task if it is parked. Inside of `shield` the delivery waits. The first request counts: later ones,
@@ -193,7 +196,7 @@ class Task:
         """
         if self.abandoned:
             self.swallowed += 1
-            if self.swallowed > HOPELESS:
+            if self.swallowed > 2 * HOPELESS:
                 self.kernel.leave_for_dead(self)
             raise Abandoned
         if self.alarms:
@@ -207,7 +210,9 @@ class Task:
             self.cancelled_delivered = True
             self._look_again()
             raise exception
-
+        if self.delivered is not None and not self.shielded and self.swallowed < HOPELESS and not _on_its_way(self.delivered):
+            self.swallowed += 1
+            raise self.delivered
         if self.interjections and not self.shielded:
             functions, self.interjections = self.interjections, None
             self._look_again()
@@ -225,7 +230,7 @@ class Task:
 
     def _look_again(self):
         waiting = self.cancel_request is not None and not self.cancelled_delivered
-        self.attention = waiting or bool(self.alarms) or bool(self.interjections) or self.abandoned
+        self.attention = waiting or self.delivered is not None or bool(self.alarms) or bool(self.interjections) or self.abandoned
 
     def unwinds(self):
         """Called by the task itself, which ends a part of its own stack: until `unwound` nobody disturbs the cleanup in it.
@@ -262,6 +267,14 @@ class Task:
 
     def __repr__(self):
         return f"<task {self.id} {self.name}, {self.state}>"
+
+
+def _on_its_way(exception):
+    """True if EXCEPTION still unwinds the stack that asks: what runs is a cleanup on its way, or a handler that has not passed it on."""
+    handled = sys.exc_info()[1]
+    while handled is not None and handled is not exception:
+        handled = handled.__context__
+    return handled is not None
 
 
 class Alarm:

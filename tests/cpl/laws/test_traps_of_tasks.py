@@ -5,8 +5,8 @@ import pytest
 from cramhy_runtime import cpl, kernel
 
 
-def test_a_bare_except_that_swallows_an_evaporation_holds_up_its_parent_only_until_it_is_asked_again():
-    """Trap 6. Evaporation is a BaseException: ``except Exception`` does not see it, a bare ``except`` eats it once."""
+def test_a_bare_except_that_swallows_an_evaporation_gets_it_again_where_it_waits_next():
+    """Trap 6. Evaporation is a BaseException: ``except Exception`` does not see it, a bare ``except`` does not get rid of it."""
     order = []
 
     def eats():
@@ -20,12 +20,27 @@ def test_a_bare_except_that_swallows_an_evaporation_holds_up_its_parent_only_unt
     def body():
         task = cpl.Task(eats).execute()
         cpl.sleep(1)
-        cpl.evaporate(task, sync=None)
-        cpl.sleep(1)
         cpl.evaporate(task)
         return task.status
 
-    assert cpl.top_level(body) is cpl.EVAPORATED and order == ["eaten"] and kernel.now() == 2
+    assert cpl.top_level(body) is cpl.EVAPORATED and order == ["eaten"] and kernel.now() == 1
+
+
+def test_a_cleanup_form_that_leaves_by_an_exit_of_its_own_does_not_escape_the_evaporation(lisp):
+    assert lisp("""
+        (let ((order nil))
+          (top-level
+            (pursue
+              (progn
+                (block escape
+                  (unwind-protect (sleep 1000)
+                    (push :cleanup order)
+                    (return-from escape nil)))
+                (push :on order)
+                (sleep 1000)
+                (push :never order))
+              (sleep 1)))
+          (reverse order))""") == "(:CLEANUP :ON)"
 
 
 def test_except_exception_does_not_see_an_evaporation():
