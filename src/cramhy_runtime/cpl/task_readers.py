@@ -16,7 +16,13 @@ status.method(AbstractTask)(lambda task: task.status_fluent)
 
 result = generic("CPL-IMPL::RESULT", "(task)", documentation="""
 Its values when it succeeded, the condition when it failed, no values otherwise.""")
-result.method(AbstractTask)(lambda task: task.result)
+
+
+@result.method(AbstractTask)
+def _result(task):
+    task.claimed = True
+    return task.result
+
 
 task_path = generic("CPL-IMPL::TASK-PATH", "(task)", documentation="Its place in the task tree: a list of path parts, the deepest first.")
 task_path.method(AbstractTask)(lambda task: task.path)
@@ -57,7 +63,10 @@ def task_failed_p(task):
 
 
 def _now(task):
-    return task.status if isinstance(task, AbstractTask) else status(task).stored
+    if not isinstance(task, AbstractTask):
+        return status(task).stored
+    task.claimed = True
+    return task.status
 
 
 def child_tasks(task):

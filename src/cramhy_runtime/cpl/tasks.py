@@ -29,7 +29,7 @@ from ..lisp.evaluation.places_in_source import locate
 from ..lisp.objects.generic import generic
 from .current import current_task
 from .ending import end_tasks, end_waits, limit_cleanup
-from .failure_types import PlanFailure, envelope
+from .failure_types import PlanFailure, envelope, opened
 from .failures import signal_failure
 from .fluent_operators import fl_and
 from .fluents import function_of, make_fluent
@@ -71,6 +71,9 @@ class AbstractTask:
     """The list of all tasks of its plan, dead ones too, if they are recorded (``tree_report.py``)."""
     awaited = None
     """The tasks whose death it waits for, or a function that returns them, while it does (``ending.py``)."""
+    claimed = False  # somebody asked what became of it
+    unclaimed = ()
+    """Tasks below it that failed while no form waited for them."""
     asked_to_end = False  # by a program, not only by the form that it belongs to
     cleanup_limit = None
 
@@ -232,7 +235,15 @@ class AbstractTask:
             self._end_threads()
         if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
+        if self.unclaimed:
+            self._tell_unclaimed()
         self._die(status, result)
+
+    def _tell_unclaimed(self):
+        """Tasks that the body made failed, and it never asked what became of them: the user is told (law 3)."""
+        for task in self.unclaimed:
+            if not task.claimed and task._status_fluent is None:
+                kernel.unhandled(task, opened(task.result))
 
     def _end_threads(self):
         """End the threads that the body left running, and wait for that. Errors of theirs are reported by the kernel."""
@@ -297,6 +308,8 @@ class AbstractTask:
         ended, self.ended = self.ended, None
         if ended is not None:
             ended(self)
+        elif isinstance(result, PlanFailure) and status is FAILED and self.parent is not None:
+            self.parent.unclaimed = (*self.parent.unclaimed, self)
 
     def evaporate(self, reason: str | None = None) -> None:
         """Ask the task to end; it unwinds from its next waiting point or checkpoint, and nobody waits for that here.
@@ -359,6 +372,7 @@ class AbstractTask:
         if active_tags:
             log("JOIN-TASK", "~s", self)
         self.park_until(DEAD, lambda: f"the end of {self.name}")
+        self.claimed = True
         if self.status is FAILED:
             signal_failure(self.result)
         return self.result
