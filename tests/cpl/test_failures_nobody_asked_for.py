@@ -8,7 +8,7 @@ from cramhy_runtime import cpl, kernel
 @pytest.fixture
 def told(monkeypatch):
     heard = []
-    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: heard.append((task.name.rpartition("-")[0] or task.name, str(exception))))
+    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: heard.append((task.name, str(exception))))
     return heard
 
 
