@@ -142,7 +142,7 @@ def describe(position):
         return None
     filename, line, *column = position
     shown = _relative(filename)
-    return ":".join([shown, str(line), *(str(part) for part in column if part is not None)])
+    return ":".join([shown, str(line), *(str(part) for part in column if part)])
 
 
 def _relative(filename):
