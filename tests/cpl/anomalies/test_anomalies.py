@@ -26,13 +26,6 @@ BACKENDS = ["threads", "greenlet"]
 
 
 @pytest.fixture(autouse=True)
-def fresh_kernel():
-    """The runs bring kernels of their own."""
-    kernel.stop()
-    return
-
-
-@pytest.fixture(autouse=True)
 def unheard(monkeypatch):
     """What the kernel reports as lost: nothing may be."""
     heard = []

@@ -2,19 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
 
-from cramhy_runtime import kernel
 from cramhy_runtime.testing import faults
 
 from .harness import check_run, faults_of
 from .plans import Plan
-
-
-@pytest.fixture(autouse=True)
-def fresh_kernel():
-    """The runs bring kernels of their own."""
-    kernel.stop()
 
 
 def wrong_with(text, value="NIL", **options):

@@ -9,7 +9,6 @@ import os
 
 import pytest
 
-from cramhy_runtime import kernel
 from cramhy_runtime.testing import Schedule
 
 from .harness import check_run
@@ -17,12 +16,6 @@ from .plans import PLANS
 from .python_plans import PYTHON_PLANS
 
 SEEDS = 1000 if os.environ.get("CRAMHY_SOAK") else 20
-
-
-@pytest.fixture(autouse=True)
-def fresh_kernel():
-    """The runs bring kernels of their own."""
-    kernel.stop()
 
 
 @pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
