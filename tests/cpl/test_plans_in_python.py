@@ -81,7 +81,7 @@ def test_the_examples_of_the_page_run_and_print_what_stands_there():
     ROOT / "src" / "cramhy_runtime" / "cpl" / f"{module}.py" for module in (
         "attempts", "blocks", "border", "branch_blocks", "fluent_notation", "plan_run", "python_forms", "steps"))]])
 def test_types_fit(arguments, tmp_path):
-    pytest.importorskip("mypy")
+    pytest.importorskip("mypy")  # of the extra [dev], at one version: another may see more
     done = subprocess.run([sys.executable, "-m", "mypy", "--explicit-package-bases", "--follow-imports=silent", "--ignore-missing-imports",
                            "--cache-dir", str(tmp_path), *map(str, arguments)], capture_output=True, text=True, cwd=ROOT,
                           env={**os.environ, "MYPYPATH": "src"})
