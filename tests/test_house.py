@@ -88,6 +88,14 @@ def test_every_module_opens_with_a_paragraph(path):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each module gets a fresh interpreter by a fork")
+@pytest.mark.parametrize("room", sorted(path.parent.name for path in FILES if path.name == "__init__.py"
+                                        and "Where the parts are" in path.read_text()))
+def test_a_room_that_says_where_its_parts_are_names_them_all(room):
+    told = ast.get_docstring(ast.parse((SOURCE / room / "__init__.py").read_text())).partition("Where the parts are")[2]
+    parts = {path.stem for path in (SOURCE / room).glob("*.py")} | {path.parent.name for path in (SOURCE / room).glob("*/__init__.py")}
+    assert parts - set(re.findall(r"`(\w+)`", told)) == {"__init__"}
+
+
 def test_any_module_can_be_imported_first():
     """No module relies on another one having been imported before it."""
     names = [".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__") for path in FILES]

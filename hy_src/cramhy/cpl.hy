@@ -67,6 +67,8 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 (defoperator with-task-suspended [spec #* body]
   (setv #(task #* options) spec)
+  (when (and options (or (!= (len options) 2) (is-not (get options 0) (sym ":REASON"))))
+    (raise (ValueError "after the task only :REASON and a text may stand.")))
   `(%with-task-suspended ~task ~(if options (get options 1) None) (lambda [] ~@body)))
 
 (defoperator with-task [options #* body]

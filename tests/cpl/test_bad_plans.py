@@ -3,6 +3,7 @@
 import pytest
 
 from cramhy_runtime import kernel
+from cramhy_runtime.cpl import macro_shapes
 
 OUTSIDE = """cramhy: SIMPLE-ERROR
   '{0}' form not inside a plan.
@@ -278,6 +279,22 @@ def test_a_function_of_the_user_may_have_the_name_of_a_marker(plan_text):
 def test_malformed_forms_are_errors_of_the_expansion(plan_text, form, message):
     shown = plan_text.error(f"(top-level {form})")
     assert shown.startswith(f"cramhy: CRAMHY::COMPILE-ERROR\n  {message}\n  at <repl>:1:12\n")
+
+
+@pytest.mark.parametrize("shape", macro_shapes.SHAPES)
+def test_a_macro_that_is_called_in_another_shape_says_how_it_is_written(plan_text, shape):
+    name = shape.split()[0].strip("(")
+    shown = plan_text.error(f"(top-level\n  (cpl-impl:{name}))")
+    assert "  at <repl>:2:3\n" in shown and shown.endswith(f"\n  It is written {shape}.\n")
+
+
+@pytest.mark.parametrize("form", ["(par-loop x '(1 2) (print x))", "(try-each-in-order x '(1 2) x)", "(with-task-suspended 'grasp 1)",
+                                  "(with-task-suspended (grasp \"a break\") 1)", "(with-task-suspended () 1)", "(def-goal at (x) x)",
+                                  "(whenever () 1)"])
+def test_so_does_one_with_a_forgotten_pair_of_parentheses(plan_text, form):
+    shown = plan_text.error(f"(top-level\n  {form})")
+    name = form.split()[0]
+    assert shown.startswith(f"cramhy: CRAMHY::COMPILE-ERROR\n  The {name[1:].upper()} form ") and f"\n  It is written {name} (" in shown
 
 
 @pytest.mark.parametrize("tag", ["(:tag 5 1)", "(:tag nil 1)", "(:tag t 1)", "(:tag :key 1)", "(:tag (a) 1)", "(:tag)"])

@@ -101,6 +101,23 @@ RUNNING = [
         (+ 2 speed-limit)))
              ^
   There is a variable *SPEED-LIMIT*, with stars."""),
+    ("(defgeneric speed-of (wheel) (:method ((wheel symbol)) 1) (:method ((wheel (eql 5))) 2))\n(list\n  (speed-of 6))", """\
+  There is no applicable method for the generic function
+    #<STANDARD-GENERIC-FUNCTION COMMON-LISP-USER::SPEED-OF (2)>
+  when called with arguments
+    (6).
+  See also:
+  The ANSI Standard, Section 7.6.6
+  at plan.lisp:3:3
+      (speed-of 6))
+      ^
+  Methods are defined for (SYMBOL) and ((EQL 5))."""),
+    ("(dolist (x\n         identity)\n  x)", """\
+  The variable IDENTITY is unbound.
+  at plan.lisp:2:10
+             identity)
+             ^
+  IDENTITY is a function, no variable: a call of it is (identity ...), in parentheses of its own."""),
     ("(let ((x 1)\n      (y no-such-variable))\n  (list x y))", """\
   The variable NO-SUCH-VARIABLE is unbound.
   at plan.lisp:2:10

@@ -25,11 +25,17 @@ The page docs/plans-in-python.md tells the whole story. In short: a plan runs be
 take branches as functions, or begin a ``with`` block that starts them. When a form is left, its branches are dead, and what one of
 them failed with is raised. Waiting is for values that are not ``None`` and not ``False``; 0 and "" are true, as in Lisp.
 
-Where the parts are: ``fluents``, ``pulse_fluents``, ``fluent_operators``, ``waiting`` · ``tasks``, ``task_variables``, ``branches``,
-``suspension`` · ``failure_types``, ``failures``, ``retry_counters``, ``debugging`` · ``operators``, ``orderings``, ``watching`` · ``tree``,
-``tree_report``, ``tags``, ``plans``, ``policies``, ``walker``, ``plan_tree`` · ``hooks``, ``logging``, ``printing`` · ``package``,
-``readers``, ``markers``, the Lisp faces. Python's face: ``python_forms``, ``plan_run``, ``blocks``,
-``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``. Reference: cpl.md.
+Where the parts are (reference: cpl.md):
+
+* fluents: ``fluents``, ``pulse_fluents``, ``fluent_operators``, ``waiting``
+* tasks: ``tasks``, ``statuses``, ``current``, ``task_variables``, ``task_readers``; how they stop and end: ``pausing``, ``suspension``,
+  ``ending``
+* forms with branches: ``branches``, ``operators``, ``orderings``, ``watching``, ``policies``
+* failures: ``failure_types``, ``failures``, ``retry_counters``, ``debugging``
+* plans as trees: ``tree``, ``tree_report``, ``tags``, ``plans``, ``walker``, ``plan_tree``
+* around them: ``hooks``, ``logging``, ``printing``
+* the Lisp faces: ``symbols``, ``package``, ``readers``, ``typed``, ``user_methods``, ``markers``, ``macro_shapes``, ``macro_support``
+* Python's face: ``python_forms``, ``plan_run``, ``blocks``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``
 """
 
 from ..kernel import Deadlock, TimeLimit, checkpoint, cleanup, now, run_blocking
@@ -38,17 +44,17 @@ from .attempts import Attempt, attempts, handling
 from .blocks import Timeout, TimedOut, move_on_after, timeout
 from .branch_blocks import ParBlock, RaceBlock, TryAllBlock
 from .failure_types import (
-                            CommonLispErrorEnvelope,
-                            CompositeFailure,
-                            PlanFailure,
-                            PolicyCheckConditionMet,
-                            PolicyCondition,
-                            PolicyFailure,
-                            PolicyInitFailed,
-                            PolicyNotFound,
-                            SimplePlanFailure,
-                            envelope,
-                            opened,
+    CommonLispErrorEnvelope,
+    CompositeFailure,
+    PlanFailure,
+    PolicyCheckConditionMet,
+    PolicyCondition,
+    PolicyFailure,
+    PolicyInitFailed,
+    PolicyNotFound,
+    SimplePlanFailure,
+    envelope,
+    opened,
 )
 from .failures import Handling as Retry, with_failure_handling
 from .fluent_operators import fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed
@@ -57,21 +63,21 @@ from .operators import named_top_level, seq, top_level
 from .plan_run import plan, run
 from .policies import Policy, make_policy
 from .python_forms import (
-                            fail,
-                            join_task,
-                            on_suspension,
-                            par,
-                            par_loop,
-                            partial_order,
-                            policy,
-                            pursue,
-                            task_suspended,
-                            try_all,
-                            try_each_in_order,
-                            try_in_order,
-                            whenever,
-                            with_task,
-                            without_scheduling,
+    fail,
+    join_task,
+    on_suspension,
+    par,
+    par_loop,
+    partial_order,
+    policy,
+    pursue,
+    task_suspended,
+    try_all,
+    try_each_in_order,
+    try_in_order,
+    whenever,
+    with_task,
+    without_scheduling,
 )
 from .retry_counters import RetryCounter
 from .statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED

@@ -17,6 +17,7 @@ from . import (
     fluents,
     hooks,
     logging,
+    macro_shapes,
     macro_support,
     markers,
     operators,
@@ -147,6 +148,7 @@ def define_faces():
                 functions={"walk-with-tag-handler": walker.walk_with_tag_handler})
     macro_support.define()
     markers.define()
+    macro_shapes.define()
     define_face("CRAM-USER", ["CPL-USER"], use=["CRAM-LANGUAGE"])
 
 

@@ -11,7 +11,7 @@ tuple, no values (a branch that somebody evaporated) the empty tuple.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any, NoReturn, TypeVar, overload
 
 from cramhy_runtime import kernel
@@ -183,7 +183,7 @@ def policy(policy: policies.Policy, *arguments: Any) -> AbstractContextManager[N
     return _under(policy, arguments)
 
 
-@policies.contextmanager
+@contextmanager
 def _under(policy: policies.Policy, arguments: tuple[Any, ...]) -> Iterator[None]:
     with policies.in_force(policy, lambda: arguments) as check:
         if check is None:

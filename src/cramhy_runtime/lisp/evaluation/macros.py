@@ -63,7 +63,7 @@ def define_operator(package, name, function):
             expansion = function(*(form.cdr or ()), **({"environment": environment} if looks_around else {}))
         except Condition:
             raise
-        except (TypeError, ValueError, AttributeError) as problem:
+        except (TypeError, ValueError, AttributeError, IndexError) as problem:
             return malformed(form, symbol, problem)
         return from_hy(expansion, home, form)
 
@@ -76,12 +76,12 @@ def define_operator(package, name, function):
 def malformed(form, symbol, problem):
     """Signal that a call of the macro ``symbol`` has not the shape that it must have."""
     why = str(problem)
-    for marker in ("positional argument", "unpack", "iterable", "takes", "missing", "has no attribute"):
+    for marker in ("positional argument", "unpack", "iterable", "takes", "missing", "has no attribute", "out of range"):
         if marker in why:
             why = "it has the wrong number of parts, or a part is not a list."
             break
     condition = CompileError("The ~A form ~S is malformed: ~A", symbol, form, why)
-    shape = SHAPES.get(symbol.name) if symbol.package is COMMON_LISP else None
+    shape = SHAPES.get(symbol.name) if symbol.package is COMMON_LISP else (symbol.compiler_data or {}).get("shape")
     if shape is not None:
         condition.hint = f"It is written {shape}."
     return error(condition)

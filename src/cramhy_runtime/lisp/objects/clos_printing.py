@@ -46,10 +46,10 @@ def print_generic_function(function, stream):
     print_unreadable(function, stream, body=contents)
 
 
-def _specializer(specializer):
-    if isinstance(specializer, EqlSpecializer):
-        return lisp_list(sym("EQL"), specializer.value)
-    return class_name(specializer)
+def specializer_names(method):
+    """What the required parameters of ``method`` are specialized on, a Lisp list of class names and ``(eql value)``."""
+    return list_from([lisp_list(sym("EQL"), each.value) if isinstance(each, EqlSpecializer) else class_name(each)
+                      for each in method.specializers])
 
 
 def print_method(method, stream):
@@ -59,7 +59,7 @@ def print_method(method, stream):
         for qualifier in method.qualifiers:
             output_object(qualifier, stream)
             stream.write(" ")
-        output_object(list_from([_specializer(specializer) for specializer in method.specializers]), stream)
+        output_object(specializer_names(method), stream)
 
     print_unreadable(method, stream, body=contents, identity=True)
 

@@ -13,6 +13,8 @@ from ..conditions import from_python, types
 from ..data import Symbol, UNBOUND, UndefinedFunction
 from ..dynamic import binding
 from ..evaluation.places_in_source import describe, excerpt, locate
+from ..objects.clos_printing import specializer_names
+from ..objects.generic_errors import NoApplicableMethodError
 from ..packages import all_packages, near_names, sym, symbol_name
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
@@ -22,6 +24,8 @@ from ..streams.streams import ERROR_OUTPUT, output_stream
 COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
 SHOWN_PLACES = 3
 """So many further places of the same thing are named."""
+SHOWN_METHODS = 4
+"""A generic function with more methods than these does not list them."""
 
 
 def report_text(condition):
@@ -107,11 +111,22 @@ def _advice(condition):
             return _variable(name)
         if undefined == "function" or isinstance(condition, types.UndefinedFunction):
             return _function(name)
+    if isinstance(condition, NoApplicableMethodError):
+        return _methods(condition.generic_function)
     if isinstance(condition, types.PackageDoesNotExist):
         near = near_names(str(symbol_name(condition.package) if isinstance(condition.package, Symbol) else condition.package),
                           [name for package in all_packages() for name in package.names])
         return f"Did you mean {' or '.join(near)}?" if near else "Is the system that defines it loaded?"
     return None
+
+
+def _methods(function):
+    """What the generic ``function`` has methods for, if these are few, such as ``(TASK) and (FLUENT T)``."""
+    methods = getattr(function, "methods", None)
+    if not isinstance(methods, list) or not 0 < len(methods) <= SHOWN_METHODS:
+        return None
+    named = [princ_to_string(specializer_names(method)) for method in methods]
+    return f"Methods are defined for {' and '.join(dict.fromkeys(named))}."
 
 
 def _visible(test):
@@ -127,6 +142,8 @@ def _variable(symbol):
     variables = set(_visible(lambda other: other.value is not UNBOUND and other.special))
     if starred in variables:
         return f"There is a variable {starred}, with stars."
+    if not isinstance(symbol.function, UndefinedFunction):
+        return f"{symbol.name} is a function, no variable: a call of it is ({symbol.name.lower()} ...), in parentheses of its own."
     near = near_names(symbol.name, variables)
     if near:
         return f"Did you mean {' or '.join(near)}?"

@@ -23,8 +23,8 @@ from ..files.pathnames import pathname_directory, pathname_name, pathname_type
 from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.class_objects import direct_slots, effective_slots
 from ..objects.classes import class_name, class_of, metaclass_of, symbol_class
+from ..objects.clos_printing import specializer_names
 from ..objects.generic import GenericFunction
-from ..objects.methods import EqlSpecializer
 from ..objects.protocol import protocol_function, slot_names
 from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
@@ -329,19 +329,12 @@ def describe_function(function, out):
         out.line("Methods:" if generic.methods else "No methods.")
         with out.indented():
             for method in reversed(generic.methods):
-                specializers = list_from([_specializer(each) for each in method.specializers])
-                out.line(one_line(list_from([generic.__lisp_name__, *method.qualifiers, specializers])))
+                out.line(one_line(list_from([generic.__lisp_name__, *method.qualifiers, specializer_names(method)])))
                 with out.indented():
                     out.documentation(method.documentation)
     position = position_of(function)
     if position is not None:
         out.line(f"Source file: {place_text(position)}")
-
-
-def _specializer(specializer):
-    if isinstance(specializer, EqlSpecializer):
-        return list_from([sym("EQL"), specializer.value])
-    return class_name(specializer)
 
 
 def _named_function(function, name, out):
