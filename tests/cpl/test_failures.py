@@ -1,15 +1,12 @@
 """Failures and their handling: cpl.md section 16, invariants 65 to 77."""
 
 import pytest
+from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import hooks
 from cramhy_runtime.lisp.conditions import Error, SimpleError, error, handler_bind, ignore_errors, restart_case
 from cramhy_runtime.lisp.packages import sym
-
-
-def plan(body):
-    return cpl.top_level(body)
 
 
 def handling(*clauses, body):

@@ -4,6 +4,7 @@ import gc
 from weakref import ref
 
 import pytest
+from small_plans import plan, started, statuses_of
 
 from cramhy_runtime import cpl, kernel, testing
 from cramhy_runtime.cpl import operators, tree, watching
@@ -11,20 +12,6 @@ from cramhy_runtime.cpl.statuses import EVAPORATED, FAILED, RUNNING, SUCCEEDED, 
 from cramhy_runtime.cpl.tasks import Task
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.packages import sym
-
-
-def plan(body):
-    return cpl.top_level(body)
-
-
-def started(body, name="child"):
-    return Task(body, name).execute()
-
-
-def statuses_of(task):
-    seen = []
-    cpl.register_update_callback(task.status_fluent, "watch", seen.append)
-    return seen
 
 
 def test_a_request_to_suspend_in_without_scheduling_is_obeyed_once():

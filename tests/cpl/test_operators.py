@@ -1,6 +1,7 @@
 """The control operators: cpl.md section 16, invariants 78 to 97, and golden 13."""
 
 import pytest
+from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import operators, tags
@@ -8,10 +9,6 @@ from cramhy_runtime.cpl.statuses import DEAD, EVAPORATED, FAILED, SUCCEEDED
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, lisp_list, python_list
 from cramhy_runtime.lisp.packages import keyword
-
-
-def plan(body):
-    return cpl.top_level(body)
 
 
 def after(seconds, value=None):

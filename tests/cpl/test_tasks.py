@@ -4,6 +4,7 @@ import gc
 import weakref
 
 import pytest
+from small_plans import plan, started, statuses_of
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import task_variables, tasks
@@ -12,20 +13,6 @@ from cramhy_runtime.cpl.tasks import Task
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, Symbol
 from cramhy_runtime.lisp.dynamic import binding
-
-
-def plan(body):
-    return cpl.top_level(body)
-
-
-def started(body, name="child"):
-    return Task(body, name).execute()
-
-
-def statuses_of(task):
-    seen = []
-    cpl.register_update_callback(task.status_fluent, "watch", seen.append)
-    return seen
 
 
 def test_a_status_goes_from_running_to_exactly_one_dead_state():

@@ -1,6 +1,7 @@
 """Tags, the task tree, plan functions, goals, policies: cpl.md section 16, invariants 98 to 111."""
 
 import pytest
+from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import plans, policies, tags, tree
@@ -14,10 +15,6 @@ from cramhy_runtime.lisp.printer.printer import princ_to_string
 
 def user(name):
     return intern(name, "CRAM-USER")
-
-
-def plan(body):
-    return cpl.top_level(body)
 
 
 def paths(root):
