@@ -12,7 +12,7 @@ import weakref
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.collections.hash_tables import HashTable, make_hash_table
-from cramhy_runtime.lisp.conditions import error
+from cramhy_runtime.lisp.conditions import SimpleError, error
 from cramhy_runtime.lisp.faces import lispify
 from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
 
@@ -34,7 +34,9 @@ class Lock:
         me = kernel.current()
         if self.holder is me:
             if not self.recursive:
-                error("Recursive lock attempt ~S.", self)
+                again = SimpleError("Recursive lock attempt ~S.", self)
+                again.hint = "This task has the lock already. One that its holder may take again is made with MAKE-RECURSIVE-LOCK."
+                error(again)
             self.depth += 1
         elif self.holder is None:
             self.holder, self.depth = me, depth
@@ -43,7 +45,9 @@ class Lock:
             self.depth = depth
 
     def release(self):
-        """Undo one `take`."""
+        """Undo one `take`. Who lost the lock in the wait for a condition variable, and could not get it back, has nothing to give up."""
+        if not self.held_by_me():
+            return
         self.depth -= 1
         if not self.depth:
             self.pass_on()

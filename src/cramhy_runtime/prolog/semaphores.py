@@ -47,7 +47,10 @@ def wait_on_semaphore(semaphore, *, n=1, timeout=None):
     """``cut:wait-on-semaphore``: take ``n`` units, waiting until there are so many; the units left, nil after ``timeout`` seconds."""
     units, until = _units(n), time_limit(timeout)
     if len(_semaphore(semaphore).line) or semaphore.count < units:
-        served = semaphore.line.stand(lambda: f"{units} of the semaphore {semaphore.name or ''}".rstrip(), until, units)
+        try:
+            served = semaphore.line.stand(lambda: f"{units} of the semaphore {semaphore.name or ''}".rstrip(), until, units)
+        finally:
+            semaphore.add(0)  # who leaves the front unserved may have wanted more than there is for those behind
         return semaphore.count if served is not None else None
     semaphore.count -= units
     return semaphore.count

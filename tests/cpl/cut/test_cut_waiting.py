@@ -43,6 +43,12 @@ def test_what_is_wrong(lisp, form, text):
     assert caught.value.report().startswith(text)
 
 
+def test_a_lock_that_its_holder_takes_again_names_the_kind_that_allows_it(lisp):
+    with pytest.raises(Condition) as caught:
+        lisp("(let ((l (cut:make-lock))) (cut:with-lock-held (l) (cut:with-lock-held (l) 1)))")
+    assert caught.value.hint == "This task has the lock already. One that its holder may take again is made with MAKE-RECURSIVE-LOCK."
+
+
 def test_a_lock_is_served_in_order_and_nobody_overtakes(lisp):
     assert lisp("""(let ((l (cut:make-lock)) (log nil))
       (flet ((work (name) (lambda () (loop repeat 2 do (cut:with-lock-held (l) (sleep 1) (push name log))))))
@@ -170,3 +176,22 @@ def test_a_task_is_suspended_while_it_waits_for_a_semaphore(lisp):
         (:tag taker (cut:wait-on-semaphore s) (push (round (get-internal-real-time) internal-time-units-per-second) log))
         (seq (sleep 1) (with-task-suspended (taker) (cut:signal-semaphore s) (sleep 2))))))
       log)""") == "(3)"
+
+
+@pytest.mark.parametrize("way", ["(cut:wait-on-semaphore s :n 3 :timeout 2)", "(pursue (cut:wait-on-semaphore s :n 3) (sleep 2))"])
+def test_who_leaves_the_front_of_the_line_wanting_much_lets_those_through_who_want_less(lisp, way):
+    assert lisp(f"""(let ((s (cut:make-semaphore :count 1)))
+      (top-level (par {way} (seq (sleep 1) (cut:wait-on-semaphore s))))
+      (cut:semaphore-count s))""") == "0"
+    assert kernel.now() == 2
+
+
+def test_who_could_not_get_its_lock_back_does_not_give_up_that_of_another(lisp):
+    """The second request ends the wait for the lock, in the cleanup of the wait for the condition variable."""
+    assert lisp("""(let* ((l (cut:make-lock)) (c (cut:make-condition-variable :lock l)) (log nil))
+      (top-level (with-tags (par
+        (:tag waiter (cut:with-lock-held (l) (cut:condition-variable-wait c)))
+        (seq (sleep 1) (cut:with-lock-held (l) (push :taken log) (sleep 9) (push :given-up log)))
+        (seq (sleep 2) (evaporate waiter :sync nil) (sleep 1) (evaporate waiter))
+        (seq (sleep 4) (cut:with-lock-held (l) (push :next log))))))
+      (reverse log))""") == "(:TAKEN :GIVEN-UP :NEXT)"
