@@ -92,6 +92,12 @@ def test_a_composite_failure_names_its_failures():
     assert [line.split(" (at")[0] for line in hint_for(failure).splitlines()] == ["Failure 1 of 2: a.", "Failure 2 of 2: b."]
 
 
+def test_what_fails_beside_a_composite_failure_is_told_after_its_parts():
+    failure = failure_of(lambda: cpl.try_in_order(failing("a"), failing("b")), failing_in_cleanup("cleanup"))
+    assert isinstance(failure, CompositeFailure) and texts(failure) == ["a", "b", "cleanup"]
+    assert [str(part) for part in failure.failures] == ["a", "b"]
+
+
 def test_more_than_three_failures_are_counted():
     failure = failure_of(*[failing(str(number)) for number in range(6)])
     assert hint_for(failure).splitlines()[-1] == "and 2 more failures"

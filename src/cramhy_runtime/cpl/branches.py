@@ -18,7 +18,7 @@ from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
 from ..lisp.conditions import SimpleWarning, error, warn
-from .failure_types import CompositeFailure, PlanFailure, opened
+from .failure_types import PlanFailure, opened
 from .failures import signal_failure
 from .current import inside_plan
 from .ending import end_tasks
@@ -102,7 +102,7 @@ class Branches:
             elif failure is None:
                 _warn_of_lost(late)
         if failure is not None:
-            if self.failed > 1 and isinstance(failure, PlanFailure) and not isinstance(failure, CompositeFailure):
+            if self.failed > 1 and isinstance(failure, PlanFailure):
                 _note_beside(failure, self.tasks)
             signal_failure(failure)
         return values

@@ -31,6 +31,7 @@ class CompositeFailure(PlanFailure):
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::COMPOSITE-FAILURE"
     initargs = {"FAILURES": "failures"}
     failures = None
+    others = ()
 
     @property
     def exceptions(self):
@@ -39,9 +40,13 @@ class CompositeFailure(PlanFailure):
 
     @property
     def beside(self):
-        """What to tell with it: each failure."""
+        """What to tell with it: each failure, and then the ``others``, of branches beside the one that it came from."""
         failures = list(self.failures or ())
-        return [(f"Failure {number} of {len(failures)}", opened(failure)) for number, failure in enumerate(failures, 1)]
+        return [*((f"Failure {number} of {len(failures)}", opened(failure)) for number, failure in enumerate(failures, 1)), *self.others]
+
+    @beside.setter
+    def beside(self, known):
+        self.others = known[len(list(self.failures or ())):]
 
 
 class CommonLispErrorEnvelope(PlanFailure):
