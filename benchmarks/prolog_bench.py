@@ -19,7 +19,7 @@ for _name in cl_names.NAMES.split():
 
 import cramhy_runtime.prolog.package  # noqa: E402, F401
 from cramhy_runtime.prolog import facts, query  # noqa: E402
-from cramhy_runtime.prolog.lazy_lists import force_ll  # noqa: E402
+from cramhy_runtime.utilities.lazy_lists import force_ll  # noqa: E402
 from cramhy_runtime.prolog.terms import Var  # noqa: E402
 
 HERE = make_package("PROLOG-BENCH", use=["COMMON-LISP", "CRAM-PROLOG"])

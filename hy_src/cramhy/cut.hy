@@ -3,7 +3,7 @@
 (require cramhy.operators [defoperator])
 (import cramhy.operators *
         cramhy-runtime.lisp.packages [keyword]
-        cramhy-runtime.prolog.patterns [var-name])
+        cramhy-runtime.utilities.patterns [var-name])
 
 (setv package "CRAM-UTILITIES")
 

@@ -1,7 +1,7 @@
 """cramhy's machine: the runtime under the plan language, usable from Python without any Lisp.
 
-The rooms, ground floor first: ``kernel`` (tasks, time), ``lisp`` (Common Lisp), then ``transforms``, ``cpl``, ``prolog``
-and ``ros``, then ``designators`` and ``turtlesim``, then ``process_modules``, then ``repl``. A room imports only from the
+The rooms, ground floor first: ``kernel`` (tasks, time), ``lisp`` (Common Lisp), ``utilities`` (``cut``), then ``transforms``,
+``cpl``, ``prolog`` and ``ros``, then ``designators`` and ``turtlesim``, then ``process_modules``, then ``repl`` and ``testing``. A room imports only from the
 floors below its own, and importing this package imports none of them.
 """
 

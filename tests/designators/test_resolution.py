@@ -11,7 +11,7 @@ from cramhy_runtime.lisp.data import lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import keyword, sym
 from cramhy_runtime.prolog import query
-from cramhy_runtime.prolog.lazy_lists import from_iterator
+from cramhy_runtime.utilities.lazy_lists import from_iterator
 
 from .support import facts, lisp, make, python, user
 
@@ -104,7 +104,7 @@ def test_the_solutions_of_an_action_come_in_clause_order():
 
 
 def from_all(lazy):
-    from cramhy_runtime.prolog.lazy_lists import force_ll
+    from cramhy_runtime.utilities.lazy_lists import force_ll
 
     return force_ll(lazy)
 

@@ -12,7 +12,7 @@ import cramhy_runtime.prolog.package  # noqa: E402, F401  after the names of Com
 from cramhy_runtime.lisp.printer.printer import prin1_to_string  # noqa: E402
 from cramhy_runtime.lisp.reader.reader import read_from_string  # noqa: E402
 from cramhy_runtime.prolog import facts, query  # noqa: E402
-from cramhy_runtime.prolog.lazy_lists import force_ll  # noqa: E402
+from cramhy_runtime.utilities.lazy_lists import force_ll  # noqa: E402
 
 HERE = find_package("PROLOG-TESTS-HERE") or make_package("PROLOG-TESTS-HERE", use=["COMMON-LISP", "CRAM-PROLOG"])
 _PACKAGE = sym("*PACKAGE*")

@@ -7,8 +7,9 @@ from prolog_text import HERE, read
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.data import Cons, Symbol, list_from
-from cramhy_runtime.prolog import facts, patterns, query
-from cramhy_runtime.prolog.lazy_lists import elements
+from cramhy_runtime.prolog import facts, query
+from cramhy_runtime.utilities import patterns
+from cramhy_runtime.utilities.lazy_lists import elements
 
 variables = st.sampled_from([read(f"?{letter}") for letter in "uvwxyz"])
 atoms = st.one_of(st.sampled_from([read("a"), read("b"), None, True, 1, 2, 1.0, "s", read(":k")]))

@@ -5,7 +5,7 @@ from prolog_text import ask, error_text, first, function, group, read, show
 
 from cramhy_runtime.lisp.data import list_from
 from cramhy_runtime.prolog import facts, natives, query
-from cramhy_runtime.prolog.lazy_lists import elements, lazy_cdr
+from cramhy_runtime.utilities.lazy_lists import elements, lazy_cdr
 from cramhy_runtime.prolog.terms import Var
 
 
@@ -189,7 +189,7 @@ def test_answers_that_are_not_asked_for_are_not_computed():
 
 
 def test_a_handler_written_on_binding_lists():
-    from cramhy_runtime.prolog.patterns import add_bdg, var_value
+    from cramhy_runtime.utilities.patterns import add_bdg, var_value
 
     def twice(bindings, var, value):
         number = var_value(value, bindings)

@@ -6,7 +6,7 @@ from prolog_text import error_text, read, show
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.data import Cons, MultipleValues, Symbol, lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.prolog import lazy_lists as ll
+from cramhy_runtime.utilities import lazy_lists as ll
 
 
 def counting(calls, last=None):

@@ -4,7 +4,7 @@ import pytest
 from prolog_text import error_text, read, show
 
 from cramhy_runtime.lisp.data import Symbol
-from cramhy_runtime.prolog import patterns as p
+from cramhy_runtime.utilities import patterns as p
 
 
 @pytest.mark.parametrize("pattern, data, bindings", [

@@ -3,7 +3,7 @@
 import pytest
 from prolog_text import ask, error_text, first, group, read, show
 
-from cramhy_runtime.prolog.lazy_lists import lazy_cdr, lazy_list_p
+from cramhy_runtime.utilities.lazy_lists import lazy_cdr, lazy_list_p
 
 
 @pytest.mark.parametrize("goal, answer", [

@@ -4,7 +4,7 @@ import pytest
 from prolog_text import ask, error_text, read, show
 
 from cramhy_runtime.prolog import rete
-from cramhy_runtime.prolog.lazy_lists import force_ll
+from cramhy_runtime.utilities.lazy_lists import force_ll
 
 
 @pytest.fixture(autouse=True)

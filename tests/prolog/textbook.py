@@ -7,7 +7,7 @@ Bindings are dicts, clauses are renamed at every use, solutions come from recurs
 from itertools import count
 
 from cramhy_runtime.lisp.data import Cons, Symbol
-from cramhy_runtime.prolog.patterns import variable
+from cramhy_runtime.utilities.patterns import variable
 
 _fresh = count()
 

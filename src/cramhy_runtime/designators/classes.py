@@ -17,7 +17,7 @@ from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
 from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
-from ..prolog.utilities import current_timestamp
+from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
 

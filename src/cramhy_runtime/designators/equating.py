@@ -11,7 +11,7 @@ from ..lisp.conditions import error, handler_case, type_error
 from ..lisp.data import list_from
 from ..lisp.hooks import Hook
 from ..lisp.objects.generic import generic
-from ..prolog.lazy_lists import from_iterator
+from ..utilities.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError
 from .protocol import equate, next_solution, reference
 

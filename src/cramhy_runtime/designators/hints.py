@@ -10,7 +10,7 @@ from __future__ import annotations
 from ..lisp.data import Cons, Symbol
 from ..lisp.printer.printer import princ_to_string
 from ..prolog.database import functors
-from ..prolog.patterns import is_var
+from ..utilities.patterns import is_var
 from .classes import ActionDesignator, DesignatorError, MotionDesignator, ObjectDesignator, desig_prop_value
 from .symbols import sym
 

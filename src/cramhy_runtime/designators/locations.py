@@ -15,7 +15,7 @@ from ..lisp.conditions import restart_case, type_error
 from ..lisp.data import Cons, list_from, one, truth
 from ..lisp.dynamic import binding, special
 from ..lisp.packages import keyword
-from ..prolog.lazy_lists import elements, from_iterator
+from ..utilities.lazy_lists import elements, from_iterator
 from ..prolog.query import ask
 from ..prolog.terms import Var
 from .classes import LocationDesignator

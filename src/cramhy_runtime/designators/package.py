@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..cpl import package as _cpl  # noqa: F401  CRAM-LANGUAGE-DESIGNATOR-SUPPORT uses it
 from ..lisp.faces import define_face
-from ..prolog.package import CUT
+from ..utilities.symbols import CUT
 from ..prolog.rete import define_object_id
 from . import classes, equating, language_support, locations, macro_support, readers, resolution, syntax
 from . import predicates as _predicates  # noqa: F401

@@ -16,11 +16,11 @@ from ..lisp.conditions import error
 from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol
 from ..lisp.dynamic import special
 from ..lisp.objects.generic import generic
-from ..prolog.lazy_lists import from_iterator, lazy_car, lazy_cdr
-from ..prolog.patterns import is_var
+from ..utilities.lazy_lists import from_iterator, lazy_car, lazy_cdr
+from ..utilities.patterns import is_var
 from ..prolog.query import ask
 from ..prolog.terms import Var
-from ..prolog.utilities import current_timestamp
+from ..utilities.small_functions import current_timestamp
 from .classes import ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator
 from .equating import youngest
 from .locations import location_solutions

@@ -1,6 +1,5 @@
-"""CRAM's Prolog: terms, unification, clauses compiled to Python, built-ins, fact groups, rete; and ``cram-utilities``: the lazy lists
-and patterns on which they are built, and threads, locks, semaphores, queues, mailboxes and barriers (on ``lines``, lines of tasks that
-wait). Sources: reference pages ``prolog.md`` and ``cpl.md`` 13.
+"""CRAM's Prolog: terms, unification, clauses compiled to Python, built-ins, fact groups, rete; built on the lazy
+lists and patterns of the room ``utilities``. Source: reference page ``prolog.md``.
 
 For other rooms the interface is `cramhy_runtime.prolog.query` (ask) and `cramhy_runtime.prolog.natives` (define predicates).
 """

@@ -10,7 +10,7 @@ from cramhy_runtime.lisp.conditions import Error, SimpleError, SimpleWarning, er
 from cramhy_runtime.lisp.data import Cons, Symbol, UndefinedFunction, list_from, one, truth
 from cramhy_runtime.lisp.packages import is_symbol
 
-from .lazy_lists import lazy_take
+from cramhy_runtime.utilities.lazy_lists import lazy_take
 from .lisp_calls import BREAK_ON_LISP_ERRORS, call_lisp, compare, lisp_fun, lisp_fun_goal, lisp_pred_goal
 from .machine import fail
 from .natives import step_predicate, test

@@ -16,9 +16,9 @@ from cramhy_runtime.lisp.data import Cons, Symbol
 
 from . import control, lisp_calls
 from .database import Clause, arguments_of, extended, find_predicate, valid_functor
-from .lazy_lists import LazyTail
+from cramhy_runtime.utilities.lazy_lists import LazyTail
 from .machine import fail
-from .patterns import ANONYMOUS, same_atom, variable
+from cramhy_runtime.utilities.patterns import ANONYMOUS, same_atom, variable
 from .relations import compile_relation, index_key
 from .symbols import sym
 from .terms import UNSET, TermTail, Var, unify

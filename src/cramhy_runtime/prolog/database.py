@@ -13,7 +13,7 @@ from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.packages import is_symbol
 
 from .machine import FAIL, fail
-from .patterns import variable
+from cramhy_runtime.utilities.patterns import variable
 from .terms import deref, raw
 
 

@@ -12,7 +12,7 @@ from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn, type_
 from cramhy_runtime.lisp.data import Cons, list_from, python_list
 
 from .database import Clause, changed, functor_entry, functors, valid_functor
-from .patterns import rename_vars
+from cramhy_runtime.utilities.patterns import rename_vars
 
 _groups: dict = {}
 

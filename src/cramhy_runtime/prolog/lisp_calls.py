@@ -12,7 +12,7 @@ from cramhy_runtime.lisp.conditions import Error, StorageCondition, handler_bind
 from cramhy_runtime.lisp.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, truth
 from cramhy_runtime.lisp.dynamic import special
 
-from .lazy_lists import force_ll
+from cramhy_runtime.utilities.lazy_lists import force_ll
 from .symbols import CUT, PROLOG, sym
 from .terms import TermTail, Var, import_term, raw, resolve, undo, unify
 

@@ -23,7 +23,7 @@ from cramhy_runtime.lisp.data import Cons, list_from, one
 
 from .database import changed, functor_entry
 from .facts import built_in_group
-from .lazy_lists import elements as lazy_elements
+from cramhy_runtime.utilities.lazy_lists import elements as lazy_elements
 from .machine import fail, retry_iterator
 from .symbols import sym
 from .terms import UNSET, Var, deref, import_term, raw, resolve, undo, unify

@@ -23,9 +23,9 @@ from . import (
     control,
 )
 from .database import find_predicate
-from .lazy_lists import tail
+from cramhy_runtime.utilities.lazy_lists import tail
 from .machine import SOLVED, Machine
-from .patterns import ANONYMOUS, entry, var_value, variables_of
+from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, var_value, variables_of
 from .terms import UNSET, Var, import_term, resolve
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])

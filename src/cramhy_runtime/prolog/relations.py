@@ -9,7 +9,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import DoubleFloat, Keyword, Symbol
 from cramhy_runtime.lisp.equality import equal_key
 
-from .lazy_lists import LazyTail
+from cramhy_runtime.utilities.lazy_lists import LazyTail
 from .machine import fail
 from .terms import UNSET, TermTail, Var, undo, unify
 

@@ -17,9 +17,9 @@ from cramhy_runtime.lisp.packages import keyword
 from cramhy_runtime.lisp.printer.printer import define_printer
 from cramhy_runtime.lisp.printer.standard_printers import print_slots
 
-from .lazy_lists import from_iterator
+from cramhy_runtime.utilities.lazy_lists import from_iterator
 from .natives import predicate
-from .patterns import ANONYMOUS, substitute_vars, variable, variables_of, vars_in
+from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, variables_of, vars_in
 from .symbols import PROLOG, sym
 from .terms import import_term, raw
 

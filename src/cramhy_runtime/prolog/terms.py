@@ -13,8 +13,8 @@ from __future__ import annotations
 from cramhy_runtime.lisp.conditions import StorageCondition, error
 from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, list_from, python_list
 
-from .lazy_lists import LazyTail, force_ll
-from .patterns import ANONYMOUS, fresh_name, same_atom
+from cramhy_runtime.utilities.lazy_lists import LazyTail, force_ll
+from cramhy_runtime.utilities.patterns import ANONYMOUS, fresh_name, same_atom
 
 UNSET = type("Unset", (), {"__repr__": lambda self: "#<unset>", "__slots__": ()})()
 """The value of a variable that has none."""

@@ -4,7 +4,7 @@ A variable is a symbol whose name starts with ``?``; ``?_`` of the package cram-
 A segment variable starts with ``!?``, stands first in a list, and takes as few elements as will do. Bindings are an
 association list of (variable . value), newest first; ``nil`` is the empty one, so whoever can fail returns a second value.
 
-This is the library that plans call. The Prolog engine has terms of its own, see ``terms.py``. Source: prolog.md sections 2, 3.
+This is the library that plans call. The Prolog engine has terms of its own, see ``prolog/terms.py``. Source: prolog.md sections 2, 3.
 """
 
 from __future__ import annotations

@@ -1,12 +1,20 @@
-"""Lisp text evaluated in a session, on both back ends."""
+"""Each test has its own virtual time, on both back ends; Lisp text is evaluated in a session."""
 
 import pytest
 
-from cramhy_runtime import kernel
+from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 from cramhy_runtime.lisp.printer.print_controls import PACKAGE
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
+
+image.boot()
+
+
+@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+def fresh_kernel(request):
+    yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
+    kernel.stop()
 
 
 class Lisp:

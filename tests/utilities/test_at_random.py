@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from cramhy_runtime.lisp.data import Cons, Symbol, list_from, python_list
 from cramhy_runtime.lisp.equality import equal
 from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.prolog import lazy_lists as ll
-from cramhy_runtime.prolog import patterns
+from cramhy_runtime.utilities import lazy_lists as ll
+from cramhy_runtime.utilities import patterns
 
 few = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 X, Y, Z = (sym(f"CRAM-USER::?{name}") for name in "XYZ")

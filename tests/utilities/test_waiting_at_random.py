@@ -6,9 +6,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cramhy_runtime import kernel
-from cramhy_runtime.prolog.locks import ConditionVariable, Lock
-from cramhy_runtime.prolog.queues import make_mailbox, receive_message, send_message
-from cramhy_runtime.prolog.semaphores import make_semaphore, signal_semaphore, wait_on_semaphore
+from cramhy_runtime.utilities.locks import ConditionVariable, Lock
+from cramhy_runtime.utilities.queues import make_mailbox, receive_message, send_message
+from cramhy_runtime.utilities.semaphores import make_semaphore, signal_semaphore, wait_on_semaphore
 
 UNITS = 3
 times = st.sampled_from([0.0, 0.5, 1.0, 2.0])
