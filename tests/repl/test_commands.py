@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 
 import pytest
 
@@ -40,6 +41,7 @@ class TestRun:
         assert cramhy("run", "plan.hy", "--time", "virtual").stdout == "\n1 "
         assert cramhy("run", "my-system.asd", "--time", "virtual").stdout == "\n:LOADED "
 
+    @pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
     def test_a_hy_file_that_goes_into_no_package_stays_hy(self, cramhy, tmp_path):
         (tmp_path / "plan.hy").write_text("(require cramhy *)\n(import cramhy_runtime.cpl *)\n"
                                           "(setv slow [])\n(print (top-level (par (do (sleep 2) \"one\") (.append slow 2))) slow)\n"
