@@ -326,3 +326,9 @@ def test_what_is_asked_of_a_thing_of_another_kind_says_what_it_is_not(plan_text,
 
 def test_the_root_of_the_task_tree_has_no_task(plan_text):
     assert "There is no task at the root of the task tree: a path has one part at least." in plan_text.error("(top-level (task '()))")
+
+
+def test_the_count_of_arguments_is_right_though_other_functions_are_called_alike(plan_text):
+    """Compiled lambda expressions share their Python names; the one that misses the parameter is found among them."""
+    plan_text("(defvar *others* (list (lambda (p) p) (lambda (q r) (list q r)) (lambda () nil)))")
+    assert "invalid number of arguments: 1" in plan_text.error("(top-level (funcall (lambda (first second) (list first second)) 1))")

@@ -447,7 +447,7 @@ def _wrong_argument_count(exception):
     match = _ARITY.match(str(exception))
     if not match:
         return None
-    name, function = _called(match["name"])
+    name, function = _called(match["name"], match["missing"])
     code = getattr(function, "__code__", None)
     if not _takes(code, match["missing"]):  # another function of that name
         function, code = None, _code_of(match["name"], exception)
@@ -488,8 +488,8 @@ def _takes(code, missing):
     return code is not None and (missing is None or missing in code.co_varnames)
 
 
-def _called(name):
-    """(how the user calls it, function) for Python's qualified name of a function."""
+def _called(name, missing):
+    """(how the user calls it, function) for Python's qualified name of a function that misses its parameter ``missing``."""
     import gc
     from types import FunctionType
 
@@ -501,7 +501,8 @@ def _called(name):
                     if getattr(function, "__qualname__", None) == name:
                         return shown(symbol), getattr(function, "python", function)
     # a local function or a lambda expression: only the collector knows it
-    found = next((each for each in gc.get_objects() if isinstance(each, FunctionType) and each.__qualname__ == name), None)
+    found = next((each for each in gc.get_objects()
+                  if isinstance(each, FunctionType) and each.__qualname__ == name and _takes(each.__code__, missing)), None)
     short = name.rpartition(".")[2]
     if short.startswith(("<lambda>", "Lfunction")):
         return "The function", found
