@@ -332,3 +332,9 @@ def test_the_count_of_arguments_is_right_though_other_functions_are_called_alike
     """Compiled lambda expressions share their Python names; the one that misses the parameter is found among them."""
     plan_text("(defvar *others* (list (lambda (p) p) (lambda (q r) (list q r)) (lambda () nil)))")
     assert "invalid number of arguments: 1" in plan_text.error("(top-level (funcall (lambda (first second) (list first second)) 1))")
+
+
+def test_each_failure_of_try_in_order_is_told_with_its_place(plan_text):
+    told = plan_text.error('(top-level\n  (try-in-order\n    (fail "left")\n    (par (fail "right"))))')
+    assert "Failure 1 of 2: left. (at <repl>:3:5)" in told
+    assert "Failure 2 of 2: right. (at <repl>:4:10)" in told

@@ -13,8 +13,9 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..lisp import condition_types as types
-from ..lisp.conditions import error, handler_bind, handler_case, make_condition, matches, signal_condition
+from ..lisp.conditions import HandlerExit, error, handler_bind, make_condition, matches, signal_condition
 from ..lisp.data import lisp_list, list_from
+from ..lisp.evaluation.places_in_source import locate
 from ..lisp.late import late
 from ..lisp.packages import is_symbol, symbol_name
 from .debugging import BREAK_ON_PLAN_FAILURES, break_on
@@ -165,21 +166,30 @@ def attempt(thunk):
     """Call ``thunk``: (its values, ``None``), or (``None``, the plan failure that ended it). Outer handlers do not see it."""
     me = kernel.current()
     ending = me.cancelled_delivered
-    values = handler_case([(PlanFailure, _Failed)], thunk)
-    if values.__class__ is _Failed:
-        if me.cancelled_delivered and not ending:
-            raise values.failure
-        return None, values.failure
-    return values, None
+    failed = _Failed()
+    try:
+        return handler_bind([(PlanFailure, failed.take)], thunk), None
+    except _Failed as caught:
+        if caught is not failed:
+            raise
+        failure = failed.failure
+        locate(failure, failed)
+        failed.__traceback__ = failed.failure = None  # no circle of the failure and the frames that it passed
+    if me.cancelled_delivered and not ending:
+        raise failure
+    return None, failure
 
 
-class _Failed:
-    """What `attempt` gets instead of values."""
+class _Failed(HandlerExit):
+    """Unwinds to the `attempt` that made it."""
 
-    __slots__ = ("failure",)
+    def __init__(self):
+        super().__init__(None, 0, None)
+        self.failure = None
 
-    def __init__(self, failure):
+    def take(self, failure):
         self.failure = failure
+        raise self
 
 
 def composite_failure(failures):
