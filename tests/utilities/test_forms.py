@@ -1,5 +1,7 @@
 """The forms of CRAM-UTILITIES as a plan writes them, each with the values or the text that it gives (cpl.md 13)."""
 
+import re
+
 import pytest
 
 from cramhy_runtime.lisp.conditions import Condition
@@ -110,15 +112,11 @@ def test_what_is_wrong_says_what(lisp, form, text):
      " (prog1 (list (cut:current-timestamp) (> (funcall (cut:microsecond-timestamp-function)) 1d9)) (cut:set-default-timestamp-function)))",
      "(1.5d0 T)"),
     ("(list #+#.(cut:function-bound-feature \"CAR\" \"CL\") 1 #+#.(cut:function-bound-feature \"NO-SUCH\" \"CL\") 2)", "(1)"),
-    ("(top-level (with-tags (cut:choose grasp :parameters (x y) :generators (3 (+ x 1)) :body (list x y (name grasp)))))",
-     '(3 4 "[TAG-GRASP]-1")'),
+    ("(top-level (with-tags (cut:choose grasp :parameters (x y) :generators (3 (+ x 1)) :body (list x y (cpl-impl:name grasp)))))",
+     '(3 4 "[TAG-GRASP]")'),
 ])
 def test_the_rest(lisp, form, values):
-    if "(name " in form:
-        lisp("(import 'cpl-impl:name)")
-        assert lisp(form).startswith(values[:-4])
-    else:
-        assert lisp(form) == values
+    assert re.sub(r"(?<=\])-\d+", "", lisp(form)) == values  # without the numbers of tasks
 
 
 def test_a_quad_tree_finds_what_a_search_of_all_points_finds(lisp):
