@@ -207,7 +207,6 @@ class BesideBlock(RaceBlock):
     """Branches that watch the body: the end of one ends it, and its end ends them. Policies are made of this."""
 
     __slots__ = ()
-    form = "PURSUE"
 
     def ready(self, branches: Branches) -> Any:
         return True

@@ -141,9 +141,9 @@ def _note_beside(failure, tasks):
 
 
 def _warn_of_lost(tasks):
-    """Tell of ``tasks`` that failed when nobody can take their failure any more: while they were ended for another reason."""
+    """Tell of ``tasks``, which failed when nobody can take their failure any more: while they were ended for another reason."""
     for task in tasks:
-        if task.status is FAILED and isinstance(task.result, PlanFailure):
+        if isinstance(task.result, PlanFailure):
             warning = SimpleWarning("~a failed while it was ended: ~a", task.name, opened(task.result))
             warning.position = getattr(opened(task.result), "position", None)
             warn(warning)

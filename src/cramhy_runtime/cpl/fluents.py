@@ -286,11 +286,6 @@ class Net(Fluent):
     def peek(self):
         return peeking(self.formula)
 
-    def pulse(self):
-        self.pulses += 1
-        if self.waiters or self.nets or self.callbacks:
-            self._notify(self.peek())
-
     def input_pulsed(self):
         self.pulse()
 
