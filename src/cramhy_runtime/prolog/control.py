@@ -86,6 +86,9 @@ def solve(m, goal, k, b):
     return (predicate.call, k, *arguments)
 
 
+Machine.solve = solve  # a method, so that a machine which explains its proof sees the goals inside of constructs, too
+
+
 def _solve_rest(m, step):
     _, k, goals, b = step
     return solve_all(m, goals, k, b)
@@ -97,7 +100,7 @@ def solve_all(m, goals, k, b):
     if goals is None:
         return k
     rest = goals.cdr if goals.cdr.__class__ is Cons else deref(goals.cdr)
-    return solve(m, goals.car, k if rest is None else (_solve_rest, k, rest, b), b)
+    return m.solve(goals.car, k if rest is None else (_solve_rest, k, rest, b), b)
 
 
 def _and(m, terms, k, b):
@@ -118,7 +121,7 @@ def _branch(m, step):
     rest = deref(terms.cdr)
     if rest is not None:
         m.choices.append((len(m.trail), (_branch, k, rest, height)))
-    return solve(m, terms.car, k, height)
+    return m.solve(terms.car, k, height)
 
 
 CONTROL[sym("OR")] = _BASE[sym("OR")] = _or
@@ -144,7 +147,7 @@ def _fail(m, k, b):
 def _not(m, k, b, goal):
     height = len(m.choices)
     m.choices.append((len(m.trail), k))
-    return solve(m, goal, (_refute, None, height), height + 1)
+    return m.solve(goal, (_refute, None, height), height + 1)
 
 
 def _refute(m, step):
@@ -166,7 +169,7 @@ def _commit(m, step):
 
 @_control("CRAM-PROLOG::CALL", 1, 1)
 def _call(m, k, b, goal):
-    return solve(m, goal, k, len(m.choices))
+    return m.solve(goal, k, len(m.choices))
 
 
 _FAIL_GOAL = Cons(sym("CRAM-PROLOG::FAIL"), None)
@@ -176,31 +179,31 @@ _FAIL_GOAL = Cons(sym("CRAM-PROLOG::FAIL"), None)
 def _if(m, k, b, condition, then, otherwise=_FAIL_GOAL):
     height = len(m.choices)
     m.choices.append((len(m.trail), (_continue_with, k, otherwise, b)))
-    return solve(m, condition, (_then, k, then, b, height), height + 1)
+    return m.solve(condition, (_then, k, then, b, height), height + 1)
 
 
 def _continue_with(m, step):
     _, k, goal, b = step
-    return solve(m, goal, k, b)
+    return m.solve(goal, k, b)
 
 
 def _then(m, step):
     _, k, goal, b, height = step
     del m.choices[height:]
-    return solve(m, goal, k, b)
+    return m.solve(goal, k, b)
 
 
 @_control("CRAM-PROLOG::*->", 2, 3)
 def _soft_if(m, k, b, condition, then, otherwise=_FAIL_GOAL):
     height = len(m.choices)
     m.choices.append((len(m.trail), (_continue_with, k, otherwise, b)))
-    return solve(m, condition, (_soft_then, k, then, b, height), height + 1)
+    return m.solve(condition, (_soft_then, k, then, b, height), height + 1)
 
 
 def _soft_then(m, step):
     _, k, goal, b, height = step
     m.choices[height] = (m.choices[height][0], FAIL)
-    return solve(m, goal, k, b)
+    return m.solve(goal, k, b)
 
 
 _NOT, _AND = sym("NOT"), sym("AND")
@@ -224,12 +227,12 @@ class Instances:
 
     __slots__ = ("proof", "template", "originals")
 
-    def __init__(self, template, goal):
+    def __init__(self, m, template, goal):
         copies = {}
         goal, self.template = copy_term(goal, copies), copy_term(template, copies)
         self.originals = {copy: variable for variable, copy in copies.items()}
         names = {copy.name: copy for copy in self.originals if copy.name is not None}
-        self.proof = Machine(names)
+        self.proof = m.nested(names)
         self.proof.prove((_solve_goal, SOLVED, goal))
 
     def remaining(self):
@@ -255,23 +258,23 @@ class Instances:
 
 
 def _solve_goal(m, step):
-    return solve(m, step[2], step[1], 0)
+    return m.solve(step[2], step[1], 0)
 
 
 @_control("CRAM-PROLOG::FINDALL", 3, 3)
 def _findall(m, k, b, template, goal, result):
-    return k if m.unify(result, Instances(template, goal).lazy_list()) else fail(m)
+    return k if m.unify(result, Instances(m, template, goal).lazy_list()) else fail(m)
 
 
 @_control("CRAM-PROLOG::BAGOF", 3, 3)
 def _bagof(m, k, b, template, goal, result):
-    found = Instances(template, goal).lazy_list()
+    found = Instances(m, template, goal).lazy_list()
     return k if found is not None and m.unify(result, found) else fail(m)
 
 
 @_control("CRAM-PROLOG::SETOF", 3, 3)
 def _setof(m, k, b, template, goal, result):
-    found = Instances(template, goal).remaining()
+    found = Instances(m, template, goal).remaining()
     if not found:
         return fail(m)
     kept = [item for i, item in enumerate(found) if not any(_same(item, other) for other in found[i + 1:])]
@@ -291,7 +294,7 @@ def _same(a, b):
 @_control("EVERY", 2, 2)
 def _every(m, k, b, generator, pattern):
     """Prove ``pattern`` for all solutions of ``generator`` together: its other variables have one value throughout."""
-    goals = Instances(pattern, generator).remaining()
+    goals = Instances(m, pattern, generator).remaining()
     return solve_all(m, list_from(goals), k, len(m.choices))
 
 

@@ -37,6 +37,10 @@ class Machine:
         self.start = step
         return self
 
+    def nested(self, names):
+        """A machine for a proof inside of this one, whose solutions are collected."""
+        return Machine(names)
+
     def unify(self, *sides):
         """Make terms the same, two by two: ``unify(a, b, c, d)`` unifies a with b and c with d. All or nothing."""
         trail = self.trail
