@@ -3,7 +3,8 @@
               turtlesim-msg turtlesim-srv std_srvs-srv
               cl-transforms geometry_msgs-msg
               cram-designators cram-prolog
-              cram-process-modules cram-language-designator-support)
+              cram-process-modules cram-language-designator-support
+              cram-executive)
   :components
   ((:module "src"
     :components
@@ -11,8 +12,21 @@
      (:file "control-turtlesim" :depends-on ("package"))
      (:file "simple-plans" :depends-on ("package" "control-turtlesim"))
      (:file "motion-designators" :depends-on ("package"))
+     (:file "location-designators" :depends-on ("package"))
+     (:file "action-designators" :depends-on ("package" "control-turtlesim"))
      (:file "conditions" :depends-on ("package"))
      (:file "process-modules" :depends-on ("package"
                                           "control-turtlesim"
                                           "simple-plans"
-                                          "motion-designators"))))))
+                                          "motion-designators"
+                                          "location-designators"))
+     (:file "selecting-process-modules" :depends-on ("package"
+                                                    "motion-designators"
+                                                    "process-modules"))
+     (:file "high-level-plans" :depends-on ("package"
+                                           "control-turtlesim"
+                                           "simple-plans"
+                                           "location-designators"
+                                           "action-designators"
+                                           "conditions"
+                                           "selecting-process-modules"))))))

@@ -12,7 +12,13 @@
           (turtle-motion-speed motion)
           (turtle-motion-angle motion)))
       (move
-        (move-to motion)))))
+        (move-to motion))
+      (go-to
+        (let ((point (reference motion)))
+          (roslisp:ros-info (turtle-process-modules)
+            "Goint to point ~a."
+            point)
+          (move-to point))))))
 
 (def-process-module turtlesim-pen-control (motion-designator)
   (roslisp:ros-info (turtle-process-modules)
@@ -66,3 +72,19 @@
                     (?width (+ 3 (random 5))))
                 (desig:a motion (type setting-pen) (r ?r) (g ?g) (b ?b) (width ?width))))
             (sleep 0.5)))))))
+
+(defun goto-location (?horizontal-position ?vertical-position)
+  "To a place in a third of the world: :left :center :right and :bottom :center :top."
+  (init)
+  (top-level
+    (with-process-modules-running (turtlesim-navigation)
+      (let* ((?place (desig:a location
+                       (horizontal-position ?horizontal-position)
+                       (vertical-position ?vertical-position)))
+             (motion (desig:a motion (type going-to) (goal ?place))))
+        (pm-execute 'turtlesim-navigation motion)))))
+
+(defun init ()
+  "Starts a ROS node and listens to the turtle."
+  (start-ros-node "turtle1")
+  (init-ros-turtle "turtle1"))

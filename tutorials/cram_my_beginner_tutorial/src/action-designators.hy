@@ -1,0 +1,47 @@
+(require cramhy *)
+(in-package :tut)
+
+(defun get-shape-vertices (type &rest parameters)
+  "The corners of a shape as lists (x y 0), in the order in which they are visited.
+  The turtle's present position is the lower left corner, and the last in the list.
+  `parameters' are base width and height of a :triangle, width and height of a :rectangle."
+  (with-fields (x y) (value *turtle-pose*)
+    (flet ((corner (right up)
+             (list (+ x right) (+ y up) 0)))
+      (ecase type
+        (:triangle
+         (destructuring-bind (base-width height) parameters
+           (list (corner base-width 0)
+                 (corner (/ base-width 2) height)
+                 (corner 0 0))))
+        (:rectangle
+         (destructuring-bind (width height) parameters
+           (list (corner width 0)
+                 (corner width height)
+                 (corner 0 height)
+                 (corner 0 0))))))))
+
+(def-fact-group turtle-action-designators (action-grounding)
+  ;; for each kind of action, the plan that does it and what this plan is called with
+
+  (<- (desig:action-grounding ?desig (draw-house))
+    (desig-prop ?desig (:type :drawing))
+    (desig-prop ?desig (:shape :house)))
+
+  (<- (desig:action-grounding ?desig (draw-simple-shape ?vertices))
+    (desig-prop ?desig (:type :drawing))
+    (desig-prop ?desig (:shape :rectangle))
+    (desig-prop ?desig (:width ?width))
+    (desig-prop ?desig (:height ?height))
+    (lisp-fun get-shape-vertices :rectangle ?width ?height ?vertices))
+
+  (<- (desig:action-grounding ?desig (draw-simple-shape ?vertices))
+    (desig-prop ?desig (:type :drawing))
+    (desig-prop ?desig (:shape :triangle))
+    (desig-prop ?desig (:base-width ?base-width))
+    (desig-prop ?desig (:height ?height))
+    (lisp-fun get-shape-vertices :triangle ?base-width ?height ?vertices))
+
+  (<- (desig:action-grounding ?desig (navigate ?target))
+    (desig-prop ?desig (:type :navigating))
+    (desig-prop ?desig (:target ?target))))
