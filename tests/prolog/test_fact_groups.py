@@ -53,6 +53,18 @@ def test_built_in_groups_are_protected_and_extendable():
     assert ask("(member ?x nil)") == "(((?X . OWN)))"
 
 
+def test_a_predicate_that_is_there_to_be_extended_fails_without_a_warning(warnings_given):
+    facts.built_in_group(read("groundings"), read("grounding"))
+    assert ask("(grounding ?x)") == "NIL" and warnings_given == []
+    assert "Other definitions were in fact-groups (GROUNDINGS)." in error_text(lambda: group("g", "((grounding 1))"))
+    group("g", "((grounding 1))", extendable="(grounding)")
+    assert ask("(grounding ?x)") == "(((?X . 1)))"
+    facts.remove_fact_group(read("g"))
+    assert ask("(grounding ?x)") == "NIL" and warnings_given == []
+    facts.remove_fact_group(read("groundings"))
+    assert ask("(grounding ?x)") == "NIL" and "with undefined functor GROUNDING." in warnings_given[0]
+
+
 def test_facts_for_a_handler_act_when_it_gives_nothing():
     group("g", "((fail) (== 1 1))", "((bound ?x) (== ?x 7))")
     assert ask("(fail)") == "(NIL)"

@@ -49,7 +49,8 @@ class Functor:
     """What is known of a functor.
 
     ``handler`` is a call function; ``native`` maps numbers of arguments (``None``: any) to call functions that stand for the
-    clauses of the built-in fact group ``native_group``; ``clauses`` are those of users, in order.
+    clauses of the built-in fact group ``native_group``; ``clauses`` are those of users, in order. A functor of a built-in group
+    without native facts is there to be extended: its goals just fail until users add clauses.
     """
 
     __slots__ = ("name", "handler", "native", "native_group", "clauses")
@@ -61,11 +62,11 @@ class Functor:
 
     @property
     def defined(self):
-        return bool(self.clauses or self.handler or self.native)
+        return bool(self.clauses or self.handler) or self.native_group is not None
 
     def groups(self):
         """The names of the fact groups with clauses of this functor, oldest first."""
-        found = {self.native_group: None} if self.native else {}
+        found = {} if self.native_group is None else {self.native_group: None}
         for clause in self.clauses:
             found.setdefault(clause.group)
         return list(found)
@@ -81,7 +82,7 @@ class Functor:
             return _with_fallback(self.handler, from_clauses) if from_clauses else self.handler
         if native:
             return _one_after_other(native, from_clauses) if from_clauses else native
-        return from_clauses
+        return from_clauses or _failing
 
 
 functors: dict[object, Functor] = {}

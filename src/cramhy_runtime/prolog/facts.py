@@ -65,7 +65,8 @@ def remove_fact_group(name):
 
 
 def built_in_group(name, functor):
-    """Note that ``functor`` belongs to the built-in group ``name``."""
+    """Note that ``functor`` belongs to the built-in group ``name``; users extend it in groups that list it as extendable."""
+    functor_entry(functor).native_group = name
     functors_of_group = _groups.setdefault(name, [])
     if functor not in functors_of_group:
         functors_of_group.append(functor)

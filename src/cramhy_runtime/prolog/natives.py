@@ -37,8 +37,7 @@ def _install(name, call, group, arity):
     if group is None:
         entry.handler = call
     else:
-        entry.native_group = sym(group)
-        built_in_group(entry.native_group, functor)
+        built_in_group(sym(group), functor)
         entry.native = {**(entry.native or {}), arity: call}
     changed(functor)
 
