@@ -1,0 +1,18 @@
+"""Projection: running a plan in an imagined world. Usable from Python:
+
+    from cramhy_runtime import projection as proj
+
+    proj.define_projection_environment(KITCHEN, variables=[(ROBOT_POSE, lambda: start)], modules=[(NAVIGATION, IMAGINED_NAVIGATION)])
+    proj.with_projection_environment(KITCHEN, lambda: cpl.top_level(plan)).result     # the list of the plan's values
+
+``environments`` what an imagined world is made of, and a body in it · ``clocks`` its time · ``own_modules`` which process modules it sees
+· ``macro_support``, ``package`` the Lisp face. Reference: projection-and-events.md part A.
+"""
+
+from .clocks import LinearClock, PartiallyOrderedClock, clock_time, clock_wait, with_partially_ordered_clock_disabled
+from .environments import define_projection_environment, define_special_projection_variable, with_projection_environment
+
+__all__ = [
+    "clock_time", "clock_wait", "define_projection_environment", "define_special_projection_variable", "LinearClock",
+    "PartiallyOrderedClock", "with_partially_ordered_clock_disabled", "with_projection_environment",
+]  # fmt: skip

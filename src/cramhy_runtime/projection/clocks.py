@@ -1,0 +1,131 @@
+"""Clocks of imagined worlds: time that passes because somebody says that something would have taken it.
+
+A `LinearClock` adds up: whoever waits moves it. A `PartiallyOrderedClock` is for plans whose branches act side by side: their waits
+overlap, as two motions of two arms do. It moves in steps from one awaited moment to the next, each a little real time after the
+last one so that branches which begin to wait together are counted together. That little time is the kernel's, so in virtual time
+nothing depends on luck. Law: after a wait the clock shows at least the time before it plus the duration. Source:
+projection-and-events.md A2.
+
+Repaired: a clock is disabled as long as anybody disables it; in the original a form that is active twice enables it when its inner
+activation ends. A duration that is no real number of at least 0 is an error, where the original sets a linear clock back.
+"""
+
+from __future__ import annotations
+
+from bisect import insort
+
+from cramhy_runtime import kernel
+
+from ..cpl.pausing import pause
+from ..cpl.waiting import sleep
+from ..lisp.conditions import type_error
+from ..lisp.data import lisp_list
+from ..lisp.numbers.arithmetic import add2, is_real
+from ..lisp.objects.generic import generic
+from . import symbols  # noqa: F401  the package must exist
+from .symbols import sym
+
+clock_time = generic("PROJ::CLOCK-TIME", "(clock)", documentation="The time that ``clock`` shows.")
+clock_wait = generic("PROJ::CLOCK-WAIT", "(clock duration)", documentation="""
+Let ``duration`` pass on ``clock``: it shows at least its old time plus the duration when this returns.""")
+partially_ordered_clock_enabled = generic("PROJ::PARTIALLY-ORDERED-CLOCK-ENABLED", "(clock)", documentation="""
+True if nobody disables ``clock`` at the moment.""")
+
+_DURATION = lisp_list(sym("REAL"), 0)
+
+
+def _check(duration):
+    if isinstance(duration, bool) or not is_real(duration) or not duration >= 0:
+        type_error(duration, _DURATION, "\n(A clock waits for a duration: a real number, not below 0.)")
+
+
+class LinearClock:
+    """A clock that every wait moves, by its whole duration and at once. ``initial_time``: a real number."""
+
+    lisp_name = "CRAM-PROJECTION::LINEAR-CLOCK"
+    initargs = {"INITIAL-TIME": "time"}
+
+    def __init__(self, initial_time=0):
+        self.time = initial_time
+
+
+class PartiallyOrderedClock:
+    """A clock on which parallel waits overlap.
+
+    ``initial_time``: a real number. ``increment_delay``: seconds of the kernel's clock between two steps, in which waits count as
+    begun together.
+    """
+
+    lisp_name = "CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK"
+    initargs = {"INITIAL-TIME": "time", "INCREMENT-DELAY": "increment_delay"}
+
+    def __init__(self, initial_time=0, increment_delay=0.05):
+        self.time = initial_time
+        self.increment_delay = increment_delay
+        self.ends = []  # the moments that are waited for, in order
+        self.disabled = 0  # how many forms disable it now
+        self.held_up = []  # tasks of the kernel that wait for it to be enabled
+
+    def await_enabled(self):
+        me = kernel.current()
+        while self.disabled:
+            self.held_up.append(me)
+            try:
+                pause(lambda: "a projection clock that is disabled")
+            finally:
+                self.held_up.remove(me)
+
+    def step(self):
+        """Go on to the next moment that somebody waits for."""
+        for end in self.ends:
+            if end > self.time:
+                self.time = end
+                return
+
+
+@clock_time.method(LinearClock)
+@clock_time.method(PartiallyOrderedClock)
+def _time(clock):
+    return clock.time
+
+
+@clock_wait.method(LinearClock, None)
+def _wait_linear(clock, duration):
+    _check(duration)
+    clock.time = add2(clock.time, duration)
+    return clock.time
+
+
+@clock_wait.method(PartiallyOrderedClock, None)
+def _wait_partially_ordered(clock, duration):
+    _check(duration)
+    end = add2(clock.time, duration)
+    insort(clock.ends, end)
+    try:
+        while clock.time < end:
+            clock.await_enabled()
+            sleep(clock.increment_delay)
+            clock.await_enabled()
+            if clock.time < end:
+                clock.step()
+    finally:
+        clock.ends.remove(end)
+
+
+@partially_ordered_clock_enabled.method(PartiallyOrderedClock)
+def _enabled(clock):
+    return None if clock.disabled else True
+
+
+def with_partially_ordered_clock_disabled(clock, body):
+    """Values of ``body()``, during which the time of ``clock`` does not advance; it does when all such forms have been left."""
+    if not isinstance(clock, PartiallyOrderedClock):
+        return type_error(clock, sym("PROJ::PARTIALLY-ORDERED-CLOCK"))
+    clock.disabled += 1
+    try:
+        return body()
+    finally:
+        clock.disabled -= 1
+        if not clock.disabled:
+            for task in clock.held_up:
+                task.kernel.unpark(task)

@@ -1,0 +1,7 @@
+"""The Lisp package of this room, made before anything interns a symbol in it; its contents are in ``package.py``."""
+
+from ..lisp.packages import COMMON_LISP, ensure_package, sym
+
+PROJ = ensure_package("CRAM-PROJECTION", "PROJ", use=[COMMON_LISP])
+
+__all__ = ["PROJ", "sym"]

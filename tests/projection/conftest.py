@@ -1,0 +1,78 @@
+"""Projection, occasions and episodes are tested as users meet them: in Lisp text, in virtual time, on both back ends."""
+
+import io
+import itertools
+import re
+
+import pytest
+
+from cramhy_runtime import image
+from cramhy_runtime.cpl import task_variables
+from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.projection import environments
+from cramhy_runtime.prolog import facts, rete
+from cramhy_runtime.repl.console import report
+from cramhy_runtime.repl.session import Session, condition_of
+
+image.boot()
+
+PRELUDE = """
+(defpackage {name} (:use :cpl :cram-projection))
+(in-package {name})
+(defvar *notes* nil)
+(defun note (&rest things) (setf *notes* (append *notes* (list (if (rest things) things (first things))))))
+(defun notes () (prog1 *notes* (setf *notes* nil)))
+(defmacro warnings-of (&body body)
+  `(let ((texts nil))
+     (handler-bind ((warning (lambda (w) (push (princ-to-string w) texts) (muffle-warning w)))) ,@body)
+     (reverse texts)))
+"""
+_numbers = itertools.count(1)
+
+
+class Lisp:
+    """``lisp(text)``: the values of the last form of ``text``, printed on one line. Each test has a package of its own.
+
+    In the text, ``(note x)`` adds to a list and ``(notes)`` gives and empties it; ``(warnings-of form...)`` are texts of warnings.
+    """
+
+    def __init__(self, backend):
+        self.session = Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600)
+        self.session.evaluate_text(PRELUDE.format(name=f"PROJECTION-TEST-{next(_numbers)}"))
+
+    def __call__(self, text):
+        shown = " ; ".join(" ".join(prin1_to_string(value).split()) for value in self.session.evaluate_text(text))
+        return re.sub(r"\{[0-9A-F]+\}", "{}", shown)
+
+    def error(self, text):
+        """The text of the condition that ``text`` ends with, on one line."""
+        return " ".join(princ_to_string(self._condition(text)).split())
+
+    def shown_error(self, text):
+        """What the user is shown of the condition that ``text`` ends with."""
+        written = io.StringIO()
+        report(self._condition(text), file=written)
+        return written.getvalue()
+
+    def _condition(self, text):
+        with pytest.raises(BaseException) as problem:
+            self.session.evaluate_text(text, "<repl>")
+        return condition_of(problem.value)
+
+
+@pytest.fixture(params=["threads", "greenlet"])
+def lisp(request, monkeypatch, tmp_path):
+    """What a test defines for all (task variables, environments, fact groups, facts) is forgotten after it."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(task_variables, "_declared", dict(task_variables._declared))
+    monkeypatch.setattr(environments, "_environments", {})
+    monkeypatch.setattr(environments, "_special_variables", {})
+    groups = set(facts.fact_group_names())
+    yield Lisp(request.param)
+    for name in facts.fact_group_names():
+        if name not in groups:
+            facts.remove_fact_group(name)
+    rete.clear_alpha_network()
+    PACKAGE.value = COMMON_LISP_USER
