@@ -14,7 +14,7 @@ from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.evaluation.evaluator import evaluate
 from cramhy_runtime.lisp.packages import intern, keyword, sym
 from cramhy_runtime.lisp.reader.reader import Reader
-from cramhy_runtime.process_modules import asynchronous, modules, registry
+from cramhy_runtime.process_modules import asynchronous, executing, modules, registry
 from cramhy_runtime.prolog.facts import define_fact_group, remove_fact_group
 
 NAVIGATION, ARM = intern("TEST-NAVIGATION", "CRAM-USER"), intern("TEST-ARM", "CRAM-USER")
@@ -118,14 +118,12 @@ class handled_warnings:  # noqa: N801  (reads as a statement)
     """``with handled_warnings() as texts:`` warnings of the block are collected and not printed."""
 
     def __enter__(self):
-        from cramhy_runtime.lisp import conditions
-
-        self.conditions, self.old, texts = conditions, conditions.warn, []
-        modules.warn = lambda condition: texts.append(condition)
+        self.old, texts = executing.warn, []
+        executing.warn = lambda condition: texts.append(condition)
         return texts
 
     def __exit__(self, *problem):
-        modules.warn = self.old
+        executing.warn = self.old
 
 
 def test_a_second_caller_is_warned_and_served_afterwards():

@@ -29,13 +29,13 @@ Where the parts are (reference: cpl.md):
 
 * fluents: ``fluents``, ``pulse_fluents``, ``fluent_operators``, ``waiting``
 * tasks: ``tasks``, ``statuses``, ``current``, ``task_variables``, ``task_readers``; how they stop and end: ``pausing``, ``suspension``,
-  ``ending``
+  ``ending``; pieces of a task: ``blocks``, ``errands``
 * forms with branches: ``branches``, ``operators``, ``orderings``, ``watching``, ``policies``
 * failures: ``failure_types``, ``failures``, ``retry_counters``, ``debugging``
 * plans as trees: ``tree``, ``tree_report``, ``tags``, ``plans``, ``walker``, ``plan_tree``
 * around them: ``hooks``, ``logging``, ``printing``
 * the Lisp faces: ``symbols``, ``package``, ``readers``, ``typed``, ``user_methods``, ``markers``, ``macro_shapes``, ``macro_support``
-* Python's face: ``python_forms``, ``plan_run``, ``blocks``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``
+* Python's face: ``python_forms``, ``plan_run``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``
 """
 
 from ..kernel import Deadlock, TimeLimit, checkpoint, cleanup, now, run_blocking

@@ -53,7 +53,7 @@ class Block:
         blocks = getattr(me.local, "blocks", None)
         if blocks is None:
             blocks = me.local.blocks = []
-        self.level = _level(me)
+        self.level = level(me)
         blocks.append(self)
         return self
 
@@ -71,7 +71,7 @@ class Block:
     def _unwind(self) -> None:
         """Called in the block's task, at a waiting point."""
         me = self.kernel_task
-        if self.over or self.delivered or _level(me) != self.level or getattr(me.local, "obeying", False):
+        if self.over or self.delivered or level(me) != self.level or getattr(me.local, "obeying", False):
             return
         if self.task.held:
             obey(self.task)
@@ -94,7 +94,8 @@ class Block:
             block.remind()
 
 
-def _level(me: Any) -> tuple[bool, int]:
+def level(me: Any) -> tuple[bool, int]:
+    """What of the kernel's task ``me`` is unwinding: the whole, and how many of its blocks."""
     return me.cancelled_delivered, sum(block.delivered for block in me.local.blocks)
 
 

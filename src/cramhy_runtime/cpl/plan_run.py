@@ -55,7 +55,7 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
                 yield task
             except BaseException as exception:
                 problem = exception
-                status, result = task._outcome(exception)
+                status, result = task.outcome(exception)
             _end(list(task.children))
         finally:
             task._die(status, result)

@@ -225,32 +225,32 @@ class AbstractTask:
                 obey(self)
             status = SUCCEEDED
         except BaseException as exception:
-            status, result = self._outcome(exception)
+            status, result = self.outcome(exception)
         if self.children:
             try:
                 end_tasks(list(self.children), "Parent succeeded." if status is SUCCEEDED else "Parent aborted.")
             except BaseException as exception:  # the user gave up waiting for cleanup
-                status, result = self._outcome(exception)
+                status, result = self.outcome(exception)
         if self.threads:
-            self._end_threads()
+            self.end_threads(self.threads)
         if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
         if self.unclaimed:
-            self._tell_unclaimed()
+            self.tell_unclaimed(self.unclaimed)
         self._die(status, result)
 
-    def _tell_unclaimed(self):
-        """Tasks that the body made failed, and it never asked what became of them: the user is told (law 3)."""
-        for task in self.unclaimed:
+    def tell_unclaimed(self, tasks):
+        """``tasks``, which the body made, failed, and it never asked what became of them: the user is told (law 3)."""
+        for task in tasks:
             if not task.claimed and task._status_fluent is None:
                 kernel.unhandled(task, opened(task.result))
 
-    def _end_threads(self):
-        """End the threads that the body left running, and wait for that. Errors of theirs are reported by the kernel."""
-        for thread in self.threads:
+    def end_threads(self, threads):
+        """End ``threads``, which the body left running, and wait for that. Errors of theirs are reported by the kernel."""
+        for thread in threads:
             thread.cancel(f"the end of {self.name}")
         with kernel.shield():
-            for thread in self.threads:
+            for thread in threads:
                 thread.join(lambda thread=thread: f"the cleanup of the thread {thread.name}", claim=False)
 
     def _refused(self, exception):
@@ -268,7 +268,7 @@ class AbstractTask:
             if self.held:
                 obey(self)
 
-    def _outcome(self, exception):
+    def outcome(self, exception):
         """The status and result of a task that ``exception`` ended."""
         while isinstance(exception, kernel.WaitEnded) and exception.__context__ is not None:
             exception = exception.__context__  # what was on its way out when the wait in its cleanup was ended

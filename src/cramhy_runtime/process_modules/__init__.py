@@ -7,15 +7,17 @@
     pm.define_process_module(NAVIGATION, lambda designator: drive(reference(designator)))
     pm.with_process_modules_running([NAVIGATION], lambda: cpl.top_level(lambda: pm.pm_execute(NAVIGATION, motion)))
 
-``modules`` the module, its queue and main loop · ``asynchronous`` modules that return at once · ``registry`` names · ``running`` starting
-them around a body · ``matching`` the right one for a designator · ``executive`` perform · ``package`` the Lisp faces.
+``modules`` the module, its queue and main loop · ``executing`` a plan's requests · ``asynchronous`` modules that return at once ·
+``registry`` names · ``running`` starting them around a body · ``matching`` the right one for a designator · ``executive`` perform ·
+``package`` the Lisp faces.
 Reference: process-modules.md.
 """
 
 from .asynchronous import AsynchronousProcessModule, fail_process_module, finish_process_module
+from .executing import monitor_process_module, pm_cancel, pm_execute, pm_status
 from .executive import generic_perform, perform, try_reference_designator
 from .matching import matching_available_process_modules, matching_process_module_names, pm_execute_matching
-from .modules import ProcessModule, define_process_module, make_module, monitor_process_module, pm_cancel, pm_execute, pm_run, pm_status
+from .modules import ProcessModule, define_process_module, make_module, pm_run
 from .registry import (
                        get_running_process_module,
                        process_module_alias,

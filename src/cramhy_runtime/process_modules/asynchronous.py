@@ -3,43 +3,49 @@
 Users define a class and methods: ``on-input`` is called for each designator, one after the other; ``on-run`` may do work beside it;
 ``on-cancel`` is called for unfinished designators when the module is cancelled; ``synchronization-fluent`` says when the next input
 may be taken. `finish_process_module` and `fail_process_module` report the end. Source: process-modules.md section 6.
+
+Repaired: callers that want to hand something over stand in line; a caller or monitor of a module that ends is told so, where the
+original waits for ever; of a failure of several designators every monitor of one hears; a module that finishes all designators while
+others are waiting stays ``:running``.
 """
 
 from __future__ import annotations
 
 from collections import deque
 
-from cramhy_runtime import kernel
-
-from ..cpl.fluent_operators import fl_pulsed
-from ..cpl.operators import par
 from ..cpl.current import current_task
-from ..cpl.pausing import pause
+from ..cpl.fluent_operators import fl_funcall, fl_or, fl_pulsed
+from ..cpl.fluents import Fluent
+from ..cpl.operators import par
 from ..cpl.waiting import wait_for, whenever
 from ..lisp.conditions import error
 from ..lisp.data import Cons
+from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.generic import generic
-from ..lisp.packages import keyword
+from ..lisp.printer.printer import princ_to_string
+from ..utilities.locks import Lock
+from .executing import NEVER, await_online, monitor_process_module, pm_execute
 from .modules import (
     OFFLINE,
     RUNNING,
     WAITING,
     AbstractProcessModule,
-    await_online,
-    monitor_process_module,
     on_process_module_failed,
     on_process_module_finished,
     on_process_module_started,
-    pm_execute,
     pm_run,
     sym_of_class,
 )
-from .registry import running
+from .registry import not_running
 
-on_input = generic("CPM::ON-INPUT", "(process-module input-designator)")
-on_cancel = generic("CPM::ON-CANCEL", "(process-module input-designator)")
-on_run = generic("CPM::ON-RUN", "(process-module)")
-synchronization_fluent = generic("CPM::SYNCHRONIZATION-FLUENT", "(process-module designator)")
+on_input = generic("CPM::ON-INPUT", "(process-module input-designator)", documentation="""
+What an asynchronous module does with an input; users write methods.""")
+on_cancel = generic("CPM::ON-CANCEL", "(process-module input-designator)", documentation="""
+What an asynchronous module does with an unfinished designator when it is cancelled; users write methods.""")
+on_run = generic("CPM::ON-RUN", "(process-module)", documentation="""
+What an asynchronous module does beside taking inputs, from its start to its end; users write methods.""")
+synchronization_fluent = generic("CPM::SYNCHRONIZATION-FLUENT", "(process-module designator)", documentation="""
+The fluent that is true when an asynchronous module may take the designator; users write methods.""")
 finish_process_module = generic("CPM::FINISH-PROCESS-MODULE", "(process-module &key designator)", documentation="""
 Say that the module has finished one designator, or all of them.""")
 fail_process_module = generic("CPM::FAIL-PROCESS-MODULE", "(process-module error &key designator)", documentation="""
@@ -58,20 +64,18 @@ class AsynchronousProcessModule(AbstractProcessModule):
         self.unfinished = []
         self.failures = []  # (condition, designator), the newest first
         self.notification_fluent = self._fluent("NOTIFICATION")
-        self.executing = False  # somebody waits for the input to become free
+        self.input_lock = Lock(f"for the input of {self.name.name}")
 
     def run(self, name):
-        if self.status_fluent.stored is not OFFLINE:
-            error("Process module `~a' already running.", self.name)
-        registry = running()
-        registry.add(name, self)
-        self.status_fluent.set(WAITING)
-        self.cancel.set(None)
-        try:
-            par(lambda: on_run(self), self._take_inputs, self._process, lambda: whenever(self.cancel, self._cancel_all))
-        finally:
-            registry.remove(self)
-            self.status_fluent.set(OFFLINE)
+        """Take inputs, under ``name``, until the task is evaporated or ``on-input`` or ``on-run`` fails."""
+        self.online(name, lambda: par(lambda: on_run(self), self._take_inputs, self._process,
+                                      lambda: whenever(self.cancel, self._cancel_all)))
+
+    def ended(self):
+        self.queue.clear()
+        self.unfinished.clear()
+        self.input.set(None)
+        self.changed()
 
     def _take_inputs(self):
         def take():
@@ -79,32 +83,46 @@ class AsynchronousProcessModule(AbstractProcessModule):
             self.queue.append(designator)
             self.status_fluent.set(RUNNING)
             self.input.set(None)
-            self.notification_fluent.pulse()
+            self.changed()
 
         whenever(self.input, take)
 
     def _process(self):
         while True:
             while not self.queue:
-                wait_for(fl_pulsed(self.notification_fluent, handle_missed_pulses=keyword("NEVER")))
+                self.await_change()
             designator = self.queue.popleft()
             self.unfinished.append(designator)
-            on_input(self, designator)
-            if on_process_module_started:
+            self._call_on_input(designator)
+            if on_process_module_started.methods:
                 on_process_module_started(self, designator)
+
+    @circumstance(lambda here: f"while process module {here['self'].name.name} took {princ_to_string(here['designator'])}")
+    def _call_on_input(self, designator):
+        on_input(self, designator)
 
     def _cancel_all(self):
         for designator in list(self.unfinished):
             on_cancel(self, designator)
         self.cancel.set(None)
 
-    def open_designators(self):
-        """Everything that was handed over and is not finished."""
-        pending = [self.input.stored] if self.input.stored is not None else []
-        return pending + list(self.queue) + self.unfinished
+    @property
+    def pending(self):
+        """What was handed over and has not come to ``on-input`` yet."""
+        return [*([self.input.stored] if self.input.stored is not None else ()), *self.queue]
 
     def changed(self):
         self.notification_fluent.pulse()
+
+    def await_change(self):
+        wait_for(fl_pulsed(self.notification_fluent, handle_missed_pulses=NEVER))
+
+    def await_while_online(self, fluent):
+        """Wait for ``fluent``; that the module ends meanwhile is an error."""
+        over = fl_funcall(lambda status: True if status is OFFLINE else None, self.status_fluent)
+        wait_for(fl_or(fluent, over) if isinstance(fluent, Fluent) else fluent)
+        if self.status_fluent.stored is OFFLINE:
+            error(not_running(self.name))
 
 
 @on_cancel.method(AsynchronousProcessModule, None)
@@ -124,19 +142,13 @@ def _run(module, name=None):
 
 @pm_execute.method(AsynchronousProcessModule, None)
 def _execute(module, input_, *, task=None):
-    await_online(module)
-    while module.executing:
-        pause(lambda: f"process module {module.name.name} to take another input")
-    module.executing = True
-    try:
-        while module.input.stored is not None:
-            wait_for(fl_pulsed(module.input, handle_missed_pulses=keyword("NEVER")))
-        wait_for(synchronization_fluent(module, input_))
+    if module.status_fluent.stored is OFFLINE:
+        await_online(module)
+    with module.input_lock:
+        module.await_while_online(fl_funcall(lambda input_: True if input_ is None else None, module.input))
+        module.await_while_online(synchronization_fluent(module, input_))
         module.caller.set(task or current_task())
         module.input.set(input_)
-    finally:
-        module.executing = False
-        kernel.yield_()
     return input_
 
 
@@ -150,11 +162,12 @@ def _finish(module, *, designator=None):
     _require(module.status_fluent.stored is RUNNING, "Cannot finish an already stopped process module.")
     if designator is None:
         module.unfinished.clear()
-        module.status_fluent.set(WAITING)
+        if not module.pending:
+            module.status_fluent.set(WAITING)
     else:
         _require(designator in module.unfinished, "Cannot finish a designator that is not being processed: ~a", designator)
         module.unfinished.remove(designator)
-    if on_process_module_finished:
+    if on_process_module_finished.methods:
         on_process_module_finished(module, designator, None)
     module.changed()
 
@@ -166,20 +179,23 @@ def _fail(module, condition, *, designator=None):
     for failed in [designator] if designator is not None else list(module.unfinished):
         module.failures.insert(0, (condition, failed))
         module.unfinished.remove(failed)
-    if on_process_module_failed:
+    if on_process_module_failed.methods:
         on_process_module_failed(module, designator, condition)
     module.changed()
 
 
 @monitor_process_module.method(AsynchronousProcessModule)
 def _monitor(module, *, designators=None):
-    wanted = list(designators) if isinstance(designators, Cons) else [designators] if designators is not None else []
+    wanted = designators if isinstance(designators, Cons) else [designators] if designators is not None else None
     while True:
-        for condition, designator in module.failures:
-            if not wanted or designator in wanted:
-                module.failures = [entry for entry in module.failures if entry[0] is not condition]
+        for failure in module.failures:
+            condition, designator = failure
+            if wanted is None or designator in wanted:
+                module.failures.remove(failure)
                 return error(condition)
-        still_open = module.open_designators()
-        if not still_open if not wanted else any(designator not in still_open for designator in wanted):
+        still_open = [*module.pending, *module.unfinished]
+        if not still_open if wanted is None else any(designator not in still_open for designator in wanted):
             return None
-        wait_for(fl_pulsed(module.notification_fluent, handle_missed_pulses=keyword("NEVER")))
+        module.await_change()
+        if module.status_fluent.stored is OFFLINE:
+            return error(not_running(module.name))

@@ -8,7 +8,7 @@ from ..lisp.hooks import Hook
 from ..prolog.facts import built_in_group
 from ..prolog.query import ask
 from ..prolog.terms import Var
-from .modules import pm_execute
+from .executing import pm_execute
 from .registry import get_running_process_module
 from .symbols import sym
 

@@ -1,11 +1,11 @@
 """Process modules: the parts of a plan that talk to the robot, one request at a time.
 
-A module is a task that waits for designators. ``pm-execute`` sends one, waits, and returns the values of the module's body, or
-signals its failure, the identical object, in the caller. Requests queue up; the body runs in a task of its own, and is evaporated
-when the request is cancelled or its caller is. Source: process-modules.md sections 2 to 4.
+A module is a task that waits for designators; `run` is its main loop. Requests queue up, each with a result of its own; the body
+runs as an `Errand` of the module's task, so that it can be evaporated, with its cleanup, while the module lives on. How a plan sends
+a request and waits for it is in ``executing.py``. Source: process-modules.md sections 2 and 4.
 
 Repaired: each request has its own result, so two callers cannot get each other's; a caller that is evaporated or suspended waits
-until the body it asked for is dead, so no motion outlives its plan (law 1); a run cancelled by somebody else is a plan failure in
+until the body it asked for is over, so no motion outlives its plan (law 1); a run cancelled by somebody else is a plan failure in
 its caller, where the original returns an old result; a module that ends fails the requests that are left.
 """
 
@@ -16,34 +16,32 @@ from collections import deque
 
 from cramhy_runtime import kernel
 
-from ..cpl.branches import Branches, nobody_lives
+from ..cpl.current import current_task, inside_plan
+from ..cpl.debugging import DEBUG_ON_LISP_ERRORS
 from ..cpl.ending import awaiting_death
-from ..cpl.failure_types import PlanFailure, SimplePlanFailure, opened
-from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
+from ..cpl.errands import Errand
+from ..cpl.failure_types import PlanFailure, opened
 from ..cpl.fluents import make_fluent
-from ..cpl.suspension import retry_after_suspension
-from ..cpl.task_variables import inherit
-from ..cpl.current import current_task
 from ..cpl.pausing import pause
 from ..cpl.statuses import EVAPORATED
-from ..cpl.task_readers import result, status
-from ..cpl.tasks import Task
 from ..cpl.statuses import FAILED as TASK_FAILED
-from ..cpl.waiting import wait_for
+from ..cpl.task_variables import inherit
 from ..designators.equating import current_desig
-from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import DEBUGGER_HOOK, Error, error, handler_bind, invoke_debugger, restart_case, warn
-from ..lisp.data import Symbol, all_values, lisp_list, list_from, python_list, truth, values
+from ..lisp.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, from_python, handler_bind, restart_case, type_error
+from ..lisp.data import Symbol, all_values, lisp_list, list_from, truth
 from ..lisp.dynamic import binding
+from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.hooks import Hook
 from ..lisp.objects.class_definition import define_class
 from ..lisp.objects.classes import class_name, find_class_or_error, make_instance
 from ..lisp.objects.generic import generic
-from ..lisp.packages import keyword
-from .registry import ProcessModuleNotRunning, ProcessModuleRunning, is_defined, module_called, register_process_module, running, unknown
+from ..lisp.packages import CURRENT, keyword
+from ..lisp.printer.printer import princ_to_string
+from .registry import ended_because, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym
 
 OFFLINE, WAITING, RUNNING, FAILED = map(keyword, ("OFFLINE", "WAITING", "RUNNING", "FAILED"))
+NAME = keyword("NAME")
 PM_DEBUGGER_HOOK = inherit(sym("CPM::*PROCESS-MODULE-DEBUGGER-HOOK*"), None)
 CONTINUE_PM, TERMINATE_PM = sym("CPM::CONTINUE-PM"), sym("CPM::TERMINATE-PM")
 
@@ -53,27 +51,19 @@ on_process_module_failed = Hook("CPM::ON-PROCESS-MODULE-FAILED", "(module input 
 
 pm_run = generic("CPM::PM-RUN", "(process-module &optional name)", documentation="""
 Run a process module, an object or the name of its class, until the task is evaporated.""")
-pm_execute = generic("CPM::PM-EXECUTE", "(process-module input &key task)", documentation="""
-Send a designator to a process module and wait: the values of its body.""")
-pm_cancel = generic("CPM::PM-CANCEL", "(process-module)", documentation="Cancel what the module does now; nobody waits.")
-pm_status = generic("CPM::PM-STATUS", "(process-module)", documentation="The fluent of its status.")
-running_fluent = generic("CPM::RUNNING-FLUENT", "(process-module)", documentation="A fluent: is its status :running?")
-finished_fluent = generic("CPM::FINISHED-FLUENT", "(process-module)", documentation="A fluent: is its status not :running?")
-monitor_process_module = generic("CPM::MONITOR-PROCESS-MODULE", "(process-module &key designators)", documentation="""
-Wait until the module has finished and return a stored result, that of a listed designator if there is a list.""")
 
 
 class Request:
-    """One call of `pm_execute`: the designator, who asked, and what came of it."""
+    """One call of ``pm-execute``: the designator, who asked, and what came of it."""
 
-    __slots__ = ("input", "caller", "started", "finished", "values", "failure", "branches", "cancelled", "waiter")
+    __slots__ = ("input", "caller", "started", "finished", "values", "failure", "cancelled", "errand", "waiter")
 
     def __init__(self, input_, caller):
         self.input, self.caller = input_, caller
         self.started = self.finished = self.cancelled = False
         self.values = ()
         self.failure = None
-        self.branches = None  # the body, while it runs
+        self.errand = None  # the run of the body, from its start
         self.waiter = kernel.current()
 
     def finish(self):
@@ -82,9 +72,8 @@ class Request:
 
     def cancel(self):
         self.cancelled = True
-        if self.branches is not None:
-            for task in self.branches.tasks:
-                task.ask_to_end("Cancelled.")
+        if self.errand is not None:
+            self.errand.end()
 
 
 class AbstractProcessModule:
@@ -96,14 +85,46 @@ class AbstractProcessModule:
     def __init__(self, name=None):
         if name is None:
             error("Process modules need a name.")
+        if not isinstance(name, Symbol):
+            type_error(name, "SYMBOL", "\n(The name of a process module is a symbol.)")
         self.name = name
+        self.task = None  # of the plan, which runs it
         self.input = self._fluent("INPUT")
         self.status_fluent = self._fluent("STATUS", OFFLINE)
         self.cancel = self._fluent("CANCEL")
         self.caller = self._fluent("CALLER")
 
     def _fluent(self, what, initial=None):
-        return make_fluent(name=Symbol(f"{self.name.name}-{what}"), value=initial)
+        return make_fluent(name=CURRENT.value.intern(f"{self.name.name}-{what}"), value=initial)
+
+    def online(self, name, work):
+        """Call ``work()``, the main loop, while the module is registered under ``name`` and its status is not ``:offline``."""
+        inside_plan("PM-RUN")
+        if self.status_fluent.stored is not OFFLINE:
+            error("Process module `~a' already running.", self.name)
+        registry = running()
+        start_under(name, self)
+        self.task = current_task()
+        self.input.set(None)
+        self.cancel.set(None)
+        self.status_fluent.set(WAITING)
+        reason = None
+        try:
+            work()
+        except Exception as problem:
+            reason = ended_because(problem)
+            raise
+        except PlanFailure as failure:
+            reason = ended_because(failure)
+            raise
+        finally:
+            registry.remove(self, reason)
+            self.task = None
+            self.status_fluent.set(OFFLINE)
+            self.ended()
+
+    def ended(self):
+        """The main loop is over: tell those who wait for the module."""
 
 
 class ProcessModule(AbstractProcessModule):
@@ -120,15 +141,6 @@ class ProcessModule(AbstractProcessModule):
         self.sleeper = None  # the kernel task of the main loop, while it waits for requests
         self.terminating = False
         self.unprocessed_results = weakref.WeakKeyDictionary()
-        self.cancel.callbacks = {"cancel": self._cancel_request}
-
-    def _cancel_request(self, wanted):
-        if truth(wanted) and self.request is not None:
-            self.request.cancel()
-
-    @property
-    def busy(self):
-        return self.request is not None or bool(self.queue)
 
     def submit(self, request):
         """Put ``request`` into the queue."""
@@ -141,7 +153,7 @@ class ProcessModule(AbstractProcessModule):
         if request in self.queue:
             self.queue.remove(request)
             return
-        with awaiting_death(lambda: request.branches.tasks if request.branches is not None else ()):
+        with awaiting_death(lambda: (self.task,) if self.request is request else ()):
             request.cancel()
             request.waiter = kernel.current()
             while not request.finished:
@@ -150,28 +162,22 @@ class ProcessModule(AbstractProcessModule):
     # ---------------------------------------------------------------------------------------------------------- main loop
 
     def run(self, body, name):
-        """The main loop: serve requests until the task is evaporated or the module is told to terminate."""
-        if self.status_fluent.stored is not OFFLINE:
-            error("Process module `~a' already running.", self.name)
-        if name in running().modules:
-            error(ProcessModuleRunning("Process module `~a' already running. foo foo", name))
-        registry = running()
+        """Serve requests, under ``name``, until the task is evaporated or the module is told to terminate."""
+        self.online(name, lambda: self._serve_all(body))
+
+    def _serve_all(self, body):
         self.terminating = False
-        self.input.set(None)
-        self.cancel.set(None)
-        self.status_fluent.set(WAITING)
-        registry.add(name, self)
+        self.cancel.callbacks = {"cancel": self._cancel_request}
         try:
             while not self.terminating:
                 self._await_request()
                 self._serve(self.queue.popleft(), body)
         finally:
-            registry.remove(self)
-            self.status_fluent.set(OFFLINE)
-            while self.queue:
-                request = self.queue.popleft()
-                request.failure = ProcessModuleNotRunning("Process module `~a' not running.", self.name)
-                request.finish()
+            self.cancel.callbacks = None
+
+    def _cancel_request(self, wanted):
+        if truth(wanted) and self.request is not None:
+            self.request.cancel()
 
     def _await_request(self):
         self.sleeper = kernel.current()
@@ -182,75 +188,80 @@ class ProcessModule(AbstractProcessModule):
             self.sleeper = None
 
     def _serve(self, request, body):
-        self.cancel.set(None)
+        errand = request.errand = Errand()
         self.request = request
-        self.caller.set(request.caller)
-        self.input.set(request.input)
-        self.status_fluent.set(RUNNING)
-        task = Task(lambda: self._call_body(body, request), lambda: f"[{self.name.name}]")
-        branches = request.branches = Branches("PROCESS-MODULE", [task])
+        status, outcome = EVAPORATED, None
         try:
-            branches.wait(nobody_lives)
+            self.cancel.set(None)
+            self.caller.set(request.caller)
+            self.input.set(request.input)
+            self.status_fluent.set(RUNNING)
+            status, outcome = errand.run(lambda: self._call_body(body, request))
+        except (PlanFailure, Exception) as problem:  # of an observer of a fluent: it is the end of the module, too
+            status, outcome = TASK_FAILED, from_python(problem)
+            raise
         finally:
-            branches.end()
-            self._conclude(request, task)
+            self._conclude(request, status, outcome)
 
+    @circumstance(lambda here: f"while process module {here['self'].name.name} executed {princ_to_string(here['request'].input)}")
     def _call_body(self, body, request):
-        task = current_task()
-        task.path = task.node = None
         request.started = True
         for later in self.queue:  # they announce that they wait, once it has begun
             later.waiter.kernel.unpark(later.waiter)
-        if on_process_module_started:
+        if on_process_module_started.methods:
             on_process_module_started(self, request.input)
-        if PM_DEBUGGER_HOOK.value is None:
+        if PM_DEBUGGER_HOOK.value is None and DEBUG_ON_LISP_ERRORS.value is None:
             return body()
-        return self._with_debugger(body)
+        return handler_bind([(Error, lambda problem: None if isinstance(problem, PlanFailure) else self._ask_what_to_do(problem))], body)
 
-    def _with_debugger(self, body):
-        problems = []
-
-        def ask(condition):
-            problems.append(condition)
-            with binding(DEBUGGER_HOOK, PM_DEBUGGER_HOOK.value):
-                invoke_debugger(condition)
-
+    def _ask_what_to_do(self, problem):
+        """The debugger, or the hook in its place, for an error of the body; both restarts make the body fail with it."""
         def terminate():
             self.terminating = True
-            return _GiveUp
 
-        outcome = restart_case(
-            [(CONTINUE_PM, lambda: _GiveUp, "Ignore error and restart process module main loop."),
-             (TERMINATE_PM, terminate, "Terminate process module")],
-            lambda: handler_bind([(Error, lambda condition: None if isinstance(condition, PlanFailure) else ask(condition))], body))
-        if outcome is _GiveUp:
-            raise problems[-1]
-        return outcome
+        def ask():
+            hook = PM_DEBUGGER_HOOK.value
+            if hook is None:
+                enter_debugger(problem)
+                return
+            with binding(DEBUGGER_HOOK, hook):
+                enter_debugger(problem)
 
-    def _conclude(self, request, task):
-        input_ = request.input
-        if task.status is TASK_FAILED:
-            request.failure = opened(task.result)
+        restart_case([(CONTINUE_PM, lambda: None, "Ignore error and restart process module main loop."),
+                      (TERMINATE_PM, terminate, "Terminate process module")], ask)
+        raise problem
+
+    def _conclude(self, request, status, outcome):
+        try:
+            self._note(request, status, outcome)
+            self.request = request.errand = None
+            self.input.set(None)
+            if on_process_module_finished.methods:
+                on_process_module_finished(self, request.input, self.result_fluent.stored)
+            self.status_fluent.set(FAILED if request.failure is not None else WAITING)
+        finally:
+            self.request = request.errand = None
+            request.finish()
+
+    def _note(self, request, status, outcome):
+        if status is TASK_FAILED:
+            request.failure = opened(outcome)
             self.result_fluent.set(request.failure)
-            if on_process_module_failed:
-                on_process_module_failed(self, input_, request.failure)
-        elif task.status is EVAPORATED:
+            if on_process_module_failed.methods:
+                on_process_module_failed(self, request.input, request.failure)
+        elif status is EVAPORATED:
             request.cancelled = True
         else:
-            request.values = all_values(task.result)
+            request.values = all_values(outcome)
             if request.values:
                 self.result_fluent.set(list_from(request.values))
-                self.unprocessed_results[input_] = request.values
-        self.request = request.branches = None
-        self.input.set(None)
-        if on_process_module_finished:
-            on_process_module_finished(self, input_, self.result_fluent.stored)
-        self.status_fluent.set(FAILED if request.failure is not None else WAITING)
-        request.finish()
+                self.unprocessed_results[request.input] = request.values
 
-
-class _GiveUp:
-    """What the restarts of a module's error return."""
+    def ended(self):
+        while self.queue:
+            request = self.queue.popleft()
+            request.failure = not_running(self.name)
+            request.finish()
 
 
 def define_process_module(name, body):
@@ -265,16 +276,16 @@ def define_process_module(name, body):
 
 def make_module(name, class_name=None):
     """A new module called ``name`` of the class ``class_name`` (default: ``name``)."""
-    return make_instance(find_class_or_error(class_name or name), keyword("NAME"), name)
+    return make_instance(find_class_or_error(class_name or name), NAME, name)
 
 
 @pm_run.method(Symbol)
+@pm_run.method(type(None))
 def _run_by_name(class_name, name=None):
-    name = name or class_name
     if not is_defined(class_name):
         return unknown(class_name)
-    if name in running().modules:
-        return error(ProcessModuleRunning("Process module `~a' already running. foo foo", name))
+    name = name or class_name
+    start_under(name)
     return pm_run(make_module(name, class_name), name)
 
 
@@ -285,107 +296,3 @@ def _run_module(next_method, module, name=None):
 
 def sym_of_class(module):
     return class_name(type(module))
-
-
-# ----------------------------------------------------------------------------------------------------------------- executing
-
-
-status.method(AbstractProcessModule)(lambda module: module.status_fluent)
-result.method(ProcessModule)(lambda module: module.result_fluent)
-
-
-@pm_execute.method(Symbol, None)
-@pm_execute.method(type(None), None)
-def _execute_by_name(name, input_, *, task=None):
-    return pm_execute(module_called(name), input_, keyword("TASK"), task or current_task())
-
-
-@pm_execute.method(ProcessModule, None)
-def _execute(module, input_, *, task=None):
-    await_online(module)
-    if input_ is None:
-        return values(*python_list(module.result_fluent.stored)) if not isinstance(module.result_fluent.stored, BaseException) else None
-
-    def attempt():
-        if module.status_fluent.stored is OFFLINE:  # it has ended while the caller was suspended
-            return error(ProcessModuleNotRunning("Process module `~a' not running.", module.name))
-        before = module.request or (module.queue[0] if module.queue else None)
-        request = Request(input_, task or current_task())
-        module.submit(request)
-        try:
-            while not request.finished:
-                if before is not None and before.started:
-                    warn(SimpleWarning("Process module ~a already processing input. Waiting for it to become free.", module))
-                    before = None
-                    continue
-                pause(lambda: f"process module {module.name.name}")
-        finally:
-            if not request.finished:
-                module.withdraw(request)
-        return request
-
-    request = retry_after_suspension(attempt)
-    if request.failure is not None:
-        return error(request.failure)
-    if request.cancelled:
-        return error(SimplePlanFailure("The execution of ~a by process module ~a was cancelled.", input_, module.name))
-    return values(*request.values)
-
-
-def await_online(module):
-    """Wait, with a warning, until ``module`` is not offline."""
-    status = module.status_fluent
-    if status.stored is OFFLINE:
-        warn(SimpleWarning("Process module ~a not running. Status is ~a. Waiting for it to come up.", module, OFFLINE))
-        wait_for(fl_not(fl_funcall(lambda now: now is OFFLINE or None, status)))
-
-
-# ------------------------------------------------------------------------------------------------------------ other operations
-
-
-@pm_cancel.method(Symbol)
-def _cancel_by_name(name):
-    return pm_cancel(module_called(name))
-
-
-@pm_cancel.method(ProcessModule)
-def _cancel(module):
-    module.cancel.set(True)
-    return True
-
-
-@pm_status.method(Symbol)
-def _status_by_name(name):
-    return pm_status(module_called(name))
-
-
-@pm_status.method(AbstractProcessModule)
-def _status(module):
-    return module.status_fluent
-
-
-@running_fluent.method(ProcessModule)
-def _running(module):
-    return fl_funcall(lambda status: True if status is RUNNING else None, module.status_fluent)
-
-
-@finished_fluent.method(ProcessModule)
-def _finished(module):
-    return fl_funcall(lambda status: None if status is RUNNING else True, module.status_fluent)
-
-
-@monitor_process_module.method(Symbol)
-def _monitor_by_name(name, *, designators=None):
-    return monitor_process_module(module_called(name), keyword("DESIGNATORS"), designators)
-
-
-@monitor_process_module.method(ProcessModule)
-def _monitor(module, *, designators=None):
-    wanted = python_list(designators)
-    while True:
-        wait_for(finished_fluent(module))
-        results = module.unprocessed_results
-        for designator in wanted or list(results):
-            if designator in results:
-                return values(*results.pop(designator))
-        wait_for(fl_pulsed(module.status_fluent, handle_missed_pulses=keyword("NEVER")))

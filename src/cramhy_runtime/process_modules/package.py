@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from ..designators import package as _designators  # noqa: F401  these packages use its names
 from ..lisp.faces import define_face
-from . import asynchronous, executive, macro_support, matching, modules, readers, registry
+from . import asynchronous, executing, executive, macro_support, matching, modules, readers, registry
 from . import printing as _printing  # noqa: F401
 
 FUNCTIONS = {
-    modules: "pm-run pm-execute pm-cancel pm-status running-fluent finished-fluent monitor-process-module",
+    modules: "pm-run",
+    executing: "pm-execute pm-cancel pm-status running-fluent finished-fluent monitor-process-module",
     asynchronous: "on-input on-cancel on-run synchronization-fluent finish-process-module fail-process-module",
     matching: "pm-execute-matching matching-process-module-names matching-available-process-modules",
     registry: "register-process-module process-module-alias get-running-process-module get-running-process-module-name "

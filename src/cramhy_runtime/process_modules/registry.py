@@ -1,17 +1,23 @@
 """Which process modules are defined, and which run under which names (process-modules.md section 3).
 
 Running modules are in the value of ``*running-process-modules*``, so that a projection may bind it and see its own modules only.
-Repaired: a module that ends takes all its aliases with it, and ``with-process-module-aliases`` makes aliases that can be seen.
+Repaired: a module that ends takes all its aliases with it, ``with-process-module-aliases`` makes aliases that can be seen, and no alias
+or registration takes a name away from another module. A name that nothing runs under is an error at once, which tells the nearest name
+that is, and why the module ended if it did.
 """
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+
 from cramhy_runtime import kernel
 
-from ..cpl.task_variables import inherit
 from ..cpl.pausing import pause
-from ..lisp.conditions import SimpleError, error
+from ..cpl.task_variables import inherit
+from ..lisp.conditions import SimpleError, error, from_python
 from ..lisp.data import Symbol, list_from
+from ..lisp.evaluation.places_in_source import describe, locate
+from ..lisp.printer.printer import princ_to_string
 from .symbols import sym
 
 
@@ -28,20 +34,24 @@ class ProcessModuleNotRunning(SimpleError):
 
 
 class Registry:
-    """The running modules by name, in order of registration, and the tasks that wait for one."""
+    """The running modules by name, in order of registration, the tasks that wait for one, and why modules that failed have ended."""
 
     def __init__(self):
         self.modules = {}
         self.waiters = []
+        self.reasons = {}  # name -> text
 
     def add(self, name, module):
         self.modules[name] = module
+        self.reasons.pop(name, None)
         for task in self.waiters:
             task.kernel.unpark(task)
 
-    def remove(self, module):
+    def remove(self, module, reason=None):
         for name in self.names(module):
             del self.modules[name]
+            if reason is not None:
+                self.reasons[name] = reason
 
     def names(self, module):
         return [name for name, running in self.modules.items() if running is module]
@@ -95,41 +105,106 @@ def module_called(name):
 
 
 def unknown(name):
-    problem = UnknownProcessModule("Unknown process module: ~a ", name)
-    problem.hint = (f"Running now: {', '.join(key.name for key in running().modules) or 'none'}. Defined: "
-                    f"{', '.join(key.name for key in _defined) or 'none'}. Wrap the plan in "
-                    f"(cpm:with-process-modules-running (MODULE ...) ...).")
-    return error(problem)
+    return error(_with_hint(UnknownProcessModule("Unknown process module: ~a ", name), name))
+
+
+def not_running(name):
+    """The condition for a module that has ended, or was never started."""
+    return _with_hint(ProcessModuleNotRunning("Process module `~a' not running.", name), name)
+
+
+def ended_because(problem):
+    """What ended a module, as a text that holds no object of the plan."""
+    locate(problem, problem)
+    place = describe(getattr(problem, "position", None))
+    return f"{princ_to_string(from_python(problem)).strip()}{f', at {place}' if place else ''}"
+
+
+def _with_hint(problem, name):
+    registry = running()
+    shown = _typed(name)
+    lines = []
+    if name in registry.reasons:
+        lines.append(f"It has ended by a failure of its own: {registry.reasons[name]}.")
+    if name not in _defined:
+        nearest = _nearest(name, [*registry.modules, *_defined])
+        if nearest is not None:
+            lines.append(f"Did you mean {_typed(nearest)}?")
+    lines.append(f"Running now: {', '.join(map(_typed, registry.modules)) or 'none'}. "
+                 f"Defined: {', '.join(map(_typed, _defined)) or 'none'}.")
+    if name in _defined and name not in registry.modules:
+        lines.append(f"Modules run in (cpm:with-process-modules-running ({shown}) ...).")
+    problem.hint = " ".join(lines)
+    return problem
+
+
+def _typed(name):
+    """A name as the user types it."""
+    return str(getattr(name, "name", name)).lower()
+
+
+def _nearest(name, names):
+    by_text = {_typed(known): known for known in names}
+    found = get_close_matches(_typed(name), by_text, 1)
+    return by_text[found[0]] if found else None
+
+
+def start_under(name, module=None):
+    """Register ``module`` under ``name``, or only see whether that is possible; that a module runs under it is an error."""
+    if name in running().modules:
+        return error(ProcessModuleRunning("Process module `~a' already running. foo foo", name))
+    if module is not None:
+        running().add(name, module)
 
 
 def process_module_alias(alias, name):
-    """Let ``alias`` be another name of the running module ``name``."""
+    """Let ``alias`` be another name of the running module ``name``, until that ends."""
     module = get_running_process_module(name)
     if module is None:
-        return error(UnknownProcessModule("Could not find process module with name `~s'", name))
-    running().add(alias, module)
+        return error(_with_hint(UnknownProcessModule("Could not find process module with name `~s'", name), name))
+    other = get_running_process_module(alias)
+    if other is None:
+        running().add(alias, module)
+    elif other is not module:
+        taken = ProcessModuleRunning("Process module `~a' already running", alias)
+        taken.hint = f"{_typed(alias)} cannot be another name of {_typed(name)}: a module of that name runs. Take another alias."
+        return error(taken)
     return alias
 
 
 def with_process_module_aliases(aliases, body):
     """Values of ``body()`` while the aliases, pairs (alias, name), are in force."""
-    for alias, name in aliases:
-        process_module_alias(alias, name)
+    made = []
     try:
+        for alias, name in aliases:
+            if alias not in running().modules:
+                made.append((alias, get_running_process_module(name)))
+            process_module_alias(alias, name)
         return body()
     finally:
-        for alias, _ in aliases:
-            running().modules.pop(alias, None)
+        _forget(made)
 
 
 def with_process_module_registered_running(name, module, body):
-    """Values of ``body()`` while ``module`` is registered under ``name``; no main loop is started for it."""
+    """Values of ``body()`` while ``module`` is registered under ``name``; no main loop is started for it.
+
+    Nothing happens to a module that runs under that name already.
+    """
+    made = []
     if get_running_process_module(name) is None:
+        made.append((name, module))
         running().add(name, module)
     try:
         return body()
     finally:
-        running().modules.pop(name, None)
+        _forget(made)
+
+
+def _forget(pairs):
+    modules = running().modules
+    for name, module in pairs:
+        if modules.get(name) is module:
+            modules.pop(name, None)
 
 
 def wait_for_process_module_running(process_module, *, timeout=None):

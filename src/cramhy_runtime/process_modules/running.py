@@ -1,20 +1,22 @@
 """``with-process-modules-running``: modules that live as long as a body (process-modules.md section 5).
 
 The modules run in a top-level of their own beside the body. Repaired: an error while they start reaches the caller at once, and
-leaving the form waits until they have ended, so the same modules can be started again right away.
+leaving the form waits until they have ended, so the same modules can be started again right away. A module that fails later ends
+alone; the others go on, requests to it are told why, and the form fails with its failure when the body is over (law 3).
 """
 
 from __future__ import annotations
 
 from cramhy_runtime import kernel
 
+from ..cpl.branches import Branches, nobody_lives
 from ..cpl.ending import end_tasks
 from ..cpl.failure_types import opened
-from ..cpl.operators import par
 from ..cpl.pausing import pause
 from ..cpl.statuses import DEAD, FAILED
-from ..cpl.tasks import ToplevelTask
+from ..cpl.tasks import Task, ToplevelTask
 from ..cpl.tree import TaskTreeNode
+from ..lisp.condition_types import Condition
 from ..lisp.conditions import error
 from ..lisp.data import Cons
 from .modules import pm_run
@@ -26,25 +28,18 @@ def with_process_modules_running(modules, body):
     started = [_names(module) for module in modules]
     if not started:
         return body()
-    me = kernel.current()
-    background = ToplevelTask(lambda: par(*[_runner(name, cls) for name, cls in started]), lambda: "[PROCESS-MODULES]")
-    background.tree = TaskTreeNode()
-    background.ended = lambda task: me.kernel.unpark(me)
-    registry = running()
-    background.execute()
+    group = _Group(started)
+    group.start()
     try:
-        _await_start(background, [name for name, _ in started], registry, me)
+        group.await_start()
         result = body()
-    except (ProcessModuleNotRunning, UnknownProcessModule) as missed:
-        if background.status is FAILED:  # that is why it was not running
-            raise opened(background.result) from missed
+    except BaseException as problem:
+        group.end()
+        group.tell(problem)
         raise
-    finally:
-        background.ended = None
-        end_tasks([background], "Body ended.")
-    if background.status is FAILED:
-        return error(opened(background.result))
-    return result
+    group.end()
+    failure = group.failure()
+    return result if failure is None else error(failure)
 
 
 def _names(module):
@@ -54,19 +49,99 @@ def _names(module):
     return module, module
 
 
-def _runner(name, cls):
-    return lambda: pm_run(cls, name)
+class _Group:
+    """The modules of one form, and the task at their root. ``names`` are pairs (name, class name)."""
+
+    def __init__(self, names):
+        self.names = [name for name, _ in names]
+        self.registry = running()
+        self.caller = kernel.current()
+        self.tasks = [_task(name, cls) for name, cls in names]
+        self.root = ToplevelTask(self._run, lambda: "[PROCESS-MODULES]")
+        self.root.tree = TaskTreeNode()
+        self.root.ended = lambda task: self._wake()
+
+    def start(self):
+        self.root.execute()
+
+    def _run(self):
+        branches = _Modules(self.tasks, self._wake)
+        try:
+            branches.wait(nobody_lives)
+        except BaseException as exception:
+            branches.abort(exception)
+
+    def _wake(self):
+        self.caller.kernel.unpark(self.caller)
+
+    def await_start(self):
+        """Return when all modules run; what one failed with before that is signalled here."""
+        registry = self.registry
+        registry.waiters.append(self.caller)
+        try:
+            while not self._over() and not all(name in registry.modules for name in self.names):
+                pause(lambda: "process modules to start")
+            if not self._over():  # one that cannot start has said so by now, or will before anybody else runs
+                kernel.yield_()
+        finally:
+            registry.waiters.remove(self.caller)
+        failure = self.failure()
+        if failure is not None:
+            error(failure)
+
+    def _over(self):
+        return self.root.status in DEAD or any(task.status is FAILED for task in self.tasks)
+
+    def end(self):
+        self.root.ended = None
+        end_tasks([self.root], "Body ended.")
+
+    def failures(self):
+        """What modules failed with, or the root with all of them, as when the system has no stack for one."""
+        failures = [opened(task.result) for task in self.tasks if task.status is FAILED]
+        if not failures and self.root.status is FAILED:
+            failures.append(opened(self.root.result))
+        return failures
+
+    def failure(self):
+        """The failure of the first module that failed, which tells those of the others; ``None`` if none did."""
+        first, *others = self.failures() or (None,)
+        if others:
+            _add_beside(first, others)
+        return first
+
+    def tell(self, problem):
+        """The body is left with ``problem``: what modules failed with is told with it, or instead where it only follows from that."""
+        failures = [failure for failure in self.failures() if failure is not problem]
+        if not failures:
+            return
+        if isinstance(problem, (ProcessModuleNotRunning, UnknownProcessModule)):
+            raise self.failure() from problem
+        if isinstance(problem, kernel.Cancelled):
+            raise self.failure() from None
+        if isinstance(problem, Condition):
+            _add_beside(problem, failures)
 
 
-def _await_start(background, names, registry, me):
-    registry.waiters.append(me)
-    try:
-        while background.status not in DEAD and not all(name in registry.modules for name in names):
-            pause(lambda: "process modules to start")
-        # A module that cannot start has said so by now, or will before anybody else runs.
-        if background.status not in DEAD:
-            kernel.yield_()
-    finally:
-        registry.waiters.remove(me)
-    if background.status is FAILED:
-        error(opened(background.result))
+def _add_beside(problem, failures):
+    known = list(getattr(problem, "beside", ()))
+    problem.beside = known + [("A process module failed, too", failure) for failure in failures
+                              if all(other is not failure for _, other in known)]
+
+
+class _Modules(Branches):
+    """The tasks of modules. ``told()`` is called at each end."""
+
+    __slots__ = ("told",)
+
+    def __init__(self, tasks, told):
+        self.told = told
+        super().__init__("PROCESS-MODULES", tasks)
+
+    def ended(self, task):
+        super().ended(task)
+        self.told()
+
+
+def _task(name, cls):
+    return Task(lambda: pm_run(cls, name), lambda: f"[{getattr(name, 'name', name)}]")

@@ -27,7 +27,7 @@ NAMES = {
     "kernel/scheduler.py:Kernel.sleep": "sleep",
     "kernel/tasks.py:Task.join": "end",
     "process_modules/modules.py:ProcessModule._await_request": "request",
-    "process_modules/modules.py:_execute.<locals>.attempt": "pm-execute",
+    "process_modules/executing.py:_attempt": "pm-execute",
     "process_modules/modules.py:ProcessModule.withdraw": "cleanup",
 }
 """The functions that wait, by file and name, and what their waiting is called."""

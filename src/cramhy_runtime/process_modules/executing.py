@@ -1,0 +1,152 @@
+"""What a plan does with a process module: execute a designator, cancel it, ask for the status, wait for a result.
+
+``pm-execute`` sends a request, waits, and returns the values of the module's body, or signals its failure, the identical object, in the
+caller. A caller that is evaporated takes its request back, or has the run cancelled and waits until that is over; so does one
+that is suspended, which asks again after its wake-up. Source: process-modules.md sections 4.3 and 4.4.
+"""
+
+from __future__ import annotations
+
+from ..cpl.current import current_task
+from ..cpl.failure_types import SimplePlanFailure
+from ..cpl.failures import signal_failure
+from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
+from ..cpl.pausing import pause
+from ..cpl.suspension import retry_after_suspension
+from ..cpl.task_readers import result, status
+from ..cpl.waiting import wait_for
+from ..lisp.condition_types import SimpleWarning
+from ..lisp.conditions import error, warn
+from ..lisp.data import Symbol, python_list, values
+from ..lisp.objects.generic import generic
+from ..lisp.packages import keyword
+from .modules import OFFLINE, RUNNING, AbstractProcessModule, ProcessModule, Request
+from .registry import module_called, not_running
+
+TASK, DESIGNATORS, NEVER = map(keyword, ("TASK", "DESIGNATORS", "NEVER"))
+
+pm_execute = generic("CPM::PM-EXECUTE", "(process-module input &key task)", documentation="""
+Send a designator to a process module and wait: the values of its body.""")
+pm_cancel = generic("CPM::PM-CANCEL", "(process-module)", documentation="Cancel what the module does now; nobody waits.")
+pm_status = generic("CPM::PM-STATUS", "(process-module)", documentation="The fluent of its status.")
+running_fluent = generic("CPM::RUNNING-FLUENT", "(process-module)", documentation="A fluent: is its status :running?")
+finished_fluent = generic("CPM::FINISHED-FLUENT", "(process-module)", documentation="A fluent: is its status not :running?")
+monitor_process_module = generic("CPM::MONITOR-PROCESS-MODULE", "(process-module &key designators)", documentation="""
+Wait until the module has finished and return a stored result, that of a listed designator if there is a list.""")
+
+status.method(AbstractProcessModule)(lambda module: module.status_fluent)
+result.method(ProcessModule)(lambda module: module.result_fluent)
+
+
+@pm_execute.method(Symbol, None)
+@pm_execute.method(type(None), None)
+def _execute_by_name(name, input_, *, task=None):
+    return pm_execute(module_called(name), input_, TASK, task or current_task())
+
+
+@pm_execute.method(ProcessModule, None)
+def _execute(module, input_, *, task=None):
+    if module.status_fluent.stored is OFFLINE:
+        await_online(module)
+    if input_ is None:
+        return _old_result(module)
+    caller = task or current_task()
+    request = retry_after_suspension(lambda: _attempt(module, input_, caller))
+    if request.failure is not None:
+        return error(request.failure)
+    if request.cancelled:
+        return error(SimplePlanFailure("The execution of ~a by process module ~a was cancelled.", input_, module.name))
+    return values(*request.values)
+
+
+def _attempt(module, input_, caller):
+    """Send the request and wait for it; the `Request`, finished."""
+    if module.status_fluent.stored is OFFLINE:  # it has ended while the caller was suspended
+        return error(not_running(module.name))
+    before = module.request or (module.queue[0] if module.queue else None)
+    request = Request(input_, caller)
+    module.submit(request)
+    try:
+        while not request.finished:
+            if before is not None and before.started:
+                warn(SimpleWarning("Process module ~a already processing input. Waiting for it to become free.", module))
+                before = None
+                continue
+            pause(lambda: f"process module {module.name.name}")
+    except BaseException:
+        if not request.finished:
+            module.withdraw(request)
+            if request.failure is not None:  # the cleanup of the body failed: that must not be lost (law 3)
+                raise request.failure from None
+        raise
+    return request
+
+
+def _old_result(module):
+    """What the module was left with: nothing is run for the input nil."""
+    stored = module.result_fluent.stored
+    return signal_failure(stored) if isinstance(stored, BaseException) else values(*python_list(stored))
+
+
+def await_online(module):
+    """Wait, with a warning, until ``module`` is not offline."""
+    status = module.status_fluent
+    if status.stored is OFFLINE:
+        warn(SimpleWarning("Process module ~a not running. Status is ~a. Waiting for it to come up.", module, OFFLINE))
+        wait_for(fl_not(fl_funcall(lambda now: now is OFFLINE or None, status)))
+
+
+# ------------------------------------------------------------------------------------------------------------ other operations
+
+
+@pm_cancel.method(Symbol)
+@pm_cancel.method(type(None))
+def _cancel_by_name(name):
+    return pm_cancel(module_called(name))
+
+
+@pm_cancel.method(ProcessModule)
+def _cancel(module):
+    module.cancel.set(True)
+    return True
+
+
+@pm_status.method(Symbol)
+@pm_status.method(type(None))
+def _status_by_name(name):
+    return pm_status(module_called(name))
+
+
+@pm_status.method(AbstractProcessModule)
+def _status(module):
+    return module.status_fluent
+
+
+@running_fluent.method(ProcessModule)
+def _running(module):
+    return fl_funcall(lambda status: True if status is RUNNING else None, module.status_fluent)
+
+
+@finished_fluent.method(ProcessModule)
+def _finished(module):
+    return fl_funcall(lambda status: None if status is RUNNING else True, module.status_fluent)
+
+
+@monitor_process_module.method(Symbol)
+@monitor_process_module.method(type(None))
+def _monitor_by_name(name, *, designators=None):
+    return monitor_process_module(module_called(name), DESIGNATORS, designators)
+
+
+@monitor_process_module.method(ProcessModule)
+def _monitor(module, *, designators=None):
+    wanted = python_list(designators)
+    while True:
+        wait_for(finished_fluent(module))
+        results = module.unprocessed_results
+        for designator in wanted or list(results):
+            if designator in results:
+                return values(*results.pop(designator))
+        wait_for(fl_pulsed(module.status_fluent, handle_missed_pulses=NEVER))
+        if module.status_fluent.stored is OFFLINE:
+            return error(not_running(module.name))
