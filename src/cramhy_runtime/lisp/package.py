@@ -54,7 +54,9 @@ HELPERS = {
 
 
 def fill():
-    """Define the faces; called once, by `image.boot`."""
+    """Define the faces. Called by `image.boot`, and by Python code that uses a room without an image; calling it again does nothing."""
+    if COMMON_LISP.locked:
+        return
     for name in MODULES:
         module = importlib.import_module(f"{__package__}.{name}")
         names = " ".join(lisp_name for lisp_name in module.LISP_NAMES.split()

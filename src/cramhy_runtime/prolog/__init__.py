@@ -1,5 +1,25 @@
 """CRAM's Prolog: terms, unification, clauses compiled to Python, built-ins, fact groups, rete; built on the lazy
-lists and patterns of the room ``utilities``. Source: reference page ``prolog.md``.
+lists and patterns of the room ``utilities``. Source: reference page ``prolog.md``. Usable from Python, without any Lisp:
 
-For other rooms the interface is `cramhy_runtime.prolog.query` (ask) and `cramhy_runtime.prolog.natives` (define predicates).
+    from cramhy_runtime.prolog import P, V, fact_group, solve
+
+    with fact_group("family") as family:
+        family.fact(P.parent("tom", "bob"), P.parent("bob", "ann"))
+        family.rule(P.grandparent(V.x, V.z), P.parent(V.x, V.y), P.parent(V.y, V.z))
+
+    for answer in solve(P.grandparent(V.who, "ann")):
+        print(answer.who)
+
+The page docs/reasoning-in-python.md tells the whole story: ``python_terms`` how terms are written, ``python_rules`` facts, rules and
+queries, ``python_predicates`` predicates written in Python. For other rooms the interface is `cramhy_runtime.prolog.query` (ask) and
+`cramhy_runtime.prolog.natives` (define predicates).
 """
+
+from .python_predicates import Predicate, UnboundVariable, function, predicate, test
+from .python_rules import Answer, FactGroup, UnknownPredicate, fact_group, findall, first, holds, remove_fact_group, solve
+from .python_terms import Goal, Name, Names, P, Tail, V, Variable, kw, names
+
+__all__ = [
+    "Answer", "fact_group", "FactGroup", "findall", "first", "function", "Goal", "holds", "kw", "Name", "names", "Names", "P", "predicate",
+    "Predicate", "remove_fact_group", "solve", "Tail", "test", "UnboundVariable", "UnknownPredicate", "V", "Variable",
+]  # fmt: skip

@@ -116,10 +116,16 @@ def prolog(query, binds=None):
 
 
 def solve(goal):
-    """Iterate over the solutions of a goal (Lisp data) as dicts of its variables that have values."""
+    """Iterate over the solutions of a goal (Lisp data) as dicts of its variables that have values.
+
+    When the iteration is given up, so are the generators of predicates that had more to give.
+    """
     proof = Proof(goal)
-    while proof.next_solution():
-        yield {symbol: resolve(variable) for symbol, variable in reversed(proof.variables) if variable.ref is not UNSET}
+    try:
+        while proof.next_solution():
+            yield {symbol: resolve(variable) for symbol, variable in reversed(proof.variables) if variable.ref is not UNSET}
+    finally:
+        proof.choices.clear()
 
 
 def first(goal, variable, default=None):
