@@ -110,7 +110,7 @@ class _Code:
                         "same_atom": same_atom, "LazyTail": LazyTail, "TermTail": TermTail, "index_key": index_key,
                         "Symbol": Symbol, "lisp_fun": lisp_calls.lisp_fun, "lisp_pred": lisp_calls.lisp_pred,
                         "compare": lisp_calls.compare, "resolve_argument": lisp_calls.resolve_argument,
-                        "raw_argument": lisp_calls.raw_argument, "try_clauses": try_clauses, "P": predicate, "budget": budget}
+                        "raw_argument": lisp_calls.raw_argument, "as_variable": lisp_calls.as_variable, "try_clauses": try_clauses, "P": predicate, "budget": budget}
         self.constants = {}
         self.counter = 0
 
@@ -412,7 +412,11 @@ class _Code:
             return f"resolve_argument(m, {self._build(pattern, names)})"
         if not isinstance(pattern, Cons) or _is_ground(pattern):
             return self.constant(pattern)
-        return f"raw_argument(m, {self._build(pattern, names)})"
+        # A variable of the head is here whatever the caller gave; in a list as it is written it must be a variable still.
+        written = {**names, **{name: f"as_variable({names[name]})" for name in _variables(pattern, {}) if name in names}}
+        built = self._build(pattern, written)
+        names.update((name, code) for name, code in written.items() if name not in names)
+        return f"raw_argument(m, {built})"
 
     def _call(self, goal, goals, names, looping):
         functor = goal.car if isinstance(goal, Cons) else None

@@ -39,6 +39,15 @@ def raw_argument(m, term):
     return raw(term, m.names)
 
 
+def as_variable(term):
+    """``term`` if it is a variable, else a variable with that value: so that a list that is passed as it is written shows one."""
+    if term.__class__ is Var:
+        return term
+    variable = Var()
+    variable.ref = term
+    return variable
+
+
 def argument(m, term):
     """What a Lisp function gets for an argument term of a goal."""
     return resolve(term, m.names) if term.__class__ is Var else raw(term, m.names) if term.__class__ is Cons else term
