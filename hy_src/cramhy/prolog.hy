@@ -20,11 +20,7 @@
   `(%define-prolog-handler (quote ~name) (%named-lambda ~name ~parameters ~@body)))
 
 (defoperator with-facts-asserted [facts #* body]
-  (setv names (lfor _ (elements facts) (gensym "FACT")))
-  `(let [~@(lfor #(name fact) (zip names (elements facts)) [name fact])]
-     ~@(lfor name names `(rete-assert ~name))
-     (unwind-protect (progn ~@body)
-       ~@(lfor name names `(rete-retract ~name)))))
+  `(%with-facts-asserted (list ~@(lfor fact (elements facts) `(lambda [] ~fact))) (lambda [] ~@body)))
 
 (defoperator def-production [name #* definition]
   `(register-production (quote ~name) (quote ~definition)))

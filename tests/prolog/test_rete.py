@@ -3,24 +3,24 @@
 import pytest
 from prolog_text import ask, error_text, read, show
 
-from cramhy_runtime.prolog import rete
+from cramhy_runtime.prolog import productions, rete
 from cramhy_runtime.utilities.lazy_lists import force_ll
 
 
 @pytest.fixture(autouse=True)
 def empty_memory():
     rete.clear_alpha_network()
-    rete.clear_productions()
+    productions.clear_productions()
     yield
     rete.clear_alpha_network()
-    rete.clear_productions()
+    productions.clear_productions()
 
 
 def events(production, *patterns):
     """Register a production and a handler; returns the list of what the handler is told."""
     seen = []
-    rete.register_production(read(production), read("(" + " ".join(patterns) + ")"))
-    rete.register_production_handler(read(production), lambda operation, *arguments: seen.append(
+    productions.register_production(read(production), read("(" + " ".join(patterns) + ")"))
+    productions.register_production_handler(read(production), lambda operation, *arguments: seen.append(
         " ".join(show(item) for item in (operation, *arguments))))
     return seen
 
@@ -78,9 +78,9 @@ def test_the_first_handler_gets_the_matches_that_exist():
     rete.rete_assert(read("(p 1)"))
     seen = events("all", "(p ?x)")
     late = []
-    rete.register_production_handler(read("all"), lambda *arguments: late.append(arguments))
+    productions.register_production_handler(read("all"), lambda *arguments: late.append(arguments))
     assert seen == [":ASSERT :?X 1"] and late == []
-    rete.remove_production(read("all"))
+    productions.remove_production(read("all"))
     rete.rete_assert(read("(p 2)"))
     assert len(seen) == 1
 
@@ -93,13 +93,13 @@ def test_a_fact_that_matches_two_patterns_is_joined_with_itself_once():
 
 def test_productions_for_the_time_of_a_body():
     seen = []
-    rete.with_productions([(read("tmp"), read("((q ?x))"))], lambda: rete.with_production_handlers(
+    productions.with_productions([(read("tmp"), read("((q ?x))"))], lambda: productions.with_production_handlers(
         [(read("tmp"), lambda operation, *arguments: seen.append(show(operation)))],
         lambda: rete.with_facts_asserted([lambda: read("(q 1)")], lambda: None)))
     assert seen == [":ASSERT", ":RETRACT"]
     rete.rete_assert(read("(q 2)"))
     assert len(seen) == 2
-    assert error_text(lambda: rete.register_production_handler(read("tmp"), print)) == "Production `TMP' unknown."
+    assert error_text(lambda: productions.register_production_handler(read("tmp"), print)) == "Production `TMP' unknown."
 
 
 def test_the_network_counts_its_nodes():
@@ -117,7 +117,7 @@ def test_clearing_retracts():
 
 
 def test_redefining_a_production_warns(warnings_given):
-    rete.register_production(read("p"), read("((a ?x))"))
-    production = rete.register_production(read("p"), read("((b ?x))"))
+    productions.register_production(read("p"), read("((a ?x))"))
+    production = productions.register_production(read("p"), read("((b ?x))"))
     assert warnings_given and warnings_given[0].startswith("Redefining production `")
     assert show(production).startswith("#S(CRAM-PROLOG::PRODUCTION-DEFINITION :NAME P :VAR-BINDINGS (?X) :BODY ((B ?X))")

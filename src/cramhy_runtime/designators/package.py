@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..cpl import package as _cpl  # noqa: F401  CRAM-LANGUAGE-DESIGNATOR-SUPPORT uses it
 from ..lisp.faces import define_face
 from ..utilities.symbols import CUT
-from ..prolog.rete import define_object_id
+from ..prolog.rete import object_id
 from . import classes, equating, language_support, locations, macro_support, readers, resolution, syntax
 from . import predicates as _predicates  # noqa: F401
 from . import printing as _printing  # noqa: F401
@@ -50,7 +50,7 @@ def define_faces():
     define_face("CRAM-DESIGNATOR-PROPERTIES", ["DESIG-PROPS"], use=["COMMON-LISP"], export="def-desig-package")
     define_face("CRAM-LANGUAGE-DESIGNATOR-SUPPORT", ["CPL-DESIG-SUPP"], use=["CRAM-LANGUAGE"],
                 functions={language_support: "register-designator-create-function"}, export="with-designators with-equate-fluent")
-    define_object_id(Designator, lambda designator: designator.object_id)
+    object_id.method(Designator)(lambda designator: designator.object_id)
     locations.register_defaults()
     macro_support.define()
     return desig

@@ -110,7 +110,8 @@ class _Code:
                         "same_atom": same_atom, "LazyTail": LazyTail, "TermTail": TermTail, "index_key": index_key,
                         "Symbol": Symbol, "lisp_fun": lisp_calls.lisp_fun, "lisp_pred": lisp_calls.lisp_pred,
                         "compare": lisp_calls.compare, "resolve_argument": lisp_calls.resolve_argument,
-                        "raw_argument": lisp_calls.raw_argument, "as_variable": lisp_calls.as_variable, "try_clauses": try_clauses, "P": predicate, "budget": budget}
+                        "raw_argument": lisp_calls.raw_argument, "as_variable": lisp_calls.as_variable,
+                        "try_clauses": try_clauses, "P": predicate, "budget": budget}
         self.constants = {}
         self.counter = 0
 

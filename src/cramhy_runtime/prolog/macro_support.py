@@ -5,7 +5,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import python_list
 from cramhy_runtime.lisp.faces import define_face
 
-from . import facts, natives, rete
+from . import facts, natives, productions, rete
 
 
 class FactCollector:
@@ -33,17 +33,22 @@ def fact_outside_group(fact):
     return facts.fact_outside_group(*python_list(fact))
 
 
-def with_productions(productions, body):
-    """``productions``: a list of lists (name pattern...)."""
-    return rete.with_productions([(production.car, production.cdr) for production in python_list(productions)], body)
+def with_facts_asserted(fact_thunks, body):
+    """``fact_thunks``: a list of functions that give the facts."""
+    return rete.with_facts_asserted(python_list(fact_thunks), body)
+
+
+def with_productions(definitions, body):
+    """``definitions``: a list of lists (name pattern...)."""
+    return productions.with_productions([(definition.car, definition.cdr) for definition in python_list(definitions)], body)
 
 
 def with_production_handlers(handlers, body):
-    return rete.with_production_handlers([tuple(python_list(handler)) for handler in python_list(handlers)], body)
+    return productions.with_production_handlers([tuple(python_list(handler)) for handler in python_list(handlers)], body)
 
 
 define_face("CRAMHY", functions={
-    "define-prolog-handler": natives.define_handler, "with-productions": with_productions,
+    "define-prolog-handler": natives.define_handler, "with-facts-asserted": with_facts_asserted, "with-productions": with_productions,
     "with-production-handlers": with_production_handlers,
     "fact-collector": fact_collector, "collect-fact": collect_fact, "finish-fact-group": finish_fact_group,
     "fact-outside-group": fact_outside_group,

@@ -7,27 +7,32 @@ are exported.
 from __future__ import annotations
 
 from cramhy_runtime.lisp.faces import define_face
+from cramhy_runtime.lisp.objects.generic import generic
 
 from cramhy_runtime.utilities import package as _utilities  # noqa: F401  PROLOG uses it
 from cramhy_runtime.utilities import patterns
 
 from . import (
     builtins,  # noqa: F401  the built-in predicates come along
+    productions,
     query,
     rete,
 )
 from .lisp_calls import BREAK_ON_LISP_ERRORS
 
+generic("CRAM-PROLOG::PROLOG", "(query &optional binds)", documentation=query.prolog.__doc__).method(object)(query.prolog)
+
 PROLOG = define_face(
     "CRAM-PROLOG", nicknames=("PROLOG",), use=("COMMON-LISP", "CRAM-UTILITIES"),
     functions={
-        query: "prolog query-var filter-bindings",
+        query: "query-var filter-bindings",
         patterns: "unify unify-p",
-        rete: """rete-assert rete-retract rete-holds rete-prove clear-alpha-network alpha-network-size object-id
-            register-production clear-productions remove-production register-production-handler remove-production-handler""",
+        rete: "rete-assert rete-retract rete-holds rete-prove clear-alpha-network alpha-network-size",
+        productions: """register-production clear-productions remove-production register-production-handler
+            remove-production-handler""",
     },
     variables={BREAK_ON_LISP_ERRORS.name: None},
-    export="""?_ and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof every
+    export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof every
         forall member take generate-values == equal length append sort reduce max string-concat format warn error
         slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=
         def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers""",

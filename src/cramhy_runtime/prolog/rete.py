@@ -1,61 +1,85 @@
-"""Rete: a memory of facts, and productions that fire when facts that match them come and go.
+"""Rete's memory: facts that come and go, and the patterns that are asked of them.
 
-A fact is a list of constants; the memory counts how often each was asserted. A production is a named conjunction of patterns;
-from the registration of its first handler on it keeps its matches, so that an assertion only looks for matches that use the
-new fact, and a retraction takes back exactly those that used the old one. Elements are compared by ``eql`` of their
-`object_id`, so strings and lists never match by content. Source: prolog.md section 12.
+A fact is a proper list of constants; the memory counts how often each was asserted. It is a tree that branches by the elements of
+the facts (the original's alpha network), so a pattern walks only where its constants lead. Elements are compared by ``eql`` of their
+`object_id`, so strings and lists never match by content. Who wants to know of facts that come and go (see ``productions.py``)
+watches the memory. Source: prolog.md section 12.1.
 """
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn
-from cramhy_runtime.lisp.data import Cons, list_from, python_list
-from cramhy_runtime.lisp.dynamic import binding, special
+from cramhy_runtime.lisp.collections.lists import list_length
+from cramhy_runtime.lisp.conditions import error
+from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from, one, python_list, truth
 from cramhy_runtime.lisp.equality import eql, eql_key
 from cramhy_runtime.lisp.evaluation.functions import function_of
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer.printer import define_printer
-from cramhy_runtime.lisp.printer.standard_printers import print_slots
-
+from cramhy_runtime.lisp.objects.generic import generic, specializer_of, when_methods_change
 from cramhy_runtime.utilities.lazy_lists import from_iterator
+from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, vars_in
+
 from .natives import predicate
-from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, variables_of, vars_in
-from .symbols import PROLOG, sym
 from .terms import import_term, raw
 
-_object_ids: list = []
+object_id = generic("CRAM-PROLOG::OBJECT-ID", "(obj)", documentation="""
+    What identifies ``obj`` as an element of a fact: itself, unless a method for its class says otherwise.""")
+object_id.method(object)(lambda obj: obj)
+
+_ATOMS = frozenset([Symbol, Keyword, int, str, float, DoubleFloat, bool, type(None)])
+_plain = _ATOMS
 
 
-def object_id(obj):
-    """The identity of a fact element: the object itself, unless `define_object_id` says otherwise for its class."""
-    for cls, function in reversed(_object_ids):
-        if isinstance(obj, cls):
-            return function(obj)
-    return obj
+@when_methods_change
+def _see_who_has_identity(function):
+    """While no method of `object_id` is about atoms, nobody need be asked for the identity of one."""
+    global _plain
+    if function is object_id:
+        special = [method.specializers[0] for method in function.methods if method.specializers[0] is not specializer_of(object)]
+        about_atoms = any(not isinstance(cls, type) or any(issubclass(atom, cls) for atom in _ATOMS) for cls in special)
+        _plain = frozenset() if about_atoms else _ATOMS
 
 
-def define_object_id(cls, function):
-    """Let ``function(obj)`` be the identity of objects of ``cls``."""
-    _object_ids.append((cls, function))
+def identity(obj):
+    """The `object_id` of ``obj``."""
+    return obj if obj.__class__ in _plain else one(object_id(obj))
 
 
 class Node:
-    """A node of the alpha network: the facts that start alike. At the end of a fact, ``occurrences`` counts it."""
+    """A node of the tree: the facts that start alike. At the end of a fact, ``occurrences`` are its assertions that stand."""
 
-    def __init__(self, fact=None):
-        self.fact = fact
+    __slots__ = ("parent", "identity", "children", "fact", "occurrences")
+
+    def __init__(self, parent=None, identity=None):
+        self.parent, self.identity = parent, identity  # an `eql_key` is only good while the object lives
         self.children = {}
+        self.fact = None
         self.occurrences = []
 
     def size(self):
-        return 1 + sum(child.size() for child in self.children.values())
+        count, nodes = 0, [self]
+        while nodes:
+            count += 1
+            nodes += nodes.pop().children.values()
+        return count
 
-    def leaves(self):
-        """The nodes of the facts that hold, newest first."""
-        if self.occurrences:
-            yield self
-        for child in reversed(list(self.children.values())):
-            yield from child.leaves()
+    def leaves(self, pattern=None):
+        """The nodes of the facts that hold and may match ``pattern`` by its constants (all, without one), newest first."""
+        stack = [(self, pattern)]
+        while stack:
+            node, cell = stack.pop()
+            if node.occurrences and not (pattern is not None and isinstance(cell, Cons)):
+                yield node
+            if isinstance(cell, Cons):
+                item, rest = cell.car, cell.cdr
+                if not variable(item):
+                    child = node.children.get(eql_key(identity(item)))
+                    if child is not None:
+                        stack.append((child, rest))
+                    continue
+            elif cell is None and pattern is not None:
+                continue
+            else:
+                rest = cell
+            stack += [(child, rest) for child in node.children.values()]
 
 
 class Occurrence:
@@ -67,80 +91,46 @@ class Occurrence:
         self.fact = fact
 
 
-class Production:
-    """A named conjunction of patterns with its handlers and, once there is a handler, its matches."""
+class Memory:
+    """The facts that hold. ``watchers`` are called as ``watcher(operation, occurrence)`` with ``"ASSERT"`` and ``"RETRACT"``."""
 
-    def __init__(self, name, patterns):
-        self.name, self.patterns = name, patterns
-        self.variables = [v for v in variables_of(list_from(patterns)) if v is not ANONYMOUS]
-        self.callbacks = []
-        self.matches = None
-
-    def find(self, fixed=None, position=None):
-        """The matches, as (occurrences, values of the variables); ``fixed`` must stand at ``position`` and not before it."""
-
-        def join(index, occurrences, bindings):
-            if index == len(self.patterns):
-                yield occurrences, bindings
-                return
-            candidates = [fixed] if index == position else _memory.occurrences
-            for occurrence in candidates:
-                if fixed is not None and index < position and occurrence is fixed:
-                    continue
-                extended = match_fact(self.patterns[index], occurrence.fact, bindings)
-                if extended is not None:
-                    yield from join(index + 1, (*occurrences, occurrence), extended)
-
-        yield from join(0, (), {})
-
-    def fire(self, operation, bindings):
-        arguments = [item for v in self.variables for item in (keyword(v.name), bindings.get(v))]
-        for callback in list(self.callbacks):
-            function_of(callback)(keyword(operation), *arguments)
-
-    def start(self):
-        """Build the matches and deliver those that exist."""
-        self.matches = list(self.find())
-        for _, bindings in self.matches:
-            self.fire("ASSERT", bindings)
-
-    def asserted(self, occurrence):
-        new = [match for position in range(len(self.patterns)) for match in self.find(occurrence, position)]
-        self.matches += new
-        for _, bindings in new:
-            self.fire("ASSERT", bindings)
-
-    def retracted(self, occurrence):
-        old = [match for match in self.matches if occurrence in match[0]]
-        self.matches = [match for match in self.matches if occurrence not in match[0]]
-        for _, bindings in old:
-            self.fire("RETRACT", bindings)
-
-
-class _Memory:
     def __init__(self):
+        self.watchers = []
+        self.clear()
+
+    def clear(self):
         self.root = Node()
-        self.occurrences = []
-        self.watching = []
+        self.occurrences = {}  # in order of assertion
+
+    def matching(self, pattern):
+        """The occurrences of the facts that may match ``pattern``, oldest first."""
+        found = [occurrence for leaf in self.root.leaves(pattern) for occurrence in leaf.occurrences]
+        return found[::-1]
+
+    def tell(self, operation, occurrence):
+        for watcher in self.watchers:
+            watcher(operation, occurrence)
 
 
-_memory = _Memory()
-_definitions = special(PROLOG.intern("*PRODUCTION-DEFINITIONS*"), {})
+memory = Memory()
 
 
-def match_fact(pattern, fact, bindings):
+def match_fact(pattern, fact, bindings, test=eql):
     """``bindings``, a dict, extended so that ``pattern`` is ``fact``; ``None`` if it cannot be."""
     extended = dict(bindings)
-    while isinstance(pattern, Cons) and isinstance(fact, Cons):
-        if not _element_matches(pattern.car, fact.car, extended):
+    while pattern.__class__ is Cons and fact.__class__ is Cons:
+        item = pattern.car
+        if item.__class__ is Symbol and item is fact.car and item.name[:1] != "?" and test is eql:
+            pass
+        elif not _element_matches(item, fact.car, extended, test):
             return None
         pattern, fact = pattern.cdr, fact.cdr
-    if pattern is None and fact is None or (pattern is not None and _element_matches(pattern, fact, extended)):
+    if pattern is None and fact is None or (pattern is not None and _element_matches(pattern, fact, extended, test)):
         return extended
     return None
 
 
-def _element_matches(item, value, bindings):
+def _element_matches(item, value, bindings, test):
     if variable(item):
         if item is ANONYMOUS:
             return True
@@ -148,80 +138,101 @@ def _element_matches(item, value, bindings):
             bindings[item] = value
             return True
         item = bindings[item]
-    return eql(object_id(item), object_id(value)) is not None
+    return truth(one(test(identity(item), identity(value))))
 
 
 # -------------------------------------------------------------------------------------------------------------------- facts
 
 
 def _leaf(fact, create):
-    node = _memory.root
-    for element in fact:
-        key = eql_key(object_id(element))
+    node = memory.root
+    for element in python_list(fact):
+        known = identity(element)
+        key = eql_key(known)
         child = node.children.get(key)
         if child is None:
             if not create:
                 return None
-            child = node.children[key] = Node()
+            child = node.children[key] = Node(node, known)
         node = child
-    node.fact = fact
     return node
 
 
 def _check(fact):
     if fact is None:
         error("The assertion FACT failed: a fact is a list with at least one element.")
-    if ANONYMOUS in python_list(fact):
+    if list_length(fact) is None:
+        error("The list that starts with ~s is circular: a fact is a proper list.", fact.car)
+    if any(element is ANONYMOUS for element in python_list(fact)):
         error("The assertion (NOT (FIND '?_ FACT)) failed: the fact ~s contains ?_.", fact)
 
 
 def rete_assert(fact):
-    """Add one occurrence of ``fact`` and tell the productions; returns the memory node."""
+    """``(rete-assert fact)``: add one occurrence of ``fact`` and tell the productions; returns the memory node.
+
+    Errors: ``nil``, what is no proper list, and a fact that contains ``?_``.
+    """
     _check(fact)
     node, occurrence = _leaf(fact, True), Occurrence(fact)
+    node.fact = fact
     node.occurrences.append(occurrence)
-    _memory.occurrences.append(occurrence)
-    for production in list(_memory.watching):
-        production.asserted(occurrence)
+    memory.occurrences[occurrence] = None
+    memory.tell("ASSERT", occurrence)
     return node
 
 
 def rete_retract(fact):
-    """Remove one occurrence of ``fact`` and tell the productions. An absent fact is an error."""
-    node = _leaf(fact, False) if fact is not None else None
+    """``(rete-retract fact)``: remove one occurrence of ``fact``, the newest, and tell the productions. An absent fact is an error."""
+    node = _leaf(fact, False) if isinstance(fact, Cons) and list_length(fact) is not None else None
     if node is None or not node.occurrences:
         return error("wme-memory already empty. Cannot retract.")
     occurrence = node.occurrences.pop()
-    _memory.occurrences.remove(occurrence)
-    for production in list(_memory.watching):
-        production.retracted(occurrence)
+    del memory.occurrences[occurrence]
+    empty = node
+    while not empty.occurrences and not empty.children and empty.parent is not None:  # what no fact needs takes no room
+        del empty.parent.children[eql_key(empty.identity)]
+        empty = empty.parent
+    memory.tell("RETRACT", occurrence)
     return node
 
 
 def with_facts_asserted(fact_thunks, body):
-    """Assert the facts that the thunks give, call ``body``, retract them in the same order on any exit."""
+    """The work of the macro of this name: assert what the thunks give, call ``body``, retract in the same order on any exit.
+
+    A fact that the body has retracted itself is an error as in `rete_retract`, when the others are retracted.
+    """
     asserted = []
     try:
         for thunk in fact_thunks:
-            fact = thunk()
+            fact = one(thunk())
             rete_assert(fact)
             asserted.append(fact)
         return body()
     finally:
-        for fact in asserted:
+        _retract_all(asserted)
+
+
+def _retract_all(facts):
+    for index, fact in enumerate(facts):
+        try:
             rete_retract(fact)
+        except BaseException:
+            _retract_all(facts[index + 1:])
+            raise
 
 
 def clear_alpha_network():
-    """Retract everything and empty the network; productions registered before do not fire any more."""
-    for occurrence in list(_memory.occurrences):
-        rete_retract(occurrence.fact)
-    _memory.root, _memory.occurrences, _memory.watching = Node(), [], []
+    """``(clear-alpha-network)``: retract everything and empty the memory; productions registered before do not fire any more."""
+    try:
+        _retract_all([occurrence.fact for occurrence in memory.occurrences])
+    finally:
+        memory.clear()
+        memory.tell("CLEAR", None)
 
 
 def alpha_network_size(node=None):
-    """The number of nodes, the root included."""
-    return (node or _memory.root).size()
+    """``(alpha-network-size &optional node)``: the number of nodes, the root included."""
+    return (node or memory.root).size()
 
 
 def _pairs(bindings, tail=None):
@@ -229,15 +240,19 @@ def _pairs(bindings, tail=None):
 
 
 def rete_holds(fact_pattern, test=None, processed=None, node=None):
-    """The lazy list of bindings under which ``fact_pattern`` is a fact, the newest fact first."""
+    """``(rete-holds fact-pattern)``: the lazy list of bindings under which the pattern is a fact, the newest fact first.
 
-    if vars_in(fact_pattern) is None:
-        leaf = _leaf(fact_pattern, False)
+    ``test`` compares the identities of elements (default: ``eql``); ``node``: only the facts below this node of the memory.
+    """
+    compare = eql if test is None else function_of(test)
+    if compare is eql and node is None and vars_in(fact_pattern) is None:
+        leaf = _leaf(fact_pattern, False) if isinstance(fact_pattern, Cons) else None
         return Cons(None) if leaf is not None and leaf.occurrences else None
 
     def matches():
-        for leaf in list((node or _memory.root).leaves()):
-            bindings = match_fact(fact_pattern, leaf.fact, {})
+        by_constants = fact_pattern if compare is eql and node is None else None
+        for leaf in list((node or memory.root).leaves(by_constants)):
+            bindings = match_fact(fact_pattern, leaf.fact, {}, compare)
             if bindings is not None:
                 yield _pairs(bindings)
 
@@ -245,14 +260,14 @@ def rete_holds(fact_pattern, test=None, processed=None, node=None):
 
 
 def rete_prove(expr, bdgs=None):
-    """The lazy list of bindings under which all patterns of the list ``expr`` are facts."""
+    """``(rete-prove expr &optional bdgs)``: the lazy list of bindings under which all patterns of the list ``expr`` are facts."""
 
     def join(patterns, bindings):
         if patterns is None:
             yield bindings
             return
         pattern = substitute_vars(patterns.car, bindings)
-        for leaf in list(_memory.root.leaves()):
+        for leaf in list(memory.root.leaves(pattern)):
             found = match_fact(pattern, leaf.fact, {})
             if found is not None:
                 yield from join(patterns.cdr, _pairs(found, bindings))
@@ -265,95 +280,9 @@ def _rete_holds(m, pattern):
     written = raw(pattern, m.names)
     if not isinstance(written, Cons):
         error("The pattern ~a of a RETE-HOLDS goal is no list.", written)
-    for leaf in list(_memory.root.leaves()):
+    for leaf in list(memory.root.leaves(written)):
         bindings = match_fact(written, leaf.fact, {})
         if bindings is not None:
             pairs = [term for symbol, value in bindings.items() for term in (import_term(symbol, m.names), value)]
             if m.unify(*pairs):
                 yield
-
-
-# -------------------------------------------------------------------------------------------------------------- productions
-
-
-def register_production(name, definition):
-    """Define the production ``name`` with the list of patterns ``definition``; a redefinition warns."""
-    if name in _definitions.value:
-        remove_production(name)
-        style_warn("Redefining production `~S'.", name)
-    production = _definitions.value[name] = Production(name, python_list(definition))
-    return production
-
-
-def remove_production(name):
-    """Forget a production; nothing fires for it any more."""
-    production = _definitions.value.pop(name, None)
-    if production in _memory.watching:
-        _memory.watching.remove(production)
-    return True if production else None
-
-
-def clear_productions():
-    """Forget all productions."""
-    for name in list(_definitions.value):
-        remove_production(name)
-
-
-def with_productions(productions, body):
-    """Call ``body`` with productions, a list of (name, list of patterns), that only it sees."""
-    own = {name: Production(name, python_list(patterns)) for name, patterns in productions}
-    with binding(_definitions, {**_definitions.value, **own}):
-        try:
-            return body()
-        finally:
-            for production in own.values():
-                if production in _memory.watching:
-                    _memory.watching.remove(production)
-
-
-def _production(name):
-    found = _definitions.value.get(name)
-    return found if found is not None else error(SimpleError("Production `~a' unknown.", name))
-
-
-def register_production_handler(production_name, callback):
-    """Call ``callback(operation, :?variable value...)`` when matches come (``:assert``) and go (``:retract``).
-
-    The first handler of a production gets the matches that exist. Returns the production.
-    """
-    production = _production(production_name)
-    production.callbacks.insert(0, callback)
-    if production not in _memory.watching:
-        _memory.watching.append(production)
-        production.start()
-    return production
-
-
-def remove_production_handler(production_name, callback):
-    """Do not call ``callback`` any more."""
-    production = _production(production_name)
-    if callback in production.callbacks:
-        production.callbacks.remove(callback)
-
-
-def with_production_handlers(handlers, body):
-    """Call ``body`` with handlers in force, a list of (production name, function)."""
-    registered = []
-    try:
-        for name, function in handlers:
-            register_production_handler(name, function)
-            registered.append((name, function))
-        return body()
-    finally:
-        for name, function in registered:
-            if name in _definitions.value:
-                remove_production_handler(name, function)
-
-
-def _print_production(production, stream):
-    print_slots(sym("CRAM-PROLOG::PRODUCTION-DEFINITION"), [
-        ("NAME", production.name), ("VAR-BINDINGS", list_from(production.variables)), ("BODY", list_from(production.patterns)),
-        ("NODE", None), ("CALLBACKS", list_from(production.callbacks))], stream)
-
-
-define_printer(Production, _print_production)

@@ -7,7 +7,7 @@ import pytest
 from prolog_text import RegisteredWarnings
 
 from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
-from cramhy_runtime.prolog import rete
+from cramhy_runtime.prolog import productions, rete
 from cramhy_runtime.repl.session import Session, condition_of
 
 PRELUDE = """
@@ -53,7 +53,7 @@ class Lisp:
 @pytest.fixture
 def lisp(fresh_kernel):
     rete.clear_alpha_network()
-    rete.clear_productions()
+    productions.clear_productions()
     yield Lisp()
     rete.clear_alpha_network()
-    rete.clear_productions()
+    productions.clear_productions()

@@ -41,7 +41,8 @@ def test_a_fact_outside_of_a_group(lisp):
 @pytest.mark.parametrize("functor", ["?x", "5", "nil", '"foo"', "(a)"])
 def test_a_head_needs_a_functor(lisp, functor):
     shown = lisp(f"(princ-to-string '{functor})").strip('"')
-    assert lisp.error(f"(def-fact-group g () (<- (fine 1)) (<- ({functor} 1)))") == f"Functor {shown} of fact head ({shown} 1) is not valid."
+    assert lisp.error(f"(def-fact-group g () (<- (fine 1)) (<- ({functor} 1)))") == \
+        f"Functor {shown} of fact head ({shown} 1) is not valid."
     assert lisp("(handler-case (all '(fine ?x)) (warning () :undefined))") == ":UNDEFINED"
 
 
@@ -101,8 +102,8 @@ def test_a_handler_may_be_redefined(lisp):
 
 @pytest.mark.law("prolog", 60)
 def test_query_var(lisp):
-    assert lisp("(list (query-var '?x #'prolog '(member ?x (4 5))) (query-var '?x #'prolog '(fail)) (query-var '?x #'prolog '(== ?x ?y)))") \
-        == "(4 NIL ?Y)"
+    assert lisp("""(list (query-var '?x #'prolog '(member ?x (4 5))) (query-var '?x #'prolog '(fail))
+                         (query-var '?x #'prolog '(== ?x ?y)))""") == "(4 NIL ?Y)"
     assert lisp("(list (query-var '?z 'prolog '(== ?x 1)) (query-var '?x #'prolog '(== ?x ?y) '((?y . 2))))") == "(?Z 2)"
     assert lisp("(query-var '?x (lambda (&rest all) (list (list (cons '?x all)))) '(a) 1 2)") == "((A) 1 2)"
 
