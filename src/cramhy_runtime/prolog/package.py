@@ -32,8 +32,8 @@ PROLOG = define_face(
             remove-production-handler""",
     },
     variables={BREAK_ON_LISP_ERRORS.name: None},
-    export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof every
-        forall member take generate-values == equal length append sort reduce max string-concat format warn error
+    export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof
+        every forall member take generate-values == equal length append sort reduce max string-concat format warn error
         slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=
         def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers""",
 )

@@ -10,8 +10,8 @@ from cramhy_runtime.prolog import control, database
 
 HANDLERS = """and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof every forall
     take filter-bindings generate-values rete-holds"""
-FACTS = """== equal length append sort reduce max string-concat format warn error slot-value get-slot-value instance-of lisp-type symbol-value
-    set-symbol-value < > <= >= member"""
+FACTS = """== equal length append sort reduce max string-concat format warn error slot-value get-slot-value instance-of lisp-type
+    symbol-value set-symbol-value < > <= >= member"""
 FUNCTIONS = {
     "unify": "(LHS RHS &OPTIONAL BDGS)", "unify-p": "(LHS RHS &OPTIONAL BDGS)", "query-var": "(VAR FUNCTION QUERY &REST ARGS)",
     "filter-bindings": "(FORM BDGS &OPTIONAL INITIAL-BDGS)", "clear-alpha-network": "NIL", "rete-assert": "(FACT)",
@@ -24,7 +24,8 @@ GENERIC = {"prolog": "(QUERY &OPTIONAL BINDS)", "object-id": "(OBJ)"}
 MACROS = "def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers"
 OTHERS = "?_ *break-on-lisp-errors*"
 GROUPS = {
-    "misc-utils": "== equal", "list-utils": "member length append sort reduce", "math-utils": "max < > <= >=", "string-utils": "string-concat",
+    "misc-utils": "== equal", "list-utils": "member length append sort reduce", "math-utils": "max < > <= >=",
+    "string-utils": "string-concat",
     "debugging": "format warn error", "lisp-data-structs": "slot-value get-slot-value symbol-value set-symbol-value",
     "lisp-types": "lisp-type instance-of",
 }
