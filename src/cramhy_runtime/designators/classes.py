@@ -15,22 +15,28 @@ import weakref
 from ..lisp.condition_types import SimpleError, SimpleWarning
 from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
+from ..lisp.objects.classes import find_class_or_error
 from ..lisp.objects.generic import generic
-from ..lisp.packages import keyword
+from ..lisp.objects.generic_errors import no_applicable_method
+from ..lisp.objects.instances import make_instance, plan_for
+from ..lisp.packages import is_symbol, keyword, near_names
 from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
 
 A, ALL = keyword("A"), keyword("ALL")
+DESCRIPTION = keyword("DESCRIPTION")
 _object_ids = itertools.count(1)
 _live = weakref.WeakSet()
-_classes = {}  # type keyword -> class
+_classes = {}  # type keyword -> class, or the symbol that is to name it
+_types = {}  # class -> the first keyword registered for it
 
 
 class DesignatorError(SimpleError):
     """Something about a designator is wrong, mostly that it cannot be resolved.
 
-    ``hint`` is text for a student, why it could not be: ``None`` when there is nothing to say.
+    ``hint`` is text for a student, why it could not be: ``None`` when there is nothing to say. It is found
+    when somebody asks: by ``told``, a function of no arguments, or by ``explain``.
     """
 
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR-ERROR"
@@ -42,8 +48,11 @@ class DesignatorError(SimpleError):
 
     @property
     def hint(self):
+        if self.told is not None:
+            return self.told()
         return self.explain(self.about) if self.about is not None else None
 
+    told = None
     explain = None  # the function of hints.py, which knows the clauses that were tried
     about = None  # the designator that could not be resolved; the slot DESIGNATOR stays as the original leaves it
 
@@ -87,35 +96,49 @@ class Designator:
         return f"<{type(self).__name__} {self.description!r}>"
 
 
-class ObjectDesignator(Designator):
+class DesignatorIdMixin:
+    """Designators with an ``object-id``; equated ones have the same."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::DESIGNATOR-ID-MIXIN"
+
+
+class EquateNotificationMixin:
+    """Designators that tell of being equated."""
+
+    __slots__ = ()
+    lisp_name = "CRAM-DESIGNATORS::EQUATE-NOTIFICATION-MIXIN"
+
+
+class ObjectDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
     """An object in the world; perception sets its ``data``."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::OBJECT-DESIGNATOR"
 
 
-class ActionDesignator(Designator):
+class ActionDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
     """Something to be done; resolved by Prolog to a plan function and its arguments."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::ACTION-DESIGNATOR"
 
 
-class MotionDesignator(Designator):
+class MotionDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
     """A movement; resolved by Prolog to a command for a process module."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::MOTION-DESIGNATOR"
 
 
-class LocationDesignator(Designator):
+class LocationDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
     """A place; resolved by generators and validators."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::LOCATION-DESIGNATOR"
 
 
-class HumanDesignator(Designator):
+class HumanDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
     """A human; perception sets its ``data``."""
 
     __slots__ = ()
@@ -134,8 +157,14 @@ class ObjectDesignatorData:
 
 
 def register_designator_class(type_, cls):
-    """Make `make_designator` accept the keyword ``type_``; a later registration replaces an earlier one."""
+    """Make `make_designator` accept the keyword ``type_``; a later registration replaces an earlier one.
+
+    ``cls`` may be a symbol that will name a class by the time that one is made.
+    """
     _classes[type_] = cls
+    _types.clear()
+    for known, registered in _classes.items():
+        _types.setdefault(registered, known)
     return type_
 
 
@@ -143,14 +172,20 @@ for _name, _class in (("OBJECT", ObjectDesignator), ("ACTION", ActionDesignator)
                       ("LOCATION", LocationDesignator), ("HUMAN", HumanDesignator)):
     register_designator_class(keyword(_name), _class)
 
+STANDARD = frozenset(_types)
+"""The classes that come with CRAM."""
+
 
 def type_keyword(designator):
     """The keyword of its exact class, or ``None`` if that is not registered."""
-    cls = designator.__class__
-    for type_, registered in _classes.items():
-        if registered is cls:
-            return type_
-    return None
+    return _types.get(designator.__class__)
+
+
+def new(cls, description):
+    """A designator of the class ``cls``, made as ``make-instance`` makes it."""
+    if cls in STANDARD and not plan_for(cls).custom:
+        return cls(description)
+    return make_instance(cls, DESCRIPTION, description)
 
 
 make_designator = generic("DESIG::MAKE-DESIGNATOR", "(class description &optional parent)", documentation="""
@@ -161,14 +196,29 @@ A new designator of the class that the keyword ``class`` stands for; equated to 
 def _make_designator(class_, description, parent=None):
     cls = _classes.get(class_)
     if cls is None:
-        if isinstance(class_, type):
-            cls = class_
-        else:
-            return error("Designator type `~a' undefined", class_)
-    designator = cls(description)
+        if not isinstance(class_, type):
+            return _undefined_type(class_)
+        cls = class_
+    elif cls.__class__ is Symbol:
+        cls = find_class_or_error(cls)
+        register_designator_class(class_, cls)
+    designator = new(cls, description)
     if parent is not None:
         equate(parent, designator)
     return designator
+
+
+def _undefined_type(type_):
+    problem = SimpleError("Designator type `~a' undefined", type_)
+    known = sorted(key.name.lower() for key in _classes)
+    if is_symbol(type_) and not isinstance(type_, Keyword) and keyword(type_.name) in _classes:
+        problem.hint = f"The type is a keyword: write :{type_.name.lower()}."
+    else:
+        name = type_.name.lower() if is_symbol(type_) and type_ is not True else ""
+        near = near_names(name, known)
+        problem.hint = (f"Did you mean {' or '.join(near)}?" if near else
+                        f"The types of designators are {', '.join(known[:-1])} and {known[-1]}.")
+    return error(problem)
 
 
 def make_all_designator(class_, description=None):
@@ -192,34 +242,35 @@ def living():
 
 def merge_desig_descriptions(designator, new_description):
     """``new_description`` with the old pairs whose keys it lacks in front, reversed, one per key (designators.md 3.3)."""
-    merged = new_description
-    for pair in designator.description or ():
-        if not any(other.car is pair.car for other in merged or ()):
+    merged, keys = new_description, [pair.car for pair in pairs(new_description)]
+    for pair in pairs_of(designator):
+        if not any(key is pair.car for key in keys):
             merged = Cons(pair, merged)
+            keys.append(pair.car)
     return merged
 
 
 def copy_designator(old, *, new_description=None):
     """A new, unequated designator of the same type with the merged description."""
-    return _make_designator(type_keyword(old), merge_desig_descriptions(old, new_description))
+    return make_designator(type_keyword(old), merge_desig_descriptions(old, new_description))
 
 
 def extend_designator_properties(designator, extension):
     """A new, unequated designator of the same class, ``extension`` appended to the description."""
-    return designator.__class__(list_from(list(designator.description or ()), extension))
+    return new(designator.__class__, list_from(list(pairs_of(designator)), extension))
 
 
 def update_designator_properties(new_properties, old_properties):
     """``old_properties`` with each new one in front, in place of all of its key."""
-    result = list(old_properties or ())
-    for pair in new_properties or ():
+    result = list(pairs(old_properties))
+    for pair in pairs(new_properties):
         result = [pair, *(old for old in result if old.car is not pair.car)]
     return list_from(result)
 
 
 def make_effective_designator(parent, *, new_properties=None, data_object=None, timestamp=None):
     """A new, unequated designator of the class of ``parent`` that is effective and stands for ``data_object``."""
-    designator = parent.__class__(new_properties if new_properties is not None else parent.description)
+    designator = new(parent.__class__, new_properties if new_properties is not None else parent.description)
     designator.data = data_object
     designator.effective = True
     designator.timestamp = current_timestamp() if timestamp is None else timestamp
@@ -237,25 +288,41 @@ def check_key(key):
                        "DEF-DESIG-PACKAGE and declare the symbol as a designator property.", key))
 
 
+def pairs(description):
+    """The entries of a description, which must be lists; another one is a type-error, as in the original."""
+    if description is not None and not isinstance(description, Cons):
+        type_error(description, "LIST")
+    for entry in description or ():
+        yield entry if isinstance(entry, Cons) else type_error(entry, "LIST")
+
+
+def pairs_of(designator):
+    """The entries of its description."""
+    if not isinstance(designator, Designator):
+        no_applicable_method("CRAM-DESIGNATORS:DESCRIPTION", 1, designator)
+    return pairs(designator.description)
+
+
+def value_of(pair):
+    """The second element of a property; nil if it has none."""
+    rest = pair.cdr
+    if isinstance(rest, Cons):
+        return rest.car
+    return None if rest is None else type_error(rest, "LIST")
+
+
 def desig_prop_value(designator, key):
     """The value of the first pair with ``key``; nil if there is none, or no designator."""
-    check_key(key)
+    if key.__class__ is not Keyword:
+        check_key(key)
     if designator is not None:
-        for pair in _pairs(designator):
+        for pair in pairs_of(designator):
             if pair.car is key:
-                return pair.cdr.car if pair.cdr is not None else None
+                return value_of(pair)
     return None
-
-
-def _pairs(designator):
-    """The entries of the description, which must be lists; another one is a type-error, as in the original."""
-    for entry in designator.description or ():
-        yield entry if isinstance(entry, Cons) else type_error(entry, "LIST")
 
 
 def desig_prop_values(designator, key):
     """The values of all pairs with ``key``, in order."""
     check_key(key)
-    return list_from([pair.cdr.car if pair.cdr is not None else None for pair in _pairs(designator) if pair.car is key])
-
-
+    return list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is key])

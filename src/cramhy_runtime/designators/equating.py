@@ -11,6 +11,7 @@ from ..lisp.conditions import error, handler_case, type_error
 from ..lisp.data import list_from
 from ..lisp.hooks import Hook
 from ..lisp.objects.generic import generic
+from ..lisp.packages import is_symbol
 from ..utilities.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError
 from .protocol import equate, next_solution, reference
@@ -38,10 +39,18 @@ def _equate(parent, successor):
     identity = members[0].object_id
     for member in members:
         member.object_id = identity
-    for member in members:
-        for callback in list(member.callbacks or ()):
-            callback(successor)
+    _tell([callback for member in members for callback in member.callbacks or ()], successor)
     return successor
+
+
+def _tell(callbacks, successor):
+    """Call all ``callbacks``: an exit out of one leaves when the others have been told."""
+    for index, callback in enumerate(callbacks):
+        try:
+            callback(successor)
+        except BaseException:
+            _tell(callbacks[index + 1:], successor)
+            raise
 
 
 def chain(designator):
@@ -116,9 +125,15 @@ def designator_solutions(designator, from_root=None):
 _END = object()
 
 
-def register_equate_callback(designator, callback):
-    """Call ``callback`` with the new member whenever the chain is joined to another."""
-    if not callable(callback):
+register_equate_callback = generic("DESIG::REGISTER-EQUATE-CALLBACK", "(designator callback)", documentation="""
+Call ``callback`` with the new member whenever the chain is joined to another.""")
+unregister_equate_callback = generic("DESIG::UNREGISTER-EQUATE-CALLBACK", "(designator callback)", documentation="""
+Forget ``callback``; an unknown one is ignored.""")
+
+
+@register_equate_callback.method(Designator, None)
+def _register_equate_callback(designator, callback):
+    if not callable(callback) or is_symbol(callback):
         return type_error(callback, "FUNCTION")
     if designator.callbacks is None:
         designator.callbacks = []
@@ -127,8 +142,8 @@ def register_equate_callback(designator, callback):
     return callback
 
 
-def unregister_equate_callback(designator, callback):
-    """Forget ``callback``; an unknown one is ignored."""
+@unregister_equate_callback.method(Designator, None)
+def _unregister_equate_callback(designator, callback):
     if designator.callbacks and callback in designator.callbacks:
         designator.callbacks.remove(callback)
 

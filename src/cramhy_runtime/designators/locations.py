@@ -11,13 +11,16 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
-from ..lisp.conditions import restart_case, type_error
-from ..lisp.data import Cons, list_from, one, truth
+from ..lisp.condition_types import SimpleTypeError
+from ..lisp.conditions import error, restart_case, type_error
+from ..lisp.data import Cons, UndefinedFunction, list_from, one, truth
 from ..lisp.dynamic import binding, special
-from ..lisp.packages import keyword
-from ..utilities.lazy_lists import elements, from_iterator
+from ..lisp.evaluation.places_in_source import circumstance
+from ..lisp.packages import is_symbol, keyword
+from ..lisp.printer.printer import prin1_to_string
 from ..prolog.query import ask
 from ..prolog.terms import Var
+from ..utilities.lazy_lists import from_iterator, lazy_cdr, tail
 from .classes import LocationDesignator
 from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
@@ -36,6 +39,12 @@ class Registry:
         self.disabled = set()
 
     def register(self, priority, name):
+        if not is_symbol(name) or name is None:
+            _refuse("The name of a function is wanted, not ~s.", [name], name, "SYMBOL",
+                    "Write the bare name of the function, without #': what it names is looked up at each use.")
+        if priority.__class__ is not int:
+            _refuse("The priority of ~a is no integer: ~s.", [name, priority], priority, "INTEGER",
+                    "The priority comes first, then the name of the function. Lower priorities are asked earlier.")
         self.delete(name, forget=False)
         at = next((index for index, entry in enumerate(self.entries) if entry[0] >= priority), len(self.entries))
         self.entries.insert(at, (priority, name))
@@ -47,11 +56,20 @@ class Registry:
             self.disabled.discard(name)
 
     def all(self):
-        """All functions by ascending priority, disabled ones too, as a Lisp list."""
-        return list_from([name.function for _, name in self.entries])
+        """All functions by ascending priority, disabled ones too, as a Lisp list; the name where there is no function yet."""
+        return list_from([name if name.function.__class__ is UndefinedFunction else name.function for _, name in self.entries])
 
     def active(self):
-        return [name.function for _, name in self.entries if name not in self.disabled]
+        """The names of those that are not disabled."""
+        if not self.disabled:
+            return [name for _, name in self.entries]
+        return [name for _, name in self.entries if name not in self.disabled]
+
+
+def _refuse(control, arguments, datum, expected, hint):
+    problem = SimpleTypeError(control, *arguments, datum=datum, expected_type=expected)
+    problem.hint = hint
+    error(problem)
 
 
 generators = Registry()
@@ -102,21 +120,120 @@ def enable_location_validation_function(name):
 
 def location_solutions(designator):
     """The lazy list of valid candidates for ``designator``; the first is searched for now. Nil if there is none."""
-    return from_iterator(_valid_candidates(designator))
+    search = Search(designator)
+    solutions = search.rest()
+    if solutions is None:
+        designator.__dict__["search"] = search
+    return solutions
 
 
-def _valid_candidates(designator):
-    most = left = MAX_RETRIES.value
-    for generator in generators.active():
-        for candidate in elements(one(generator(designator))):
-            if truth(validate_location_designator_solution(designator, candidate)):
-                left = most
-                yield candidate
-            elif left <= 0:
-                return
+def why_no_place(designator):
+    """The function that tells why the last search for ``designator`` found nothing."""
+    return designator.__dict__.pop("search").account
+
+
+class Search:
+    """The search for the places of a designator, and of those that follow it in its chain.
+
+    It remembers where it stands. So a generator or validator that fails, or a task that is evaporated in one, leaves it where it
+    is, and whoever asks again goes on with the same candidate.
+    """
+
+    def __init__(self, designator):
+        self.designator = designator
+        self.names = generators.active()  # those that are to be asked yet; the first one gave ``cell``
+        self.cell = None  # the candidates of that generator, beginning with the one at hand
+        self.judged = False  # whether the one at hand has been judged
+        self.most = self.left = MAX_RETRIES.value
+        self.drawn, self.refusal, self.over = {}, None, False
+
+    def rest(self):
+        """The lazy list of the valid candidates to come, the first one searched for now."""
+        while not self.over and self._to_next_candidate():
+            candidate = self.cell.car
+            valid, *by = _judge(self.designator, candidate)
+            self.judged = True
+            if valid:
+                self.left = self.most
+                return Cons(candidate, tail(self.rest))
+            self.refusal = candidate, *by
+            if self.left <= 0:
+                self.over = True
             else:
-                left -= 1
+                self.left -= 1
                 kernel.checkpoint()
+        self.over = True
+        return None
+
+    def _to_next_candidate(self):
+        """Go on to the next candidate, unless the one at hand is not judged yet. False if there is none."""
+        while True:
+            if self.cell is None:
+                if not self.names:
+                    return False
+                self.cell = self._candidates(_generate(self.names[0], self.designator))
+                self.judged = False
+            elif self.judged:
+                self.cell = self._candidates(_generate_more(self.names[0], self.designator, self.cell))
+                self.judged = False
+            else:
+                return True
+            if self.cell is None:
+                del self.names[0]
+            else:
+                self.drawn[self.names[0]] = self.drawn.get(self.names[0], 0) + 1
+
+    def _candidates(self, given):
+        if given is not None and given is not False and not isinstance(given, Cons):
+            _refuse("The location generator ~a gave ~s, which is no list.", [self.names[0], given], given, "LIST",
+                    "A generator returns a list of candidates, lazy or not: (list candidate) for a single one, nil for none.")
+        return given or None
+
+    def account(self):
+        """What was searched, and what became of it."""
+        asked = [name for _, name in generators.entries if name not in generators.disabled]
+        if not self.drawn:
+            return ("No location generator is registered." if not asked else
+                    f"None of the location generators gave a candidate: {', '.join(_shown(name) for name in asked)}.")
+        drawn = sum(self.drawn.values())
+        candidate, validator, verdict = self.refusal
+        text = (f"{drawn} candidate{'s were' if drawn > 1 else ' was'} refused, from "
+                f"{', '.join(f'{_shown(name)} ({count})' for name, count in self.drawn.items())}. ")
+        text += f"The last one, {_shown(candidate)}, {_reason(validator, verdict)}."
+        if drawn > self.most:
+            text += f" The search ends after {drawn}, since *location-generator-max-retries* is {self.most}."
+        return text
+
+
+def _reason(validator, verdict):
+    if validator is None:
+        return "was refused by a restart" if verdict is None else "was accepted by no validator, and :maybe-reject came from one"
+    if verdict is True:
+        return f"was refused by {_shown(validator)}: t is no verdict, :accept is one"
+    return f"was refused by {_shown(validator)}, which returned {_shown(verdict)}"
+
+
+def _shown(thing):
+    return " ".join(prin1_to_string(thing).split()).lower() if is_symbol(thing) else " ".join(prin1_to_string(thing).split())
+
+
+def _about(what):
+    return circumstance(lambda here: f"in the location {what} {_shown(here['name'])}, for {_shown(here['designator'])}")
+
+
+@_about("generator")
+def _generate(name, designator):
+    return one(name.function(designator))
+
+
+@_about("generator")
+def _generate_more(name, designator, cell):
+    return lazy_cdr(cell)
+
+
+@_about("validator")
+def _verdict(name, designator, solution):
+    return one(name.function(designator, solution))
 
 
 def validate_location_designator_solution(designator, solution):
@@ -126,24 +243,33 @@ def validate_location_designator_solution(designator, solution):
     """
     if not isinstance(designator, LocationDesignator):
         return type_error(designator, "LOCATION-DESIGNATOR")
-    functions = validators.active()
-    if not functions:
-        return True
+    return _judge(designator, solution)[0]
+
+
+def _judge(designator, solution):
+    """(whether ``solution`` is valid, the validator that refused it, its verdict)"""
+    names = validators.active()
+    if not names:
+        return True, None, None
 
     def ask_all():
         verdict = UNKNOWN
-        for validator in functions:
-            answer = one(validator(designator, solution))
+        for name in names:
+            answer = _verdict(name, designator, solution)
             if answer is ACCEPT:
                 verdict = ACCEPT
             elif answer is MAYBE_REJECT:
                 verdict = verdict if verdict is ACCEPT else MAYBE_REJECT
             elif answer is not UNKNOWN:
-                return None
-        return None if verdict is MAYBE_REJECT else True
+                return None, name, answer
+        return (None, None, verdict) if verdict is MAYBE_REJECT else _VALID
 
-    return restart_case([(sym("DESIG::ACCEPT-SOLUTION"), lambda: True, "Accept this designator solution"),
-                         (sym("DESIG::REJECT-SOLUTION"), lambda: None, "Refuse this designator solution")], ask_all)
+    return restart_case(_RESTARTS, ask_all)
+
+
+_VALID = True, None, None
+_RESTARTS = [(sym("DESIG::ACCEPT-SOLUTION"), lambda: _VALID, "Accept this designator solution"),
+             (sym("DESIG::REJECT-SOLUTION"), lambda: (None, None, None), "Refuse this designator solution")]
 
 
 # ------------------------------------------------------------------------------------------------------- what comes with CRAM

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from ..lisp.faces import define_face
-from ..lisp.objects.classes import find_class_or_error
+from ..lisp.objects.classes import find_class
 from ..lisp.packages import keyword
 from . import classes, language_support, locations, properties_package
 
 
 def register_designator_class(type_, class_name):
-    """``(register-designator-class type class-name)``, both unevaluated."""
-    return classes.register_designator_class(keyword(type_.name), find_class_or_error(class_name))
+    """``(register-designator-class type class-name)``, both unevaluated. The class may be defined later."""
+    return classes.register_designator_class(keyword(type_.name), find_class(class_name, False) or class_name)
 
 
 def define():

@@ -47,6 +47,7 @@ def define_faces():
                         functions={**FUNCTIONS, **INTERNAL}, export=EXPORTED, internal=" ".join(INTERNAL),
                         imports={"CRAM-UTILITIES": "timestamp", "CRAM-PROLOG": "object-id", "COMMON-LISP": "when"})
     sym("CUT::TIMESTAMP").function = readers.timestamp
+    readers.open_readers()
     define_face("CRAM-DESIGNATOR-PROPERTIES", ["DESIG-PROPS"], use=["COMMON-LISP"], export="def-desig-package")
     define_face("CRAM-LANGUAGE-DESIGNATOR-SUPPORT", ["CPL-DESIG-SUPP"], use=["CRAM-LANGUAGE"],
                 functions={language_support: "register-designator-create-function"}, export="with-designators with-equate-fluent")

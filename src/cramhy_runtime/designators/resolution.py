@@ -12,18 +12,31 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from ..lisp import equality
+from ..lisp.condition_types import SimpleError
 from ..lisp.conditions import error
-from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol
+from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
 from ..lisp.dynamic import special
-from ..lisp.objects.generic import generic
+from ..lisp.objects.generic import GenericFunction, generic, no_applicable_method
+from ..lisp.objects.generic_errors import NoApplicableMethodError
+from ..lisp.printer.printer import princ_to_string
 from ..utilities.lazy_lists import from_iterator, lazy_car, lazy_cdr
+from ..utilities.lines import Line
 from ..utilities.patterns import is_var
 from ..prolog.query import ask
 from ..prolog.terms import Var
 from ..utilities.small_functions import current_timestamp
-from .classes import ActionDesignator, Designator, DesignatorError, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator
+from .classes import (
+    ActionDesignator,
+    Designator,
+    DesignatorError,
+    HumanDesignator,
+    LocationDesignator,
+    MotionDesignator,
+    ObjectDesignator,
+    new,
+)
 from .equating import youngest
-from .locations import location_solutions
+from .locations import location_solutions, why_no_place
 from .protocol import designator_solutions_equal, equate, next_solution, reference
 from .symbols import sym
 
@@ -39,24 +52,21 @@ designator_distance = generic("DESIG::DESIGNATOR-DISTANCE", "(desig-1 desig-2)",
 The distance of two effective designators; nil if one is not effective.""")
 
 
-def unresolved(designator, control):
-    """Signal that ``designator`` cannot be resolved, with the text ``control``."""
+def unresolved(designator, control, told=None):
+    """Signal that ``designator`` cannot be resolved, with the text ``control``; ``told`` is what is known of why."""
     problem = DesignatorError(control, designator)
-    problem.about = designator
+    problem.about, problem.told = designator, told
     return error(problem)
 
 
 @reference.method(Designator)
 def _reference(designator, role=UNSUPPLIED):
-    if designator.effective and not isinstance(designator, LocationDesignator) and designator.data is not None:
-        return designator.data
+    found = known(designator)
+    if found is not None:
+        return found
     me = kernel.current()
     while designator.resolver is not None:
-        if designator.resolver is me:
-            return error("Recursive lock attempt: designator ~a is needed to resolve itself.", designator)
-        other = designator.resolver
-        designator.__dict__.setdefault("waiting", []).append(me)
-        kernel.park(lambda other=other: f"the designator that {other.name} resolves")
+        _wait_for_resolver(designator, me)
     designator.resolver = me
     try:
         result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
@@ -66,8 +76,70 @@ def _reference(designator, role=UNSUPPLIED):
         return result
     finally:
         designator.resolver = None
-        for task in designator.__dict__.pop("waiting", ()):
-            kernel.unpark(task)
+        line = _lines.pop(designator, None) if _lines else None
+        if line is not None:
+            line.serve_all()
+
+
+def known(designator):
+    """What the designator was found to stand for; ``None`` if that is not known."""
+    if designator.effective:
+        return designator.current_solution if isinstance(designator, LocationDesignator) else designator.data
+    return None
+
+
+class QuickReference(GenericFunction):
+    """``reference`` while nobody has added methods: a designator that is resolved already gives its value without any dispatch."""
+
+    def __call__(self, desig, role=UNSUPPLIED):
+        cls = desig.__class__
+        if cls is MotionDesignator or cls is ActionDesignator or cls is ObjectDesignator:
+            if desig.effective and desig.data is not None:
+                return desig.data
+            return _reference(desig, role)
+        return _reference(desig, role) if isinstance(desig, Designator) else no_applicable_method(self, (desig,))
+
+
+reference.take_shortcut(QuickReference)
+
+_lines = {}
+"""Designator → the line of the tasks that want it while another one resolves it."""
+_wanted = {}
+"""Task → the designator in whose line it stands."""
+
+
+def _wait_for_resolver(designator, me):
+    """Wait until nobody resolves ``designator``; an error if that would be for ever, since its resolver waits for ``me``."""
+    ring = [designator]
+    while True:
+        resolver = ring[-1].resolver
+        if resolver is me:
+            return _endless(ring)
+        following = _wanted.get(resolver)
+        if following is None:
+            break
+        ring.append(following)
+    line = _lines.get(designator)
+    if line is None:
+        line = _lines[designator] = Line()
+    _wanted[me] = designator
+    other = designator.resolver
+    try:
+        line.stand(lambda: f"the designator that {other.name} resolves")
+    finally:
+        del _wanted[me]
+
+
+def _endless(ring):
+    """Signal that resolving the first of ``ring`` waits for the task that wants it."""
+    problem = SimpleError("Recursive lock attempt: designator ~a is needed to resolve itself.", ring[0])
+    if len(ring) > 1:
+        others = ", ".join(" ".join(princ_to_string(other).split()) for other in ring[1:])
+        problem.hint = f"The task that resolves it waits for {others}, which this task resolves: each waits for the other, for ever."
+    else:
+        problem.hint = ("A clause, generator or validator asks for the designator that it is to resolve: look at its properties with "
+                        "desig-prop instead.")
+    return error(problem)
 
 
 def _groundings(designator, predicate):
@@ -83,7 +155,8 @@ def _resolve_by_prolog(designator, role=None):
     action = isinstance(designator, ActionDesignator)
     if designator.solutions is UNBOUND:
         designator.solutions = from_iterator(_groundings(designator, ACTION_GROUNDING if action else MOTION_GROUNDING))
-    value = lazy_car(designator.solutions)
+    solutions = designator.solutions
+    value = solutions.car if solutions is not None else None
     if value is None:
         return unresolved(designator, f"Cannot resolve {'action' if action else 'motion'} designator ~a.")
     designator.data = value
@@ -95,7 +168,7 @@ def _resolve_location(designator, role=None):
     if designator.data is None:
         designator.data = location_solutions(designator)
         if designator.data is None:
-            return unresolved(designator, "Unable to resolve designator `~a'")
+            return unresolved(designator, "Unable to resolve designator `~a'", told=why_no_place(designator))
     if designator.current_solution is None:
         designator.current_solution = lazy_car(designator.data)
     return designator.current_solution
@@ -122,19 +195,27 @@ def _next_location(designator):
     rest = lazy_cdr(designator.data)
     if rest is None:
         return None
-    successor = designator.__class__(designator.description)
+    successor = new(designator.__class__, designator.description)
     successor.data = rest
     return equate(designator, successor)
+
+
+@next_solution.method(Designator)
+def _no_solutions(designator):
+    problem = NoApplicableMethodError(next_solution, lisp_list(designator))
+    problem.hint = ("Only actions, motions and locations have further solutions. An object or a human stands for what perception put "
+                    "into its data; perceive again for another one.")
+    return error(problem)
 
 
 @next_solution.method(ActionDesignator)
 @next_solution.method(MotionDesignator)
 def _next_grounding(designator):
     reference(designator)
-    rest = lazy_cdr(designator.solutions)
+    rest = lazy_cdr(designator.solutions) if designator.solutions is not UNBOUND else None  # made effective by hand: no more is known
     if rest is None:
         return None
-    successor = (ActionDesignator if isinstance(designator, ActionDesignator) else MotionDesignator)(designator.description)
+    successor = new(ActionDesignator if isinstance(designator, ActionDesignator) else MotionDesignator, designator.description)
     successor.solutions = rest
     return equate(designator, successor)
 

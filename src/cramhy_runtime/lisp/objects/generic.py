@@ -68,6 +68,14 @@ class GenericFunction(FunctionObject):
         _all.add(self)
 
     watcher = None
+    shortcut = shortcut_methods = None
+
+    def take_shortcut(self, cls):
+        """Let the subclass ``cls``, whose ``__call__`` knows the answer in frequent cases, make all calls as long as the methods are
+        those that there are now: whoever adds one ends that, and removing it again brings the shortcut back.
+        """
+        self.shortcut, self.shortcut_methods = cls, list(self.methods)
+        self.forget()
 
     def watch(self, watcher):
         """Let ``watcher(effective function, arguments, keywords)`` make all calls from now on; ``None`` ends that. For ``trace``."""
@@ -87,6 +95,8 @@ class GenericFunction(FunctionObject):
         fixed = self.minimum == self.maximum
         if self.watcher is not None:
             self.__class__ = _WatchedGeneric
+        elif self.shortcut is not None and self.methods == self.shortcut_methods:
+            self.__class__ = self.shortcut
         elif len(positions) == 1 and fixed and self.minimum < 3:
             self.__class__ = {(0, 1): UnaryGeneric, (0, 2): FirstOfTwo, (1, 2): _SecondOfTwo}[positions[0], self.minimum]
         elif positions == [0]:
