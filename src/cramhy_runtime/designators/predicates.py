@@ -1,30 +1,33 @@
 """The predicates of designators, for Prolog (designators.md section 9).
 
 ``desig-prop`` is the one that plans use; the others look at slots, at the chain of equated designators, and at solutions. Repaired:
-``effective-designator`` tests the designator it is given; ``desig-prop`` with a time gives each solution once.
+``effective-designator`` tests the designator it is given; the forms with a time, ``(desig-prop d (key value) time)`` and
+``(desig-value d value time)``, give what holds of each designator of the chain once.
+
+``action-grounding``, ``motion-grounding`` and ``location-grounding`` are defined here, so that asking one that nobody has extended
+warns of nothing; their default clauses only check, with ``*break-on-lisp-errors*``, that they are asked about the right thing.
 """
 
 from __future__ import annotations
 
-from ..lisp.conditions import handler_case, warn
-from ..lisp.data import Cons, Symbol
+from ..lisp.conditions import error
+from ..lisp.data import Cons, Keyword, Symbol, truth
 from ..prolog.facts import built_in_group
-from ..prolog.natives import deref, predicate, resolve, test
-from ..prolog.terms import Var
+from ..prolog.lisp_calls import BREAK_ON_LISP_ERRORS, call_lisp
+from ..prolog.machine import fail, retry_iterator
+from ..prolog.natives import deref, predicate, resolve, step_predicate, test
+from ..prolog.terms import Var, ground
 from .classes import (
     ActionDesignator,
     Designator,
-    DesignatorError,
     LocationDesignator,
     MotionDesignator,
     ObjectDesignator,
     check_key,
     living,
-    make_designator,
     type_keyword,
 )
 from .equating import chain, desig_equal, designator_solutions, get_equal_designators, newest_effective_designator, youngest
-from .resolution import reference
 from .symbols import sym
 
 
@@ -33,28 +36,50 @@ def _designator(m, term):
     return found if isinstance(found, Designator) else None
 
 
-def _properties(m, desig, pair):
+def _members(m, desig):
+    """The designator that the term ``desig`` is, then the others of its chain."""
     designator = _designator(m, desig)
-    if designator is None:
-        return
+    return [] if designator is None else [designator, *(other for other in chain(designator) if other is not designator)]
+
+
+def _call(name, *arguments):
+    """(True, value) of a Lisp function; (False, None) and a warning when it signals an error, as with ``lisp-fun``."""
+    return call_lisp(sym(f"DESIG::{name}"), arguments, "function", sym(f"DESIG::{name}"))
+
+
+def _properties(m, designator, pair, *also):
+    """Unify ``pair`` with each property of the designator that has a value, and the terms ``also`` with one another."""
     pair = deref(pair)
     if isinstance(pair, Cons):
         key = deref(pair.car)
-        if isinstance(key, Symbol):
+        if isinstance(key, Symbol) and key.__class__ is not Keyword:
             check_key(key)
-    for entry in designator.description or ():
-        if isinstance(entry, Cons) and isinstance(entry.cdr, Cons) and entry.cdr.cdr is None and m.unify(pair, entry):
+    for entry in _pairs(designator):
+        if m.unify(pair, entry, *also):
             yield
 
 
+def _pairs(designator):
+    """The entries of the description that are lists of two; a description may be anything."""
+    cell = designator.description
+    while isinstance(cell, Cons):
+        entry, cell = cell.car, cell.cdr
+        if isinstance(entry, Cons) and isinstance(entry.cdr, Cons) and entry.cdr.cdr is None:
+            yield entry
+
+
+@step_predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS", arity=2)
+def desig_prop(m, step):
+    """``(desig-prop d (key value))``: the matching properties, in order."""
+    designator = _designator(m, step[2])
+    return fail(m) if designator is None else retry_iterator(m, step[1], _properties(m, designator, step[3]))
+
+
 @predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS")
-def desig_prop(m, desig, pair, *time):
-    """``(desig-prop d (key value))``: the matching properties, in order; with a time, of the designator of that time."""
-    if time:
-        designator = _designator(m, desig)
-        if designator is None or designator.timestamp is None or not m.unify(time[0], designator.timestamp):
-            return
-    yield from _properties(m, desig, pair)
+def desig_prop_at(m, desig, pair, time):
+    """``(desig-prop d (key value) time)``: those of the designator, then of the others of its chain, each with its time."""
+    for member in _members(m, desig):
+        yield from _properties(m, member, pair, time, member.timestamp)
 
 
 def _type_test(name, cls):
@@ -80,6 +105,14 @@ _slot("DESIG-EFFECTIVE", "effective")
 _slot("DESIG-VALUE", "data")
 
 
+@predicate("DESIG::DESIG-VALUE", group="DESIG::DESIGNATOR-ACCESSORS")
+def desig_value_at(m, desig, value, time):
+    """``(desig-value d value time)``: of the designator, then of the others of its chain, each with its time."""
+    for member in _members(m, desig):
+        if m.unify(value, member.data, time, member.timestamp):
+            yield
+
+
 @test("DESIG::EFFECTIVE-DESIGNATOR", group="DESIG::DESIGNATORS")
 def effective_designator(m, desig):
     designator = _designator(m, desig)
@@ -92,16 +125,8 @@ def desig_reference(m, desig, value):
     designator = _designator(m, desig)
     if designator is None:
         return False
-
-    def refused(problem):
-        warn("Unable to reference designator: ~a", problem)
-        return _FAILED
-
-    result = handler_case([(DesignatorError, refused)], lambda: reference(designator))
-    return result is not _FAILED and m.unify(value, result)
-
-
-_FAILED = object()
+    done, result = _call("REFERENCE", designator)
+    return done and m.unify(value, result)
 
 
 @test("DESIG::DESIGNATOR-GROUNDINGS", group="DESIG::DESIGNATORS")
@@ -152,8 +177,10 @@ def designator(m, first, *rest):
         if isinstance(known, Designator):
             if m.unify(first, type_keyword(known), description, known.description):
                 yield
-        elif known.__class__ is Var and m.unify(desig, make_designator(resolve(first), resolve(description))):
-            yield
+        elif known.__class__ is Var and ground(first) and ground(description):
+            done, made = _call("MAKE-DESIGNATOR", resolve(first), resolve(description))
+            if done and m.unify(desig, made):
+                yield
 
 
 @test("DESIG::CURRENT-DESIGNATOR", group="DESIG::DESIGNATORS")
@@ -174,17 +201,32 @@ def desig_location_prop(m, desig, pose):
     found = _designator(m, desig)
     if not isinstance(found, LocationDesignator):
         return
-    for entry in found.description or ():
-        if entry.car is sym(":LOCATION") and isinstance(entry.cdr.car, LocationDesignator):
-            value = reference(youngest(entry.cdr.car))
-        elif entry.car is sym(":POSE"):
-            value = entry.cdr.car
-        else:
-            continue
-        if m.unify(pose, value):
-            yield
+    for key in (sym(":LOCATION"), sym(":POSE")):
+        for entry in _pairs(found):
+            if entry.car is key:
+                done, value = True, entry.cdr.car
+                if key is sym(":LOCATION"):
+                    done, value = _call("LOC-DESIG-LOCATION", value) if isinstance(value, LocationDesignator) else (False, None)
+                if done and m.unify(pose, value):
+                    yield
 
 
-for _group, _functor in (("DEFAULT-ACTION-GROUNDING", "ACTION-GROUNDING"), ("DEFAULT-MOTION-SOLUTION", "MOTION-GROUNDING"),
-                         ("LOCATION-DESIGNATOR-GENERATORS", "LOCATION-GROUNDING"), ("LOCATION-DESIGNATORS", "DESIG-LOC")):
-    built_in_group(sym(f"DESIG::{_group}"), sym(f"DESIG::{_functor}"))
+built_in_group(sym("DESIG::LOCATION-DESIGNATORS"), sym("DESIG::DESIG-LOC"))
+
+
+def _default_clause(group, functor, cls):
+    tag = functor.lower()
+
+    @step_predicate(f"DESIG::{functor}", group=f"DESIG::{group}", arity=2)
+    def check(m, step):
+        """The clause that every grounding begins with: it checks, if wanted, and fails."""
+        if truth(BREAK_ON_LISP_ERRORS.value):
+            asked = resolve(step[2], m.names)
+            if not isinstance(asked, cls):
+                return error("[~a]: ~a had to be of type ~a", f"default {tag}", asked, sym(cls.lisp_name))
+        return fail(m)
+
+
+_default_clause("DEFAULT-ACTION-GROUNDING", "ACTION-GROUNDING", ActionDesignator)
+_default_clause("DEFAULT-MOTION-SOLUTION", "MOTION-GROUNDING", MotionDesignator)
+_default_clause("LOCATION-DESIGNATOR-GENERATORS", "LOCATION-GROUNDING", LocationDesignator)

@@ -13,7 +13,7 @@ from cramhy_runtime import kernel
 
 from ..lisp import equality
 from ..lisp.condition_types import SimpleError
-from ..lisp.conditions import error
+from ..lisp.conditions import error, wrong_argument_count
 from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
 from ..lisp.dynamic import special
 from ..lisp.objects.generic import GenericFunction, generic, no_applicable_method
@@ -91,8 +91,10 @@ def known(designator):
 class QuickReference(GenericFunction):
     """``reference`` while nobody has added methods: a designator that is resolved already gives its value without any dispatch."""
 
-    def __call__(self, desig, role=UNSUPPLIED):
+    def __call__(self, desig=UNSUPPLIED, role=UNSUPPLIED, *more):
         cls = desig.__class__
+        if more or desig is UNSUPPLIED:
+            return wrong_argument_count(len(more) + 2 if more else 0)
         if cls is MotionDesignator or cls is ActionDesignator or cls is ObjectDesignator:
             if desig.effective and desig.data is not None:
                 return desig.data

@@ -4,16 +4,25 @@ A pure function from forms to a form, called by the macros ``a``, ``an`` and ``a
 decided by its text alone: ``?name`` is a variable of the surrounding code, everything else a keyword. Calls are not evaluated; what
 is computed goes into a ``?variable`` first. Source: designators.md 3.2. The original also looks at global values at expansion time;
 we don't, because the meaning of a plan then depends on what was loaded before it.
+
+Several properties may have one key, and a value may be any list. Two things are worth a style-warning all the same, since nobody
+means them: a value that looks like a call, ``(speed (+ 1 2))``, and a property that is there twice, word for word.
 """
 
 from __future__ import annotations
 
+from ..lisp.condition_types import SimpleStyleWarning
 from ..lisp.conditions import error
-from ..lisp.data import Cons, Keyword, Symbol, lisp_list, list_from
+from ..lisp.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from
+from ..lisp.dynamic import binding
+from ..lisp.equality import equal
+from ..lisp.evaluation.compilation_unit import warn_of
 from ..lisp.packages import keyword
+from ..lisp.printer.print_controls import PRINT_CASE
+from ..lisp.tools.describing import one_line
 from .symbols import sym
 
-LIST, QUOTE, WHEN = sym("LIST"), sym("QUOTE"), sym("WHEN")
+LIST, QUOTE, WHEN, FUNCTION = sym("LIST"), sym("QUOTE"), sym("WHEN"), sym("FUNCTION")
 MAKE, MAKE_ALL, PRESENT = sym("DESIG::MAKE-DESIGNATOR"), sym("DESIG::MAKE-ALL-DESIGNATOR"), sym("DESIG::PRESENT")
 _nested = {name: sym(f"DESIG::{name}") for name in ("A", "AN", "ALL")}
 
@@ -27,6 +36,7 @@ def expand(form):
 def designator_form(type_, pairs, quantifier="A"):
     """The form that ``(a type pair...)`` stands for; ``quantifier`` is "A" or "ALL". ``type_`` is a symbol or string."""
     name = (type_ if isinstance(type_, str) else type_.name).upper()
+    look_over(pairs)
     if quantifier == "ALL":
         return lisp_list(MAKE_ALL, keyword(name.rstrip("S")), description_form(pairs))
     return lisp_list(MAKE, keyword(name), description_form(pairs))
@@ -95,3 +105,42 @@ def _proper(lst):
 def present(entries):
     """``entries`` without nils: what is left of a description when its ``(when ...)`` have been decided."""
     return list_from([entry for entry in entries or () if entry is not None])
+
+
+# ------------------------------------------------------------------------------------------------------------------- advice
+
+
+def look_over(pairs):
+    """Warn of properties that mean something else than they look like."""
+    seen = []
+    for pair in pairs or ():
+        if not (isinstance(pair, Cons) and isinstance(pair.cdr, Cons) and pair.cdr.cdr is None):
+            continue
+        key, value = pair.car, pair.cdr.car
+        if any(equal(pair, other) for other in seen):
+            warn_of(SimpleStyleWarning, "The property ~a is there twice.", _text(pair))
+        seen.append(pair)
+        if isinstance(value, Cons) and isinstance(value.car, Symbol):
+            if value.car is QUOTE:
+                warn_of(SimpleStyleWarning, "The value of ~a is the list (quote ~a). What stands in a designator is not evaluated, and "
+                        "needs no quote.", _text(key), _text(value.cdr.car if value.cdr else None))
+            elif _looks_like_a_call(value):
+                variable = f"?{getattr(key, 'name', 'value').lower()}"
+                warn_of(SimpleStyleWarning, "The value of ~a is the list ~a: only ?variables in a designator are evaluated. To use what "
+                        "the call returns, write~%  (let ((~a ~a)) ... (~a ~a) ...).",
+                        _text(key), _text(value), variable, _text(value), _text(key), variable)
+
+
+def _text(form):
+    with binding(PRINT_CASE, keyword("DOWNCASE")):
+        return one_line(form)
+
+
+def _looks_like_a_call(form):
+    """Whether ``form`` names a function and gives it an argument that no enumeration of words would have."""
+    head = form.car
+    if head is FUNCTION:
+        return True
+    if head.name in _nested or head.function.__class__ is UndefinedFunction:
+        return False
+    return any(not isinstance(argument, Symbol) or argument.name.startswith("?") for argument in form.cdr or ())
