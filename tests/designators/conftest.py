@@ -1,13 +1,91 @@
-"""Each test has its own virtual time, on both back ends."""
+"""Each test has its own virtual time, on both back ends; in Lisp text it has a package of its own, and leaves no rules behind."""
+
+import itertools
+import re
 
 import pytest
 
 from cramhy_runtime import image, kernel
+from cramhy_runtime.designators import classes, language_support, locations
+from cramhy_runtime.lisp.data import all_values
+from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.lisp.tools.advice import hint_for
+from cramhy_runtime.prolog.facts import fact_group_names, remove_fact_group
+from cramhy_runtime.repl.session import Session, condition_of
 
 image.boot()
+
+PRELUDE = """
+(defpackage {name} (:use :common-lisp :cram-prolog :desig :cpl-desig-supp :cut))
+(in-package {name})
+(defvar *notes* nil)
+(defun note (thing) (setf *notes* (append *notes* (list thing))) thing)
+(defun props (designator) (description designator))
+(defun answers (goal) (force-ll (prolog goal)))
+(defun solutions (designator)
+  (loop for d = designator then (next-solution d) while d collect (reference d)))
+"""
+_numbers = itertools.count(1)
 
 
 @pytest.fixture(params=["threads", "greenlet"], autouse=True)
 def fresh_kernel(request):
     yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
     kernel.stop()
+
+
+@pytest.fixture
+def no_rules_left():
+    """Fact groups, generators, validators, types and create functions that a test defines are forgotten."""
+    groups = set(fact_group_names())
+    registries = [(registry, list(registry.entries), set(registry.disabled)) for registry in (locations.generators, locations.validators)]
+    types, makers = dict(classes._classes), list(language_support._create_functions)
+    yield
+    for name in fact_group_names():
+        if name not in groups:
+            remove_fact_group(name)
+    for registry, entries, disabled in registries:
+        registry.entries, registry.disabled = entries, disabled
+    classes._classes.clear()
+    for type_, cls in types.items():
+        classes.register_designator_class(type_, cls)
+    language_support._create_functions[:] = makers
+
+
+class Lisp:
+    """``lisp(text)``: the values of the last form of ``text``, printed in one line. Each test has a package of its own.
+
+    ``(note x)`` adds to the list ``*notes*``; ``(answers goal)`` are all answers of Prolog; ``(solutions d)`` the references of
+    ``d`` and of all its next solutions; ``(props d)`` is its description.
+    """
+
+    def __init__(self, backend, time_limit=3600):
+        self.session = Session(time="virtual", turtlesim=False, backend=backend, time_limit=time_limit)
+        self.session.evaluate_text(PRELUDE.format(name=f"DESIGNATORS-{next(_numbers)}"))
+
+    def __call__(self, text):
+        return " ; ".join(" ".join(prin1_to_string(value).split()) for value in self.session.evaluate_text(text))
+
+    def text(self, form):
+        """The string that ``form`` returns, as it is."""
+        value, = all_values(self.session.evaluate_text(form)[-1])
+        return value
+
+    def condition(self, text):
+        """The condition that ``text`` ends with."""
+        with pytest.raises(BaseException) as problem:
+            self.session.evaluate_text(text)
+        return condition_of(problem.value)
+
+    def error(self, text):
+        """The text of that condition, without addresses."""
+        return re.sub(r"\{[0-9A-F]+\}", "{}", " ".join(princ_to_string(self.condition(text)).split()))
+
+    def hint(self, text):
+        """What the REPL adds to the text of that condition."""
+        return hint_for(self.condition(text))
+
+
+@pytest.fixture
+def lisp(request, no_rules_left):
+    return Lisp(request.getfixturevalue("fresh_kernel").backend.name)
