@@ -75,7 +75,7 @@ def _member(m, step):
                 return fail(m)
             lst = deref(lst)
             if lst.__class__ is Var:
-                m.choices.append((height, (_member_of_extension, k, element, lst)))
+                m.choices.append((_member_of_extension, k, height, element, lst))
                 lst.ref = Cons(element, Var())
                 trail.append(lst)
                 return k
@@ -84,21 +84,28 @@ def _member(m, step):
         item, lst = lst.car, lst.cdr
         if element.__class__ is Var:
             if lst is not None:
-                m.choices.append((height, (_member, k, element, lst)))
+                m.choices.append((_next_member, k, height, element, lst))
             if item is not element:
                 element.ref = item
                 trail.append(element)
             return k
         if unify(element, item, trail):
             if lst is not None:
-                m.choices.append((height, (_member, k, element, lst)))
+                m.choices.append((_next_member, k, height, element, lst))
             return k
         if len(trail) > height:
             undo(trail, height)
 
 
+def _next_member(m, step):
+    """Choice point: the elements of a list that are left."""
+    m.choices.pop()
+    return _member(m, (_member, step[1], step[3], step[4]))
+
+
 def _member_of_extension(m, step):
-    _, k, element, lst = step
+    _, k, _, element, lst = step
+    m.choices.pop()
     rest = Var()
     lst.ref = Cons(Var(), rest)
     m.trail.append(lst)
@@ -140,14 +147,15 @@ def _append(m, step):
         return k if unify(b, c, trail) else fail(m)
     if a.__class__ is not Var:
         return fail(m)
-    m.choices.append((len(trail), (_append_longer, k, a, b, c)))
+    m.choices.append((_append_longer, k, len(trail), a, b, c))
     a.ref = None
     trail.append(a)
     return k if unify(b, c, trail) else fail(m)
 
 
 def _append_longer(m, step):
-    _, k, a, b, c = step
+    _, k, _, a, b, c = step
+    m.choices.pop()
     first, rest, end = Var(), Var(), Var()
     whole = deref(c)
     if whole.__class__ is Cons:

@@ -1,9 +1,12 @@
 """The clause compiler: the clauses of a predicate become one Python function.
 
-For each predicate Python source is written and compiled: unification with the clause heads is spelled out, test by test, for the
-patterns at hand; the first argument selects the clauses that can match, so that calls with a known one leave no choice point; a
-clause that ends by calling its own predicate becomes a loop. Goals behind the first one of a body go into continuation functions,
-which get the variables they need through their step. Ground facts without bodies are tables instead, see ``relations.py``.
+For each predicate Python source is written and compiled. It looks at the first argument that tells the clauses apart, and goes to the
+code of those that can match; where that argument is unset, at the next one that does. A clause is tried together with the tests that
+its body begins with, and only when these succeed and other clauses could match too is a choice point made, so calls that one clause
+answers leave none. A clause that ends by calling its own predicate becomes a loop.
+
+Clauses that are too many or too long to stand in that function are functions of their own, which tables of candidates name. Ground
+facts without bodies are tables altogether, see ``relations.py``. What stands in a clause is compiled by ``matching.py`` and ``bodies.py``.
 
 Why source, and why clauses stand inside the function of their predicate: naive reverse runs at 2.1 M inferences a second; with
 one more Python call per clause, which closures would need at least, at 1.2 M.
@@ -11,48 +14,40 @@ one more Python call per clause, which closures would need at least, at 1.2 M.
 
 from __future__ import annotations
 
-from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.lisp.data import Cons, Symbol
+from cramhy_runtime.utilities.patterns import variable
 
-from . import control, lisp_calls
-from .database import Clause, arguments_of, extended, find_predicate, valid_functor
-from cramhy_runtime.utilities.lazy_lists import LazyTail
+from . import database
+from .bodies import CALL, CONSTRUCTS, CUT, FILTER, IF, OR, SOFT_IF, Bodies, Context, direct, flat, is_test, known_goal, may_cut
 from .machine import fail
-from cramhy_runtime.utilities.patterns import ANONYMOUS, same_atom, variable
+from .matching import A_LIST, SAME, UNBOUND
 from .relations import compile_relation, index_key
-from .symbols import sym
-from .terms import UNSET, TermTail, Var, unify
+from .source import Rest, is_ground
 
 LOOP = range(100)
-_INLINE_LIMIT = 6
-_DEEP = 4
-_CUT = sym("CRAM-PROLOG::CUT")
-_UNIFIES = sym("CRAM-PROLOG::==")
-_LISP_FUN = sym("CRAM-PROLOG::LISP-FUN")
-_LISP_PRED = sym("CRAM-PROLOG::LISP-PRED")
-_AND = sym("AND")
-_COMPARISONS = {sym(name): sym(name) for name in ("<", ">", "<=", ">=")}
-_TRUE = sym("CRAM-PROLOG::TRUE")
+_HEAVY = 90
+"""Conses of clauses that are still written out where they may be tried."""
 
 _ANY, _LIST, _OTHER = object(), object(), object()
-"""What a clause can match by its first argument, where that is no key of the index: anything, lists, other atoms."""
-
-INLINED = frozenset([_CUT, _UNIFIES, _LISP_FUN, _LISP_PRED, _AND, _TRUE, *_COMPARISONS])
-"""Functors whose goals are compiled in place: when users extend one, all code is made anew."""
+"""What a clause can match by an argument, where that is no key of the index: anything, lists, other atoms."""
 
 
 def compile_clauses(predicate, clauses):
-    """The call function of ``predicate`` for ``clauses``, a list of `Clause`."""
+    """The call function of ``predicate`` for ``clauses``, a list of `Clause`, and its `Relation` if it is one."""
     arity, fitting = predicate.arity, []
     for clause in clauses:
         arguments = _head_arguments(clause.head, arity)
         if arguments is not None:
             fitting.append((arguments, clause))
     if not fitting:
-        return lambda m, step: fail(m)
-    table = compile_relation([arguments for arguments, _ in fitting]) if all(
-        clause.goals is None and _is_ground(arguments) for arguments, clause in fitting) else None
-    return table or _Code(predicate, fitting).function()
+        return lambda m, step: fail(m), None
+    if all(clause.goals is None and is_ground(arguments) for arguments, clause in fitting):
+        relation = compile_relation([arguments for arguments, _ in fitting])
+        return relation.call_function(), relation
+    return PredicateCode(predicate, fitting).function(), None
+
+
+database.compile_clauses = compile_clauses
 
 
 def _head_arguments(head, arity):
@@ -65,447 +60,294 @@ def _head_arguments(head, arity):
         return arguments if len(arguments) == arity else None
     if len(arguments) > arity or isinstance(cell, Cons) or not variable(cell):
         return None
-    return [*arguments, _Rest(cell, arity - len(arguments))]
+    return [*arguments, Rest(cell, arity - len(arguments))]
 
 
-class _Rest:
-    """The variable behind the dot of a clause head, for goals with ``count`` more arguments."""
-
-    def __init__(self, name, count):
-        self.name, self.count = name, count
-
-
-def _is_ground(item):
-    stack = list(item) if isinstance(item, list) else [item]
+def _mentions(item, functor):
+    stack = list(item or ())
     while stack:
         item = stack.pop()
         while isinstance(item, Cons):
             stack.append(item.cdr)
             item = item.car
-        if isinstance(item, (_Rest, LazyTail)) or variable(item):
-            return False
-    return True
+        if item is functor:
+            return True
+    return False
 
 
-def _variables(item, found):
-    stack = [item]
+def _weight(item):
+    """The number of conses in Lisp data or a list of it."""
+    count, stack = 0, list(item or ())
     while stack:
         item = stack.pop()
         while isinstance(item, Cons):
+            count += 1
             stack.append(item.cdr)
             item = item.car
-        if variable(item) and item is not ANONYMOUS:
-            found.setdefault(item)
-    return found
+    return count
 
 
-class _Code:
-    """The source of one predicate in the making: lines of text, and the constants that they name."""
+class PredicateCode(Bodies):
+    """The code of one predicate in the making. ``fitting``: pairs (argument patterns, clause)."""
 
     def __init__(self, predicate, fitting):
+        super().__init__(f"<clauses of {predicate.functor!r}/{predicate.arity}>")
         self.predicate, self.fitting = predicate, fitting
         self.arity = predicate.arity
-        self.lines, self.functions = [], []
-        self.globals = {"Cons": Cons, "new": Cons.__new__, "Var": Var, "UNSET": UNSET, "unify": unify, "fail": fail, "LOOP": LOOP,
-                        "same_atom": same_atom, "LazyTail": LazyTail, "TermTail": TermTail, "index_key": index_key,
-                        "Symbol": Symbol, "lisp_fun": lisp_calls.lisp_fun, "lisp_pred": lisp_calls.lisp_pred,
-                        "compare": lisp_calls.compare, "resolve_argument": lisp_calls.resolve_argument,
-                        "raw_argument": lisp_calls.raw_argument, "as_variable": lisp_calls.as_variable,
-                        "try_clauses": try_clauses, "P": predicate, "budget": budget}
-        self.constants = {}
-        self.counter = 0
+        self.goals = [list(flat(clause.goals)) for _, clause in fitting]
+        self.weights = [_weight([clause.head, *(clause.goals or ())]) for _, clause in fitting]
+        self.arguments = "".join(f", a{i}" for i in range(self.arity))
+        self.looping = predicate.functor not in database.traced and any(map(self._repeats, self.goals))
+        self.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses)
+        self.tries, self.buckets, self.clause_names = {}, {}, {}
 
     def function(self):
-        arguments = "".join(f", a{i}" for i in range(self.arity))
-        self.arguments = arguments
-        clause_names = []
-        for number, (patterns, clause) in enumerate(self.fitting):
-            clause_names.append(f"clause_{number}")
-            self._define(f"clause_{number}(m, k, b{arguments})", lambda p=patterns, c=clause: self._clause(p, c, False))
-        self._define("predicate(m, step)", lambda: self._dispatch(clause_names))
-        source = "\n".join(self.functions)
-        name = f"<clauses of {self.predicate.functor!r}/{self.arity}>"
-        exec(compile(source, name, "exec"), self.globals)
-        for key, buckets in self.buckets.items():
-            self.globals[key] = {item: tuple(self.globals[f"clause_{n}"] for n in numbers) for item, numbers in buckets.items()} \
-                if isinstance(buckets, dict) else tuple(self.globals[f"clause_{n}"] for n in buckets)
-        return self.globals["predicate"]
+        """Write and compile it all; the call function."""
+        def body():
+            self.emit(f"_, k{self.arguments} = step")
+            self.emit("trail = m.trail")
+            if self.looping:
+                self._loop(lambda: self._dispatch(list(range(len(self.fitting))), {}))
+            else:
+                self._dispatch(list(range(len(self.fitting))), {})
 
-    # ------------------------------------------------------------------------------------------------------------- plumbing
+        self.define("predicate", "m, step", body)
+        self.make()
+        for name, content in self.buckets.values():
+            if isinstance(content, dict):
+                self.space[name] = {key: tuple([self.space[self.clause_names[n]] for n in numbers]) for key, numbers in content.items()}
+            else:
+                self.space[name] = tuple([self.space[self.clause_names[n]] for n in content])
+        return self.space["predicate"]
 
-    def _define(self, signature, body):
-        outer, self.lines, depth = self.lines, [], getattr(self, "depth", 0)
-        self.depth = 1
-        body()
-        self.functions.append(f"def {signature}:\n" + "\n".join(self.lines) + "\n")
-        self.lines, self.depth = outer, depth
-
-    def emit(self, line):
-        self.lines.append("    " * self.depth + line)
-
-    def fresh(self, prefix="t"):
-        self.counter += 1
-        return f"{prefix}{self.counter}"
-
-    def constant(self, value):
-        if value is None:
-            return "None"
-        if value is True:
-            return "True"
-        if value.__class__ is int and abs(value) < 2**31:
-            return repr(value)
-        name = self.constants.get(id(value))
-        if name is None:
-            name = self.constants[id(value)] = f"C{len(self.constants)}"
-            self.globals[name] = value
-        return name
-
-    # ------------------------------------------------------------------------------------------------- choosing the clauses
-
-    def _dispatch(self, names):
-        self.emit(f"_, k{self.arguments} = step" if self.arity else "k = step[1]")
-        self.emit("trail = m.trail")
+    def _loop(self, body):
         self.emit("for _ in LOOP:")
         self.depth += 1
-        numbers = list(range(len(names)))
-        self.buckets = {"EVERY": numbers}
-        kinds = [self._kind(patterns) for patterns, _ in self.fitting]
-        if not self.arity or all(kind is _ANY for kind in kinds):
-            self._candidates(numbers, "EVERY")
-        else:
-            self.emit("while a0.__class__ is Var:")
-            self.emit("    r = a0.ref")
-            self.emit("    if r is UNSET: break")
-            self.emit("    a0 = r")
-            self.emit("c0 = a0.__class__")
-            lists = [n for n in numbers if kinds[n] in (_ANY, _LIST)]
-            others = [n for n in numbers if kinds[n] in (_ANY, _OTHER)]
-            keys = {}
-            for n in numbers:
-                if kinds[n] not in (_ANY, _LIST, _OTHER):
-                    keys.setdefault(kinds[n], None)
-            index = {key: [n for n in numbers if kinds[n] in (_ANY, _OTHER, key)] for key in keys}
-            self.buckets.update(LISTS=lists, OTHERS=others, INDEX=index)
-            self._branch("if c0 is Cons:", lists, "LISTS")
-            self._branch("elif c0 is Var:", numbers, "EVERY")
-            if None in index:
-                self._branch("elif a0 is None:", index[None], "NILS")
-                self.buckets["NILS"] = index[None]
-            self.emit("elif c0 is LazyTail or c0 is TermTail:")
-            self.emit("    a0 = a0.force()")
-            self.emit("    continue")
-            self.emit("else:")
-            self.depth += 1
-            if [key for key in index if key is not None]:
-                self.emit("found = INDEX.get(a0 if c0 is Symbol else index_key(a0), OTHERS)")
-                self.emit(f"return try_clauses(m, k, found{self.arguments})")
-            else:
-                self._candidates(others, "OTHERS")
-            self.depth -= 1
+        body()
         self.depth -= 1
         self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
         self.emit(f"return P.call, k{self.arguments}")
 
-    def _branch(self, test, numbers, bucket):
-        self.emit(test)
-        self.depth += 1
-        self._candidates(numbers, bucket)
-        self.depth -= 1
+    def _repeats(self, goals):
+        """Whether a body may end by calling its own predicate in this function."""
+        if not goals:
+            return False
+        goal = goals[-1]
+        if direct(goal):
+            return goal.car is self.predicate.functor and len(goal.cdr or ()) == self.arity
+        arguments = known_goal(goal, CONSTRUCTS)
+        return (arguments is not None and goal.car in (IF, SOFT_IF, OR, CALL)
+                and any(self._repeats(list(flat([part]))) for part in arguments))
 
-    def _candidates(self, numbers, bucket):
-        if not numbers:
-            self.emit("return fail(m)")
-        elif len(numbers) == 1 and len(self.fitting) <= _INLINE_LIMIT:
-            patterns, clause = self.fitting[numbers[0]]
-            if not all(_direct(goal) for goal in _flat(clause.goals)):
-                self.emit("b = len(m.choices)")
-            self._clause(patterns, clause, True)
-        else:
-            self.emit(f"return try_clauses(m, k, {bucket}{self.arguments})")
+    # ------------------------------------------------------------------------------------------------- choosing the clauses
 
-    def _kind(self, patterns):
-        if not patterns:
+    def _kind(self, n, position):
+        """What clause ``n`` can match at an argument."""
+        patterns = self.fitting[n][0]
+        if position >= len(patterns):
             return _ANY
-        first = patterns[0]
-        if isinstance(first, _Rest) or variable(first):
+        pattern = patterns[position]
+        if isinstance(pattern, Rest) or variable(pattern):
             return _ANY
-        if isinstance(first, Cons):
+        if isinstance(pattern, Cons):
             return _LIST
-        key = index_key(first)
+        key = index_key(pattern)
         return _OTHER if key is NotImplemented else key
 
-    # --------------------------------------------------------------------------------------------------------------- a clause
+    def _telling(self, numbers, known):
+        """The first argument that tells the clauses apart, and is not ``known`` yet."""
+        for position in range(self.arity):
+            if position not in known and any(self._kind(n, position) is not _ANY for n in numbers):
+                return position
+        return None
 
-    def _clause(self, patterns, clause, looping):
-        """Code of one clause: ``looping`` when it stands in the loop of the predicate, whose ``a0`` is dereferenced."""
-        if not looping:
-            self.emit("trail = m.trail")
-        names = {}
-        for i, pattern in enumerate(patterns):
-            if isinstance(pattern, _Rest):
-                self._rest(i, pattern, names)
-                break
-            if variable(pattern) and pattern is not ANONYMOUS and pattern not in names:
-                names[pattern] = f"a{i}"
-        # A variable that stands alone as an argument is that argument; the other occurrences must be the same as it.
-        for i, pattern in enumerate(patterns):
-            if isinstance(pattern, _Rest):
-                break
-            if not (variable(pattern) and (pattern is ANONYMOUS or names[pattern] == f"a{i}")):
-                self._match(pattern, f"a{i}", names, 0, looping and i == 0)
-        goals = list(_flat(clause.goals))
-        self._body(goals, names, looping)
-
-    def _rest(self, i, pattern, names):
-        built = "None"
-        for j in reversed(range(i, i + pattern.count)):
-            built = f"Cons(a{j}, {built})"
-        if pattern.name is not ANONYMOUS:
-            if pattern.name in names:
-                self.emit(f"if not unify({names[pattern.name]}, {built}, trail): return fail(m)")
-            else:
-                self.emit(f"rest = {built}")
-                names[pattern.name] = "rest"
-
-    def _match(self, pattern, expression, names, depth, dereferenced=False):
-        """Code that unifies ``pattern`` with the term in the Python variable ``expression``; on failure it leaves by failing."""
-        if variable(pattern):
-            if pattern is ANONYMOUS:
-                return
-            if pattern in names:
-                self.emit(f"if not unify({names[pattern]}, {expression}, trail): return fail(m)")
-            else:
-                names[pattern] = expression
+    def _dispatch(self, numbers, known):
+        position = self._telling(numbers, known)
+        if position is None:
+            self._candidates(numbers, known)
             return
-        if isinstance(pattern, Cons) and (depth >= _DEEP or _is_ground(pattern)):
-            built = self._build(pattern, names)
-            self.emit(f"if not unify({built}, {expression}, trail): return fail(m)")
-            return
-        x = expression
-        if not dereferenced:
-            x = self.fresh("x")
-            self.emit(f"{x} = {expression}")
-            self.emit(f"while {x}.__class__ is Var:")
-            self.emit(f"    r = {x}.ref")
-            self.emit("    if r is UNSET: break")
-            self.emit(f"    {x} = r")
-        if isinstance(pattern, Cons):
-            self._match_list(pattern, x, names, depth)
-            return
-        value = self.constant(pattern)
-        same = f"{x} is {value}" if isinstance(pattern, Symbol) or pattern is None or pattern is True else f"same_atom({x}, {value})"
-        self.emit(f"if not ({same}):")
-        self.emit(f"    if {x}.__class__ is Var:")
-        self.emit(f"        {x}.ref = {value}")
-        self.emit(f"        trail.append({x})")
-        self.emit(f"    elif not unify({x}, {value}, trail): return fail(m)")
+        a, c = f"a{position}", f"c{position}"
+        self.emit(f"while {a}.__class__ is Var:")
+        self.emit(f"    r = {a}.ref")
+        self.emit("    if r is UNSET: break")
+        self.emit(f"    {a} = r")
+        self.emit(f"{c} = {a}.__class__")
+        kinds = {n: self._kind(n, position) for n in numbers}
 
-    def _match_list(self, pattern, x, names, depth):
-        kind = self.fresh("c")
-        self.emit(f"{kind} = {x}.__class__")
-        self.emit(f"if {kind} is LazyTail or {kind} is TermTail:")
-        self.emit(f"    {x} = {x}.force()")
-        self.emit(f"    {kind} = {x}.__class__")
-        known = dict(names)
-        self.emit(f"if {kind} is Cons:")
+        def fit(*wanted):
+            return [n for n in numbers if kinds[n] is _ANY or any(kinds[n] is kind or kinds[n] == kind for kind in wanted)]
+
+        self._case(f"if {c} is Cons:", lambda: self._candidates(fit(_LIST), {**known, position: A_LIST}))
+        self._case(f"elif {c} is Var:", lambda: self._dispatch(numbers, {**known, position: UNBOUND}))
+        keys = {kinds[n]: self.fitting[n][0][position] for n in numbers if kinds[n] not in (_ANY, _LIST, _OTHER)}
+        if len(keys) <= 4:
+            for key, value in list(keys.items()):
+                chosen = fit(_OTHER, key)
+                test = f"{a} is {self.constant(value)}" if isinstance(value, Symbol) or value is None or value is True \
+                    else f"{c} is int and {a} == {self.constant(value)}" if value.__class__ is int else None
+                if test and self._light(chosen):
+                    self._case(f"elif {test}:", lambda: self._candidates(chosen, {**known, position: SAME}))
+                    del keys[key]
+        self._case(f"elif {c} is LazyTail or {c} is TermTail:", lambda: (
+            self.emit(f"{a} = {a}.force()"), self.emit(f"return P.call, k{self.arguments}")))
+        self.emit("else:")
         self.depth += 1
-        for part, attribute in ((pattern.car, "car"), (pattern.cdr, "cdr")):
-            if part is ANONYMOUS:
-                continue
-            if variable(part) and part not in names:
-                name = names[part] = self.fresh("v")
-                self.emit(f"{name} = {x}.{attribute}")
-            else:
-                piece = self.fresh("p")
-                self.emit(f"{piece} = {x}.{attribute}")
-                self._match(part, piece, names, depth + 1)
-        if self.lines[-1].endswith(f"if {kind} is Cons:"):
-            self.emit("pass")
+        if keys:
+            index = self._bucket({key: fit(_OTHER, key) for key in keys})
+            others = self._bucket(fit(_OTHER))
+            self.emit(f"found = {index}.get({a} if {c} is Symbol else index_key({a}), {others})")
+            self.emit(f"return try_clauses(m, k, found{self.arguments})")
+        else:
+            self._candidates(fit(_OTHER), {**known, position: None})
         self.depth -= 1
-        self.emit(f"elif {kind} is Var:")
+
+    def _case(self, test, body):
+        self.emit(test)
         self.depth += 1
-        written = dict(known)
-        for name in names:
-            if name not in known:
-                written[name] = names[name]
-                if _occurs(name, pattern):
-                    self.emit(f"{names[name]} = Var()")
-        built = self._cons(pattern, written)
-        self.emit(f"{x}.ref = {built}")
-        self.emit(f"trail.append({x})")
+        body()
         self.depth -= 1
-        self.emit("else: return fail(m)")
 
-    def _cons(self, pattern, names):
-        """Code for a new cons, without the call of its constructor; returns the Python variable that holds it."""
-        car, cdr = self._build(pattern.car, names), self._build(pattern.cdr, names)
-        cell = self.fresh("n")
-        self.emit(f"{cell} = new(Cons); {cell}.car = {car}; {cell}.cdr = {cdr}")
-        return cell
+    def _light(self, numbers):
+        return len(self.fitting) == 1 or sum(self.weights[n] for n in numbers) <= _HEAVY
 
-    def _build(self, pattern, names):
-        """An expression for the term ``pattern``; new variables are created on lines before it."""
-        if variable(pattern):
-            if pattern is ANONYMOUS:
-                return "Var()"
-            if pattern not in names:
-                names[pattern] = self.fresh("v")
-                self.emit(f"{names[pattern]} = Var()")
-            return names[pattern]
-        if not isinstance(pattern, Cons) or _is_ground(pattern):
-            return self.constant(pattern)
-        parts, cell = [], pattern
-        while isinstance(cell, Cons) and not _is_ground(cell) and len(parts) < 40:
-            parts.append(self._build(cell.car, names))
-            cell = cell.cdr
-        if isinstance(cell, Cons) and not _is_ground(cell):
-            end = self.fresh("n")
-            self.emit(f"{end} = {self._build(cell, names)}")
+    def _candidates(self, numbers, known):
+        """Code that tries the clauses ``numbers``."""
+        if not numbers:
+            self.emit("return fail(m)")
+        elif self._light(numbers):
+            self._chain(numbers, known, "continue" if self.looping else None)
         else:
-            end = self._build(cell, names)
-        for part in reversed(parts):
-            end = f"Cons({part}, {end})"
-        return end
+            self.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")
 
-    # ----------------------------------------------------------------------------------------------------------------- a body
+    def _bucket(self, content):
+        """The name of a tuple of clause functions, or of a dict of such: ``content`` has the numbers of the clauses."""
+        found = self.buckets.get(repr(content))
+        if found is None:
+            found = self.buckets[repr(content)] = f"B{len(self.buckets)}", content
+            for numbers in content.values() if isinstance(content, dict) else [content]:
+                for n in numbers:
+                    self._clause_function(n)
+        return found[0]
 
-    def _body(self, goals, names, looping):
-        while goals:
-            goal, goals = goals[0], goals[1:]
-            if not self._inline(goal, names):
-                break
-        else:
-            self.emit("return k")
+    # ------------------------------------------------------------------------------------------------------ trying clauses
+
+    def _clause_function(self, n):
+        if n in self.clause_names:
             return
-        self._call(goal, goals, names, looping)
-
-    def _inline(self, goal, names):
-        """Code for a goal that needs no call; false if it needs one."""
-        functor = goal.car if isinstance(goal, Cons) else None
-        if functor not in INLINED or extended(functor) or not _proper(goal):
-            return False
-        arguments = arguments_of(goal)
-        if functor is _CUT and not arguments:
-            self.emit("del m.choices[b:]")
-        elif functor is _TRUE and not arguments:
-            pass
-        elif functor is _UNIFIES and len(arguments) == 2:
-            left, right = (self._build(argument, names) for argument in arguments)
-            self.emit(f"if not unify({left}, {right}, trail): return fail(m)")
-        elif functor in _COMPARISONS and len(arguments) == 2:
-            left, right = (self._argument(argument, names) for argument in arguments)
-            self.emit(f"if not compare(m, {self.constant(functor)}, {left}, {right}): return fail(m)")
-        elif functor is _LISP_FUN and arguments:
-            function = self._argument(arguments[0], names)
-            given = "".join(self._argument(argument, names) + ", " for argument in arguments[1:-1])
-            result = self._build(arguments[-1], names) if len(arguments) > 1 else "None"
-            self.emit(f"if not lisp_fun(m, {function}, ({given}), {result}): return fail(m)")
-        elif functor is _LISP_PRED and arguments and not variable(arguments[0]):
-            given = "".join(self._argument(argument, names) + ", " for argument in arguments[1:])
-            self.emit(f"if not lisp_pred(m, {self.constant(arguments[0])}, ({given})): return fail(m)")
-        else:
-            return False
-        return True
-
-    def _argument(self, pattern, names):
-        """An expression for what a Lisp function gets for ``pattern``: a variable's value; lists as they are written."""
-        if variable(pattern):
-            return f"resolve_argument(m, {self._build(pattern, names)})"
-        if not isinstance(pattern, Cons) or _is_ground(pattern):
-            return self.constant(pattern)
-        # A variable of the head is here whatever the caller gave; in a list as it is written it must be a variable still.
-        written = {**names, **{name: f"as_variable({names[name]})" for name in _variables(pattern, {}) if name in names}}
-        built = self._build(pattern, written)
-        names.update((name, code) for name, code in written.items() if name not in names)
-        return f"raw_argument(m, {built})"
-
-    def _call(self, goal, goals, names, looping):
-        functor = goal.car if isinstance(goal, Cons) else None
-        direct = _direct(goal)
-        if direct:
-            given = [self._build(argument, names) for argument in goal.cdr or ()]
-        else:
-            term = self._build(goal, names)
-        if direct and not goals and looping and functor is self.predicate.functor and len(given) == self.arity:
-            if self.arity:
-                self.emit(f"{self.arguments[2:]}{',' if self.arity == 1 else ''} = {', '.join(given)}"
-                          f"{',' if self.arity == 1 else ''}")
-            self.emit("continue")
-            return
-        rest = self._continuation(goals, names)
-        if direct:
-            callee = find_predicate(functor, len(given))
-            self.emit(f"return {self.constant(callee)}.call, {rest}{''.join(', ' + item for item in given)}")
-        elif functor in control.CONTROL:
-            name = self.constant(control.in_clause(functor))
-            self.emit(f"return {name}(m, ({term}).cdr, {rest}, b)")
-        else:
-            self.emit(f"return {self.constant(control.solve)}(m, {term}, {rest}, b)")
-
-    def _continuation(self, goals, names):
-        """An expression for the continuation that proves ``goals``; its function is written beside this one."""
-        if not goals:
-            return "k"
-        needed = {}
-        for goal in goals:
-            _variables(goal, needed)
-        live = [name for name in needed if name in names]
-        barrier = not all(_direct(goal) for goal in goals)
-        function = self.fresh("then_")
-        held = ["k", *(["b"] if barrier else []), *(f"v_{i}" for i in range(len(live)))]
-        passed = ["k", *(["b"] if barrier else []), *(names[name] for name in live)]
+        self.clause_names[n] = f"clause_{n}"
+        patterns, _ = self.fitting[n]
 
         def body():
-            self.emit(f"_, {', '.join(held)} = step")
             self.emit("trail = m.trail")
-            self._body(goals, {name: f"v_{i}" for i, name in enumerate(live)}, False)
+            names = {}
+            self.match_head(patterns, names)
+            self.body(self.goals[n], names, Context())
 
-        self._define(f"{function}(m, step)", body)
-        return f"({function}, {', '.join(passed)})"
+        self._owned(n, lambda: self.define(f"clause_{n}", f"m, k, b{self.arguments}", body))
 
+    def _owned(self, n, write):
+        """Write code of clause ``n``."""
+        clause = self.fitting[n][1]
+        outer = self.owner, self.keep_variables, self.failing
+        self.owner, self.failing = clause, "return fail(m)"
+        self.keep_variables = _mentions(clause.goals, FILTER)
+        write()
+        self.owner, self.keep_variables, self.failing = outer
 
-def _proper(goal):
-    while isinstance(goal, Cons):
-        goal = goal.cdr
-    return goal is None
+    def _known(self, n, known):
+        """What is known of the arguments, as far as it helps clause ``n``."""
+        return {position: kind for position, kind in known.items()
+                if not (kind is SAME and self._kind(n, position) is _OTHER)}
 
+    def _chain(self, numbers, known, repeat):
+        """The clauses ``numbers`` one after the other: the first whose head and first tests succeed is taken."""
+        n = numbers[0]
+        patterns, names, goals = self.fitting[n][0], {}, self.goals[n]
+        if any(map(may_cut, goals)):
+            self.emit("b = len(m.choices)")
+        if len(numbers) == 1:
+            def last():
+                self.match_head(patterns, names, self._known(n, known))
+                self.body(goals, names, Context(repeat=repeat))
 
-def _direct(goal):
-    """Whether a goal is a call of a predicate that is known now, with a known number of arguments."""
-    return isinstance(goal, Cons) and valid_functor(goal.car) and goal.car not in control.CONTROL and _proper(goal)
+            self._owned(n, last)
+            return
+        height = self.fresh("t")
 
+        def first():
+            self.emit(f"{height} = len(trail)")
+            self.emit("for _ in ONCE:")
+            self.depth += 1
+            count, self.failing = len(self.lines), "break"
+            self.match_head(patterns, names, self._known(n, known))
+            tests = 0
+            while tests < len(goals) and is_test(goals[tests]):
+                self.test(goals[tests], names)
+                tests += 1
+            if len(self.lines) == count:
+                self.emit("pass")
+            self.depth -= 1
+            self.emit("else:")
+            self.depth += 1
+            self.failing = "return fail(m)"
+            following = goals[tests:]
+            if not (following and known_goal(following[0], {CUT: (0, 0)}) is not None):
+                self.emit(f"m.choices.append(({self._try(numbers[1:], known)}, k, {height}{self.arguments}))")
+            self.body(following, names, Context(repeat=repeat))
+            self.depth -= 1
 
-def _occurs(name, pattern):
-    return name in _variables(pattern, {})
+        self._owned(n, first)
+        self.emit(f"while len(trail) > {height}: trail.pop().ref = UNSET")
+        self._chain(numbers[1:], known, repeat)
 
+    def _try(self, numbers, known):
+        """The name of the function of a choice point that tries ``numbers``."""
+        key = (tuple(numbers), tuple(known.items()))
+        name = self.tries.get(key)
+        if name is not None:
+            return name
+        name = self.tries[key] = self.fresh("try_")
 
-def _flat(goals):
-    """The goals of a body, conjunctions in it flattened."""
-    for goal in goals or ():
-        if isinstance(goal, Cons) and goal.car is _AND and not extended(_AND):
-            yield from _flat(goal.cdr)
-        else:
-            yield goal
+        def body():
+            self.emit(f"_, k, _{self.arguments} = step")
+            self.emit("m.choices.pop()")
+            self.emit("trail = m.trail")
+            if self.looping and any(self._repeats(self.goals[n]) for n in numbers):
+                self.emit("entering = True")
+                self._loop(enter_the_loop)
+            else:
+                self._chain(numbers, known, None)
+
+        def enter_the_loop():
+            self.emit("if entering:")
+            self.depth += 1
+            self.emit("entering = False")
+            self._chain(numbers, known, "continue")
+            self.depth -= 1
+            self._dispatch(list(range(len(self.fitting))), {})
+
+        self.define(name, "m, step", body)
+        return name
 
 
 def try_clauses(m, k, clauses, *arguments):
     """Call the first of ``clauses``, with a choice point for the others."""
     count = len(clauses)
+    height = len(m.choices)
     if count == 1:
-        return clauses[0](m, k, len(m.choices), *arguments)
+        return clauses[0](m, k, height, *arguments)
     if not count:
         return fail(m)
-    height = len(m.choices)
-    m.choices.append((len(m.trail), (_next_clause, k, clauses, 1, arguments)))
+    m.choices.append((_next_clause, k, len(m.trail), clauses, 1, arguments))
     return clauses[0](m, k, height, *arguments)
 
 
 def _next_clause(m, step):
-    _, k, clauses, i, arguments = step
-    height = len(m.choices)
+    _, k, trail_height, clauses, i, arguments = step
+    choices = m.choices
+    height = len(choices) - 1
     if i + 1 < len(clauses):
-        m.choices.append((len(m.trail), (_next_clause, k, clauses, i + 1, arguments)))
+        choices[height] = (_next_clause, k, trail_height, clauses, i + 1, arguments)
+    else:
+        choices.pop()
     return clauses[i](m, k, height, *arguments)
-
-
-__all__ = ["Clause", "INLINED", "compile_clauses"]

@@ -1,5 +1,8 @@
 """Control: conjunction, disjunction, negation, conditions, cut, and the calling of goals that are data.
 
+The compiler of clauses compiles these constructs in place (``bodies.py``); here they are for goals that are data: those of queries,
+and what ``call`` gets.
+
 Each construct is a function of the machine, the list of its argument terms, its continuation and the *barrier*: the height of
 the choice point stack at which the enclosing clause or query was entered, where ``(cut)`` cuts to. ``and`` and the branches of
 ``->`` and ``*->`` pass the barrier on; ``or`` is a barrier of its own, and so are all others (prolog.md section 10; there
@@ -11,8 +14,9 @@ from __future__ import annotations
 from cramhy_runtime.lisp.conditions import type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from
 
+from . import database
 from .database import arguments_of, find_predicate, handled, undefined_step, valid_functor, warn_undefined
-from .machine import FAIL, SOLVED, Machine, fail
+from .machine import FAIL, SOLVED, Machine, call_again, fail, proceed, settle
 from .symbols import sym
 from .terms import Restore, TermTail, Var, copy_term, deref, raw, undo, unify, unset_variables
 
@@ -52,10 +56,13 @@ def extend(name, entry):
     def with_fallback(m, terms, k, b):
         height = len(m.choices)
         arguments = arguments_of(Cons(name, terms))
-        m.choices.append((len(m.trail), (find_predicate(name, len(arguments)).call, k, *arguments)))
+        m.choices.append((call_again, k, len(m.trail), find_predicate(name, len(arguments)).call, *arguments))
         return base(m, terms, (handled, k, height), b if b <= height else height)
 
     CONTROL[name] = with_fallback
+
+
+database.watchers.append(extend)
 
 
 # ------------------------------------------------------------------------------------------------------------ solving goals
@@ -113,15 +120,20 @@ CONTROL[sym("AND")] = _BASE[sym("AND")] = _and
 def _or(m, terms, k, b):
     """A barrier: a cut in a branch drops the other alternatives of that branch and the branches after it."""
     terms = deref(terms)
-    return FAIL if terms is None else _branch(m, (None, k, terms, len(m.choices)))
+    return FAIL if terms is None else _branch(m, k, terms)
 
 
-def _branch(m, step):
-    _, k, terms, height = step
+def _branch(m, k, terms):
     rest = deref(terms.cdr)
+    height = len(m.choices)
     if rest is not None:
-        m.choices.append((len(m.trail), (_branch, k, rest, height)))
+        m.choices.append((_next_branch, k, len(m.trail), rest))
     return m.solve(terms.car, k, height)
+
+
+def _next_branch(m, step):
+    m.choices.pop()
+    return _branch(m, step[1], step[3])
 
 
 CONTROL[sym("OR")] = _BASE[sym("OR")] = _or
@@ -146,11 +158,12 @@ def _fail(m, k, b):
 @_control("NOT", 1, 1)
 def _not(m, k, b, goal):
     height = len(m.choices)
-    m.choices.append((len(m.trail), k))
-    return m.solve(goal, (_refute, None, height), height + 1)
+    m.choices.append((proceed, k, len(m.trail)))
+    return m.solve(goal, (refute, k, height), height + 1)
 
 
-def _refute(m, step):
+def refute(m, step):
+    """The continuation of a goal that must not succeed: fail, with its choice points and the one below them gone."""
     del m.choices[step[2]:]
     return fail(m)
 
@@ -158,10 +171,11 @@ def _refute(m, step):
 @_control("CRAM-PROLOG::ONCE")
 def _once(m, k, b, *goals):
     height = len(m.choices)
-    return solve_all(m, list_from(goals), (_commit, k, height), height)
+    return solve_all(m, list_from(goals), (commit, k, height), height)
 
 
-def _commit(m, step):
+def commit(m, step):
+    """The continuation of a goal of which one solution is enough."""
     _, k, height = step
     del m.choices[height:]
     return k
@@ -178,13 +192,13 @@ _FAIL_GOAL = Cons(sym("CRAM-PROLOG::FAIL"), None)
 @_control("CRAM-PROLOG::->", 2, 3)
 def _if(m, k, b, condition, then, otherwise=_FAIL_GOAL):
     height = len(m.choices)
-    m.choices.append((len(m.trail), (_continue_with, k, otherwise, b)))
+    m.choices.append((_otherwise, k, len(m.trail), otherwise, b))
     return m.solve(condition, (_then, k, then, b, height), height + 1)
 
 
-def _continue_with(m, step):
-    _, k, goal, b = step
-    return m.solve(goal, k, b)
+def _otherwise(m, step):
+    m.choices.pop()
+    return m.solve(step[3], step[1], step[4])
 
 
 def _then(m, step):
@@ -196,13 +210,13 @@ def _then(m, step):
 @_control("CRAM-PROLOG::*->", 2, 3)
 def _soft_if(m, k, b, condition, then, otherwise=_FAIL_GOAL):
     height = len(m.choices)
-    m.choices.append((len(m.trail), (_continue_with, k, otherwise, b)))
+    m.choices.append((_otherwise, k, len(m.trail), otherwise, b))
     return m.solve(condition, (_soft_then, k, then, b, height), height + 1)
 
 
 def _soft_then(m, step):
     _, k, goal, b, height = step
-    m.choices[height] = (m.choices[height][0], FAIL)
+    settle(m, height)
     return m.solve(goal, k, b)
 
 
@@ -219,7 +233,7 @@ def _forall(m, k, b, condition, action):
 
 
 class Instances:
-    """The instances of ``template`` for all solutions of ``goal``, proved in a machine of its own.
+    """The instances of ``template`` for all solutions of a goal, proved in a machine of its own.
 
     The goal is copied, so the instances stay what they are when this proof backtracks, and can be computed later. Variables
     that a solution leaves unset are those of this proof, or new ones.
@@ -227,27 +241,23 @@ class Instances:
 
     __slots__ = ("proof", "template", "originals")
 
-    def __init__(self, m, template, goal):
-        copies = {}
-        goal, self.template = copy_term(goal, copies), copy_term(template, copies)
+    def __init__(self, m, template, copies, step):
+        """``copies``: the variables of this proof → those of ``template`` and of ``step``, which proves the goal."""
+        self.template = template
         self.originals = {copy: variable for variable, copy in copies.items()}
-        names = {copy.name: copy for copy in self.originals if copy.name is not None}
-        self.proof = m.nested(names)
-        self.proof.prove((_solve_goal, SOLVED, goal))
+        self.proof = m.nested({copy.name: copy for copy in self.originals if copy.name is not None})
+        self.proof.prove(step)
 
     def remaining(self):
         """All instances still to come, as a Python list."""
-        found, next_solution, template = [], self.proof.next_solution, self.template
-        if template.__class__ is Var:
-            while next_solution():
-                value = template.ref
-                if value.__class__ in _PLAIN:
-                    found.append(value)
-                else:
-                    found.append(copy_term(template, self.originals.copy()))
-            return found
-        while next_solution():
-            found.append(copy_term(template, self.originals.copy()))
+        found, template, originals = [], self.template, self.originals
+        append = found.append
+
+        def collect():
+            value = template.ref
+            append(value if value.__class__ in _PLAIN else copy_term(template, originals.copy()))
+
+        self.proof.drain(collect if template.__class__ is Var else lambda: append(copy_term(template, originals.copy())))
         return found
 
     def lazy_list(self):
@@ -257,28 +267,55 @@ class Instances:
         return Cons(copy_term(self.template, self.originals.copy()), TermTail(self.lazy_list, self.remaining))
 
 
+def _instances(m, template, goal):
+    """The `Instances` for a goal that is data."""
+    copies = {}
+    goal, template = copy_term(goal, copies), copy_term(template, copies)
+    return Instances(m, template, copies, (_solve_goal, SOLVED, goal))
+
+
+def _compiled_instances(m, function, terms):
+    """The `Instances` for a goal that is code: ``function`` gets a variable for the template, and copies of ``terms``."""
+    copies, template = {}, Var()
+    return Instances(m, template, copies, (function, SOLVED, template, *[copy_term(term, copies) for term in terms]))
+
+
 def _solve_goal(m, step):
     return m.solve(step[2], step[1], 0)
 
 
+def findall(m, function, terms):
+    """The list for ``findall`` in compiled code, see `_compiled_instances`; so `bagof` and `setof`, ``None`` without a solution."""
+    return _compiled_instances(m, function, terms).lazy_list()
+
+
+bagof = findall
+
+
+def setof(m, function, terms):
+    return list_from(_distinct(_compiled_instances(m, function, terms).remaining()))
+
+
 @_control("CRAM-PROLOG::FINDALL", 3, 3)
 def _findall(m, k, b, template, goal, result):
-    return k if m.unify(result, Instances(m, template, goal).lazy_list()) else fail(m)
+    return k if m.unify(result, _instances(m, template, goal).lazy_list()) else fail(m)
 
 
 @_control("CRAM-PROLOG::BAGOF", 3, 3)
 def _bagof(m, k, b, template, goal, result):
-    found = Instances(m, template, goal).lazy_list()
+    found = _instances(m, template, goal).lazy_list()
     return k if found is not None and m.unify(result, found) else fail(m)
 
 
 @_control("CRAM-PROLOG::SETOF", 3, 3)
 def _setof(m, k, b, template, goal, result):
-    found = Instances(m, template, goal).remaining()
-    if not found:
-        return fail(m)
-    kept = [item for i, item in enumerate(found) if not any(_same(item, other) for other in found[i + 1:])]
-    return k if m.unify(result, list_from(kept)) else fail(m)
+    found = _distinct(_instances(m, template, goal).remaining())
+    return k if found and m.unify(result, list_from(found)) else fail(m)
+
+
+def _distinct(items):
+    """``items`` without those that come again later."""
+    return [item for i, item in enumerate(items) if not any(_same(item, other) for other in items[i + 1:])]
 
 
 def _same(a, b):
@@ -294,7 +331,7 @@ def _same(a, b):
 @_control("EVERY", 2, 2)
 def _every(m, k, b, generator, pattern):
     """Prove ``pattern`` for all solutions of ``generator`` together: its other variables have one value throughout."""
-    goals = Instances(m, pattern, generator).remaining()
+    goals = _instances(m, pattern, generator).remaining()
     return solve_all(m, list_from(goals), k, len(m.choices))
 
 
@@ -347,6 +384,9 @@ _FILTER_IN_QUERY = CONTROL[_FILTER]
 _control("CRAM-PROLOG::FILTER-BINDINGS")(_filter_bindings(False))
 _FILTER_IN_CLAUSE = CONTROL[_FILTER]
 CONTROL[_FILTER] = _BASE[_FILTER] = _FILTER_IN_QUERY
+
+
+database.in_place.update(CONTROL)
 
 
 def in_clause(functor):

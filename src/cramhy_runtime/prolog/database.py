@@ -4,6 +4,9 @@ All clauses of a functor form one predicate, whatever their number of arguments;
 cannot unify, code is kept per functor and number of arguments, and made when a goal first needs it. A functor may have a
 *handler*, tried first: when it gives no solution the clauses are tried (prolog.md 5.1); or *native facts*, Python code that
 stands for the clauses of a built-in fact group and is followed by those that users add.
+
+The compiler of clauses and the constructs of control stand above this module. They enter here what it needs of them:
+`compile_clauses`, the functors that are compiled `in_place`, and who wants to know of changes, `watchers`.
 """
 
 from __future__ import annotations
@@ -12,24 +15,48 @@ from cramhy_runtime.lisp.conditions import warn
 from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.packages import is_symbol
 
-from .machine import FAIL, fail
+from .machine import call_again, fail, settle
 from cramhy_runtime.utilities.patterns import variable
 from .terms import deref, raw
 
 
-class Predicate:
-    """The code for goals with ``functor`` and ``arity`` arguments: ``call(machine, (call, continuation, *arguments))``."""
+compile_clauses = None
+"""``compile_clauses(predicate, clauses)``: a call function and the `Relation`, or ``None``; of the module ``compiler``."""
+in_place: set = set()
+"""Functors whose goals are compiled in place: when users give one clauses, all code is made anew."""
+watchers: list = []
+"""Functions that are called with the name of a functor and its entry, or ``None``, after its clauses have changed."""
+traced: set = set()
+"""Functors all of whose calls go through `Predicate.call`: no code repeats or replaces them. Call `changed` after a change of this set."""
 
-    __slots__ = ("functor", "arity", "call")
+
+class Predicate:
+    """The code for goals with ``functor`` and ``arity`` arguments: ``call(machine, (call, continuation, *arguments))``.
+
+    ``relation`` is the `Relation` whose rows they are, if ``call`` is made and they are only that.
+    """
+
+    __slots__ = ("functor", "arity", "call", "relation")
 
     def __init__(self, functor, arity):
         self.functor, self.arity = functor, arity
-        self.call = self.compile_and_call
+        self.forget()
+
+    def forget(self):
+        """Make the code anew at the next call."""
+        self.call, self.relation = self.compile_and_call, None
+
+    def compile(self):
+        """Make the code now. Code that runs meanwhile goes on with what it has."""
+        entry = functors.get(self.functor)
+        if entry is not None and entry.defined:
+            self.call, self.relation = entry.code(self.arity)
+        else:
+            self.call = _undefined(self.functor)
 
     def compile_and_call(self, m, step):
         """The first call: make the code, then call it. A change of the database brings this function back."""
-        entry = functors.get(self.functor)
-        self.call = entry.code(self.arity) if entry is not None and entry.defined else _undefined(self.functor)
+        self.compile()
         return self.call(m, (self.call, *step[1:]))
 
     def __repr__(self):
@@ -72,17 +99,15 @@ class Functor:
         return list(found)
 
     def code(self, arity):
-        """The call function for goals with ``arity`` arguments."""
-        from .compiler import compile_clauses
-
+        """The call function for goals with ``arity`` arguments, and the `Relation` if they are rows of one."""
         native = self.native and (self.native.get(arity) or self.native.get(None) or _failing)
         predicate = find_predicate(self.name, arity)
-        from_clauses = compile_clauses(predicate, self.clauses) if self.clauses else None
+        from_clauses, relation = compile_clauses(predicate, self.clauses) if self.clauses else (None, None)
         if self.handler is not None:
-            return _with_fallback(self.handler, from_clauses) if from_clauses else self.handler
+            return (_with_fallback(self.handler, from_clauses) if from_clauses else self.handler), None
         if native:
-            return _one_after_other(native, from_clauses) if from_clauses else native
-        return from_clauses or _failing
+            return (_one_after_other(native, from_clauses) if from_clauses else native), None
+        return from_clauses or _failing, relation
 
 
 functors: dict[object, Functor] = {}
@@ -107,14 +132,17 @@ def functor_entry(name):
 
 def changed(name):
     """Forget the compiled code of a functor. If its goals may be compiled into other predicates, forget all code."""
-    from . import control
-    from .compiler import INLINED
-
-    everything = name in INLINED or name in control.CONTROL
-    control.extend(name, functors.get(name))
+    global version
+    version += 1
+    for watch in watchers:
+        watch(name, functors.get(name))
     for predicate in list(_predicates.values()):
-        if predicate.functor is name or everything:
-            predicate.call = predicate.compile_and_call
+        if predicate.functor is name or name in in_place:
+            predicate.forget()
+
+
+version = 0
+"""Counts the changes."""
 
 
 def valid_functor(name):
@@ -165,7 +193,7 @@ def _failing(m, step):
 
 def _one_after_other(first, second):
     def call(m, step):
-        m.choices.append((len(m.trail), (second, *step[1:])))
+        m.choices.append((call_again, step[1], len(m.trail), second, *step[2:]))
         return first(m, step)
 
     return call
@@ -176,7 +204,7 @@ def _with_fallback(handler, clauses):
 
     def call(m, step):
         height = len(m.choices)
-        m.choices.append((len(m.trail), (clauses, *step[1:])))
+        m.choices.append((call_again, step[1], len(m.trail), clauses, *step[2:]))
         return handler(m, (handler, (handled, step[1], height), *step[2:]))
 
     return call
@@ -184,8 +212,5 @@ def _with_fallback(handler, clauses):
 
 def handled(m, step):
     """The continuation of a goal with a fallback, whose choice point is at the height in ``step``: there is a solution, drop it."""
-    choices, height = m.choices, step[2]
-    if height < len(choices):
-        choices[height] = (choices[height][0], FAIL)
+    settle(m, step[2])
     return step[1]
-

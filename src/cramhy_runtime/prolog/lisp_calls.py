@@ -102,14 +102,22 @@ def _whole(item):
     return item
 
 
-def lisp_fun(m, function, arguments, result):
-    """Call ``function`` and unify its first value with ``result``. For compiled code: the arguments are prepared."""
+def lisp_value(m, function, arguments):
+    """The term of the first value of a call of ``function``; ``NotImplemented`` after the warning about an error in it."""
     done, value = call_lisp(function, arguments, "function", function)
     if not done:
-        return False
+        return NotImplemented
     kind = value.__class__
     if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
-        value = import_term(value, m.names)
+        return import_term(value, m.names)
+    return value
+
+
+def lisp_fun(m, function, arguments, result):
+    """Call ``function`` and unify its first value with ``result``. For compiled code: the arguments are prepared."""
+    value = lisp_value(m, function, arguments)
+    if value is NotImplemented:
+        return False
     trail = m.trail
     height = len(trail)
     if unify(result, value, trail):

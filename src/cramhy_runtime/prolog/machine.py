@@ -2,35 +2,47 @@
 
 A *step* is a tuple ``(function, continuation, *arguments)``; ``function(machine, step)`` does a piece of work and returns the
 next step. A continuation is a step too: what to do when the goal has succeeded. So nothing recurses in Python however long
-the proof is, and a last call leaves nothing behind. A choice point is a pair ``(trail height, step)``; to fail means to pop one,
-unset the variables that were set since, and go on with its step. Cut forgets the choice points above a height.
+the proof is, and a last call leaves nothing behind.
+
+A *choice point* is a step as well, ``(function, continuation, trail height, *arguments)``, on a stack. To fail means to unset the
+variables that were set since the newest one was made, and to go on with it; its function takes it off the stack when it has nothing
+more to try after this. Choice points that count through the rows of a table are lists instead of tuples, and change.
+Cut forgets the choice points above a height.
 
 A machine holds all state of its proof. A Lisp function called in the middle may park its task, or ask other queries: these
-have machines of their own. The machine stops after each solution and goes on when the next one is wanted, so solutions are lazy.
+have machines of their own. The machine stops after each solution and goes on when the next one is wanted, so solutions are lazy;
+when all that are left are wanted, it collects them without stopping (`drain`).
 """
 
 from __future__ import annotations
 
+from sys import getrefcount
+
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import budget
 
-from .terms import UNSET, undo, unify
+from .depth import check_depth
+from .terms import UNSET, Var, undo, unify
 
-BUDGET = range(50)
-"""Steps between two checkpoints of the kernel, which counts each of them."""
+BATCH = range(200)
+"""Steps between two looks at what is left of the task's slice; the kernel counts each step as a checkpoint."""
+_TIDY = 5_000
+"""Entries of a trail that are worth tidying."""
 
 
 class Machine:
     """A proof. ``names`` maps symbols to the variables that they stand for in Lisp data."""
 
-    __slots__ = ("trail", "choices", "names", "found", "start")
+    __slots__ = ("trail", "choices", "names", "found", "start", "collect", "until_measured", "until_tidy")
 
     def __init__(self, names=None):
         self.trail = []
         self.choices = []
         self.names = {} if names is None else names
         self.found = False
-        self.start = None
+        self.start = self.collect = None
+        self.until_measured = 50  # batches
+        self.until_tidy = _TIDY  # length of the trail
 
     def prove(self, step):
         """Prepare to prove what ``step`` does; its continuation must be `SOLVED`."""
@@ -65,19 +77,53 @@ class Machine:
             if step is None:
                 return False
         while True:
-            for _ in BUDGET:
+            for _ in BATCH:
                 step = step[0](self, step)
                 if step is None:
                     return self.found
-            if not self.choices:
-                self.trail.clear()
-            budget.left -= len(BUDGET) - 1
+            self._rest(step)
+
+    def drain(self, collect):
+        """Find all solutions that are left; ``collect`` is called at each, with the variables set."""
+        self.collect = collect
+        try:
+            self.next_solution()
+        finally:
+            self.collect = None
+
+    def _rest(self, step):
+        """What is done now and then between two steps: give way to others, forget what nobody needs, look how deep the proof is."""
+        if not self.choices:
+            self.trail.clear()
+        elif len(self.trail) > self.until_tidy:
+            self._tidy()
+        self.until_measured -= 1
+        if self.until_measured < 0:
+            self.until_measured = 50 + 2 * check_depth(self, step) // len(BATCH)
+        budget.left -= len(BATCH)
+        if budget.left < 0:
             kernel.checkpoint()
+
+    def _tidy(self):
+        """Forget trail entries, above the newest choice point, for variables that only the trail knows."""
+        trail, height = self.trail, self.choices[-1][2]
+        newer, older = trail[height:], []
+        del trail[height:]
+        for entries, kept in ((newer, older), (older, trail)):  # from the newest back, then the other way: chains go both ways
+            while entries:
+                variable = entries.pop()
+                if variable.__class__ is not Var or getrefcount(variable) > 2:  # known to more than this name and the argument
+                    kept.append(variable)
+        self.until_tidy = 2 * len(trail) + _TIDY
 
 
 def _solved(m, step):
-    m.found = True
-    return None
+    collect = m.collect
+    if collect is None:
+        m.found = True
+        return None
+    collect()
+    return fail(m)
 
 
 SOLVED = (_solved, None)
@@ -86,13 +132,42 @@ SOLVED = (_solved, None)
 
 def fail(m):
     """Go back to the newest choice point: its step, or ``None`` when there is none left."""
-    if not m.choices:
+    choices = m.choices
+    if not choices:
         return None
-    height, step = m.choices.pop()
+    step = choices[-1]
+    height = step[2]
     trail = m.trail
     while len(trail) > height:
         trail.pop().ref = UNSET
     return step
+
+
+def give_up(m, step):
+    """The function of a choice point that has nothing to try."""
+    m.choices.pop()
+    return fail(m)
+
+
+def proceed(m, step):
+    """The function of a choice point that goes on with its continuation, when all that was tried after it has failed."""
+    m.choices.pop()
+    return step[1]
+
+
+def call_again(m, step):
+    """The function of a choice point ``(call_again, k, height, call, *arguments)`` that calls a goal."""
+    m.choices.pop()
+    return step[3](m, (step[3], step[1], *step[4:]))
+
+
+def settle(m, height):
+    """Make the choice point at ``height`` one that has nothing to try, whatever was made after it."""
+    choices = m.choices
+    if len(choices) == height + 1:
+        choices.pop()
+    elif height < len(choices):
+        choices[height] = (give_up, None, choices[height][2])
 
 
 def _fail_step(m, step):
@@ -103,13 +178,13 @@ FAIL = (_fail_step, None)
 """A step that fails."""
 
 
-def succeed(m, step):
-    """The call function of a goal that does nothing."""
-    return step[1]
-
-
 def _resume(m, step):
-    return retry_iterator(m, step[1], step[2])
+    _, k, height, iterator = step
+    for _ in iterator:
+        return k
+    m.choices.pop()
+    undo(m.trail, height)
+    return fail(m)
 
 
 def retry_iterator(m, k, iterator):
@@ -117,7 +192,7 @@ def retry_iterator(m, k, iterator):
     trail = m.trail
     height = len(trail)
     for _ in iterator:
-        m.choices.append((height, (_resume, k, iterator)))
+        m.choices.append((_resume, k, height, iterator))
         return k
     undo(trail, height)
     return fail(m)

@@ -20,6 +20,7 @@ from cramhy_runtime.lisp.hooks import Hook
 
 from . import (
     builtins,  # noqa: F401  the predicates that every query may use
+    compiler,  # noqa: F401  the clauses that they find
     control,
 )
 from .database import find_predicate
@@ -67,8 +68,7 @@ class Proof(Machine):
     def remaining(self):
         """The binding lists of all solutions to come, as a Python list."""
         found = []
-        while self.next_solution():
-            found.append(self.bindings())
+        self.drain(lambda: found.append(self.bindings()))
         return found
 
 

@@ -1,19 +1,24 @@
 """Relations: predicates that consist of ground facts only, kept as tables.
 
-A goal says which arguments it knows. For each such combination an index from the known values to rows is made when it is first
+A goal says which arguments it knows. For each such combination a table from the known values to rows is made when it is first
 asked for; then answering means to walk the rows that fit and set the unknown arguments. The order of answers is that of the facts.
+
+The call function of a relation is written for its number of arguments, as a tree of tests which of them are known. Lists among the
+values, and a variable that is given twice, go the general way: rows that may fit, the lists found by their first symbol, are unified.
 """
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import DoubleFloat, Keyword, Symbol
+from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
 from cramhy_runtime.lisp.equality import equal_key
 
 from cramhy_runtime.utilities.lazy_lists import LazyTail
 from .machine import fail
-from .terms import UNSET, TermTail, Var, undo, unify
+from .terms import UNSET, TermTail, Var, deref, undo, unify
 
 _BY_VALUE = frozenset([int, str, float, DoubleFloat])
+_WRITTEN_OUT = 4
+"""The most arguments for which a call function is written."""
 
 
 def index_key(atom):
@@ -24,138 +29,225 @@ def index_key(atom):
     return equal_key(atom) if kind in _BY_VALUE or atom is True else NotImplemented  # `t` is Python's True, which is 1 in a dict
 
 
-def compile_relation(rows):
-    """The call function for goals over the ground facts ``rows``, each the list of its arguments."""
-    rows = [tuple(row) for row in rows]
-    arity = len(rows[0])
-    if not arity:
-        return _constant(len(rows))
-    indexable = [all(index_key(row[i]) is not NotImplemented for row in rows) for i in range(arity)]
-    indexes = {}
-    positions = range(arity)
-    every = rows
+def column_key(term):
+    """As `index_key`; of a list that begins with a symbol the key that all such lists have."""
+    if term.__class__ is Cons:
+        first = deref(term.car)
+        return (first,) if first.__class__ is Symbol or first.__class__ is Keyword else NotImplemented
+    return index_key(term)
 
-    def call(m, step):
+
+class Relation:
+    """The rows of a relation and the tables made of them. ``exact``: every value is an atom that has a key of its own."""
+
+    def __init__(self, rows):
+        self.rows = rows
+        self.arity = len(rows[0])
+        self.keyed = [all(column_key(row[i]) is not NotImplemented for row in rows) for i in range(self.arity)]
+        self.exact = all(index_key(value) is not NotImplemented for row in rows for value in row)
+        self._tables = {}
+
+    def table(self, mask, whole=False):
+        """Known values → for each row that fits, its unknown values; the bare value when there is one.
+
+        ``mask``: bit i is set when argument i is known; when there is one, its bare value is the key. ``whole``: the rows as they are.
+        """
+        table = self._tables.get((mask, whole))
+        if table is None:
+            known = [i for i in range(self.arity) if mask >> i & 1]
+            kept = [i for i in range(self.arity) if whole or not mask >> i & 1]
+            table = {}
+            for row in self.rows:
+                keys = [column_key(row[i]) for i in known]
+                rest = row[kept[0]] if len(kept) == 1 and not whole else tuple([row[i] for i in kept])
+                table.setdefault(keys[0] if len(keys) == 1 else tuple(keys), []).append(rest)
+            self._tables[mask, whole] = table
+        return table
+
+    def every(self):
+        """All rows, as `table` would give them."""
+        return self.table(0).get(())
+
+    def call_general(self, m, step):
+        """The call function for any goal."""
         k = step[1]
-        known, unknown, mask, fuzzy = [], [], 0, None
-        i = 0
-        for term in step[2:]:
-            while term.__class__ is Var:
-                value = term.ref
-                if value is UNSET:
-                    break
-                term = value
-            kind = term.__class__
-            if kind is Var:
-                if term in unknown:
-                    fuzzy = True
-                unknown.append(term)
+        terms, mask, keys = [], 0, []
+        for i, term in enumerate(step[2:]):
+            term = deref(term)
+            terms.append(term)
+            if term.__class__ is Var or not self.keyed[i]:
+                continue
+            key = column_key(term)
+            if key is not NotImplemented:
+                mask |= 1 << i
+                keys.append(key)
+        rows = self.table(mask, True).get(keys[0] if len(keys) == 1 else tuple(keys)) if mask else self.rows
+        return fail(m) if rows is None else _unify_rows(m, k, rows, terms, 0)
+
+    def call_function(self):
+        """The call function, written for this relation if it is simple enough."""
+        if not self.arity:
+            return _constant(len(self.rows))
+        return self._written() if self.exact and self.arity <= _WRITTEN_OUT else self.call_general
+
+    def _written(self):
+        arguments = ", ".join(f"a{i}" for i in range(self.arity))
+        lines = ["def call(m, step):", f"    _, k, {arguments} = step"]
+        for i in range(self.arity):
+            lines += [f"    while a{i}.__class__ is Var:", f"        r = a{i}.ref", "        if r is UNSET: break", f"        a{i} = r",
+                      f"    c{i} = a{i}.__class__",
+                      f"    if c{i} is not Symbol and c{i} is not Var:",
+                      f"        a{i} = index_key(a{i})",
+                      f"        if a{i} is NotImplemented: return general(m, step)"]
+
+        def tests(i, known, depth):
+            indent = "    " * depth
+            if i < self.arity:
+                lines.append(f"{indent}if c{i} is Var:")
+                tests(i + 1, known, depth + 1)
+                lines.append(f"{indent}else:")
+                tests(i + 1, [*known, i], depth + 1)
+                return
+            unknown = [j for j in range(self.arity) if j not in known]
+            mask = sum(1 << j for j in known)
+            for n, j in enumerate(unknown):
+                for other in unknown[:n]:
+                    lines.append(f"{indent}if a{other} is a{j}: return general(m, step)")
+            if not known:
+                lines.append(f"{indent}rows = every")
             else:
-                if kind is Symbol:
-                    key = term
-                elif kind is LazyTail or kind is TermTail or not indexable[i]:
-                    key = NotImplemented
-                else:
-                    key = index_key(term)
-                if key is NotImplemented:
-                    fuzzy = True
-                    if indexable[i] and kind is not LazyTail and kind is not TermTail:
-                        return fail(m)
-                    unknown.append(term)
-                else:
-                    known.append(key)
-                    mask |= 1 << i
-            i += 1
-        if mask:
-            index = indexes.get(mask)
-            if index is None:
-                index = indexes[mask] = _index(every, mask, positions)
-            found = index.get(known[0] if len(known) == 1 else tuple(known))
-            if found is None:
-                return fail(m)
-        else:
-            found = every if arity > 1 else [row[0] for row in every]
-        if fuzzy:
-            return _unify_rows(m, k, found, unknown, 0)
-        if not unknown:
-            if len(found) > 1:
-                m.choices.append((len(m.trail), (_again, k, len(found) - 1)))
-            return k
-        if len(unknown) == 1:
-            return _set_one(m, (None, k, found, 0, unknown[0]))
-        return _set_many(m, (None, k, found, 0, unknown))
+                key = f"a{known[0]}" if len(known) == 1 else f"({', '.join(f'a{j}' for j in known)})"
+                lines.append(f"{indent}rows = (tables.get(({mask}, False)) or table({mask})).get({key})")
+                lines.append(f"{indent}if rows is None: return fail(m)")
+            if not unknown:
+                lines.append(f"{indent}return again(m, k, len(rows)) if len(rows) > 1 else k")
+            else:
+                lines.append(f"{indent}return set_{min(len(unknown), 3)}(m, k, rows, "
+                             + (f"[{', '.join(f'a{j}' for j in unknown)}])" if len(unknown) > 2 else
+                                ", ".join(f"a{j}" for j in unknown) + ")"))
 
-    return call
+        tests(0, [], 1)
+        space = {"Var": Var, "UNSET": UNSET, "Symbol": Symbol, "index_key": index_key, "general": self.call_general, "fail": fail,
+                 "every": self.every(), "tables": self._tables, "table": self.table, "again": _again, "set_1": _set_one, "set_2": _set_two,
+                 "set_3": _set_many}
+        exec("\n".join(lines), space)
+        return space["call"]
 
 
-def _index(rows, mask, positions):
-    """Known values → for each row that fits, its unknown values (the bare value when there is one, the row when none)."""
-    known = [i for i in positions if mask >> i & 1]
-    unknown = [i for i in positions if not mask >> i & 1]
-    index = {}
-    for row in rows:
-        keys = [index_key(row[i]) for i in known]
-        rest = row[unknown[0]] if len(unknown) == 1 else tuple(row[i] for i in unknown)
-        index.setdefault(keys[0] if len(keys) == 1 else tuple(keys), []).append(rest)
-    return index
+def compile_relation(rows):
+    """The `Relation` of the ground facts ``rows``, each the list of its arguments."""
+    return Relation([tuple(row) for row in rows])
 
 
-def _set_one(m, step):
-    _, k, rows, i, variable = step
+# ---------------------------------------------------------------------------- the rows that fit, one after the other
+
+
+def _set_one(m, k, rows, variable):
     trail = m.trail
-    if i + 1 < len(rows):
-        m.choices.append((len(trail), (_set_one, k, rows, i + 1, variable)))
-    variable.ref = rows[i]
+    if len(rows) > 1:
+        m.choices.append([_next_one, k, len(trail), rows, 1, variable])
+    variable.ref = rows[0]
     trail.append(variable)
     return k
 
 
-def _set_many(m, step):
-    _, k, rows, i, variables = step
+def _next_one(m, step):
+    _, k, _, rows, i, variable = step
+    variable.ref = rows[i]
+    m.trail.append(variable)
+    i += 1
+    if i == len(rows):
+        m.choices.pop()
+    else:
+        step[4] = i
+    return k
+
+
+def _set_two(m, k, rows, first, second):
     trail = m.trail
-    if i + 1 < len(rows):
-        m.choices.append((len(trail), (_set_many, k, rows, i + 1, variables)))
+    if len(rows) > 1:
+        m.choices.append([_next_two, k, len(trail), rows, 1, first, second])
+    first.ref, second.ref = rows[0]
+    trail += (first, second)
+    return k
+
+
+def _next_two(m, step):
+    _, k, _, rows, i, first, second = step
+    first.ref, second.ref = rows[i]
+    m.trail += (first, second)
+    i += 1
+    if i == len(rows):
+        m.choices.pop()
+    else:
+        step[4] = i
+    return k
+
+
+def _set_many(m, k, rows, variables):
+    if len(rows) > 1:
+        m.choices.append([_next_many, k, len(m.trail), rows, 1, variables])
+    for variable, value in zip(variables, rows[0]):
+        variable.ref = value
+    m.trail += variables
+    return k
+
+
+def _next_many(m, step):
+    _, k, _, rows, i, variables = step
     for variable, value in zip(variables, rows[i]):
         variable.ref = value
-    trail += variables
+    m.trail += variables
+    i += 1
+    if i == len(rows):
+        m.choices.pop()
+    else:
+        step[4] = i
     return k
 
 
-def _again(m, step):
-    _, k, count = step
-    if count > 1:
-        m.choices.append((len(m.trail), (_again, k, count - 1)))
+def _again(m, k, count):
+    """Succeed ``count`` times."""
+    m.choices.append([_next_again, k, len(m.trail), count - 1])
     return k
 
 
-def _retry(m, step):
-    return _unify_rows(m, step[1], step[2], step[3], step[4])
-
-
-def _unify_rows(m, k, rows, terms, i):
-    """The general case: an argument is a list, or a variable occurs twice."""
-    trail = m.trail
-    height = len(trail)
-    single = len(terms) == 1
-    while i < len(rows):
-        row = rows[i]
-        i += 1
-        if unify(terms[0], row, trail) if single else all(unify(term, value, trail) for term, value in zip(terms, row)):
-            if i < len(rows):
-                m.choices.append((height, (_retry, k, rows, terms, i)))
-            return k
-        undo(trail, height)
-    return fail(m)
+def _next_again(m, step):
+    if step[3] == 1:
+        m.choices.pop()
+    else:
+        step[3] -= 1
+    return step[1]
 
 
 def _constant(count):
-    """Facts without arguments: succeed once for each."""
-
-    def call(m, step):
-        if count > 1:
-            m.choices.append((len(m.trail), (_again, step[1], count - 1)))
-        return step[1]
-
-    return call
+    """The call function of facts without arguments: succeed once for each."""
+    return lambda m, step: _again(m, step[1], count) if count > 1 else step[1]
 
 
+def _retry(m, step):
+    m.choices.pop()
+    return _unify_rows(m, step[1], step[3], step[4], step[5])
+
+
+def _unify_rows(m, k, rows, terms, i):
+    """The general case: an argument is a list, or a variable occurs twice. No choice point is left when only one row fits."""
+    trail = m.trail
+    height = len(trail)
+    count = len(rows)
+    while i < count:
+        for term, value in zip(terms, rows[i]):
+            if term is not value and not unify(term, value, trail):
+                break
+        else:
+            i += 1
+            if i < count:
+                m.choices.append((_retry, k, height, rows, terms, i))
+            return k
+        i += 1
+        while len(trail) > height:
+            trail.pop().ref = UNSET
+    return fail(m)
+
+
+__all__ = ["LazyTail", "Relation", "TermTail", "column_key", "compile_relation", "index_key", "undo"]
