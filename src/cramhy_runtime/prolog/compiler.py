@@ -1,7 +1,7 @@
 """The clause compiler: the clauses of a predicate become one Python function.
 
 For each predicate Python source is written and compiled. It looks at the first argument that tells the clauses apart, and goes to the
-code of those that can match; where that argument is unset, at the next one that does. A clause is tried together with the tests that
+code of those that can match; where that argument is unset, it goes by the next one that does. A clause is tried together with the tests that
 its body begins with, and only when these succeed and other clauses could match too is a choice point made, so calls that one clause
 answers leave none. A clause that ends by calling its own predicate becomes a loop.
 
@@ -126,6 +126,7 @@ class PredicateCode(Bodies):
         body()
         self.depth -= 1
         self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
+        self.emit("if not m.choices: trail.clear()")
         self.emit(f"return P.call, k{self.arguments}")
 
     def _repeats(self, goals):
@@ -214,7 +215,7 @@ class PredicateCode(Bodies):
         """Code that tries the clauses ``numbers``."""
         if not numbers:
             self.emit("return fail(m)")
-        elif self._light(numbers):
+        elif self._light(numbers) and UNBOUND not in known.values():
             self._chain(numbers, known, "continue" if self.looping else None)
         else:
             self.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")

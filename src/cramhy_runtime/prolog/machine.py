@@ -24,7 +24,7 @@ from cramhy_runtime.kernel.budget import budget
 from .depth import check_depth
 from .terms import UNSET, Var, undo, unify
 
-BATCH = range(200)
+BATCH = range(50)
 """Steps between two looks at what is left of the task's slice; the kernel counts each step as a checkpoint."""
 _TIDY = 5_000
 """Entries of a trail that are worth tidying."""
@@ -41,7 +41,7 @@ class Machine:
         self.names = {} if names is None else names
         self.found = False
         self.start = self.collect = None
-        self.until_measured = 50  # batches
+        self.until_measured = 200  # batches
         self.until_tidy = _TIDY  # length of the trail
 
     def prove(self, step):
@@ -99,7 +99,7 @@ class Machine:
             self._tidy()
         self.until_measured -= 1
         if self.until_measured < 0:
-            self.until_measured = 50 + 2 * check_depth(self, step) // len(BATCH)
+            self.until_measured = 200 + 2 * check_depth(self, step) // len(BATCH)
         budget.left -= len(BATCH)
         if budget.left < 0:
             kernel.checkpoint()

@@ -59,7 +59,10 @@ class Matching(Source):
             if pattern is ANONYMOUS:
                 return
             if pattern in names:
-                self.fail_unless(f"unify({names[pattern]}, {x}, trail)")
+                known_term = names[pattern]
+                self.emit(f"if {x}.__class__ is not Var and {known_term}.__class__ is Var and {known_term}.ref is UNSET:")
+                self.emit(f"    {known_term}.ref = {x}; trail.append({known_term})")
+                self.emit(f"elif not unify({known_term}, {x}, trail): {self.failing}")
             else:
                 names[pattern] = x
             return
