@@ -1,9 +1,9 @@
 """The clause compiler: the clauses of a predicate become one Python function.
 
-For each predicate Python source is written and compiled. It looks at the first argument that tells the clauses apart, and goes to the
-code of those that can match; where that argument is unset, it goes by the next one that does. A clause is tried together with the tests that
-its body begins with, and only when these succeed and other clauses could match too is a choice point made, so calls that one clause
-answers leave none. A clause that ends by calling its own predicate becomes a loop.
+For each predicate Python source is written and compiled. It looks at the first argument that tells the clauses apart, and goes to
+the code of those that can match; where that argument is unset, it goes by the next one that does. A clause is tried together with
+the tests that its body begins with, and only when these succeed and other clauses could match too is a choice point made, so calls
+that one clause answers leave none. A clause that ends by calling its own predicate becomes a loop.
 
 Clauses that are too many or too long to stand in that function are functions of their own, which tables of candidates name. Ground
 facts without bodies are tables altogether, see ``relations.py``. What stands in a clause is compiled by ``matching.py`` and ``bodies.py``.
