@@ -135,7 +135,7 @@ def define_goal(name, pattern, function, documentation=None, sexp=None):
 
 def call_goal(name, arguments):
     """Run the first body of the goal ``name`` whose pattern matches ``arguments`` (a Lisp list), in a new task: its values."""
-    for body in _bodies(name):
+    for body in bodies_of(name):
         bindings, matched = body.match(arguments)
         if matched:
             return with_task_tree_node(lisp_list(GOAL, Cons(name, body.pattern)), lambda *values: body.function(bindings),
@@ -143,13 +143,14 @@ def call_goal(name, arguments):
                                        parameters=body.values(bindings), log_parameters=arguments, log_pattern=body.pattern,
                                        called_with=arguments)
     missing = types.SimpleError("No goal found that matches arguments: ~a ~a", name, arguments)
-    patterns = [late.prin1_to_string(Cons(name, body.pattern)) for body in _bodies(name)]
+    patterns = [late.prin1_to_string(Cons(name, body.pattern)) for body in bodies_of(name)]
     missing.hint = (f"Bodies are defined for {', '.join(patterns)}." if patterns
                     else f"No body is defined: write (def-goal ({name.name.lower()} ...) ...).")
     return error(missing)
 
 
-def _bodies(name):
+def bodies_of(name):
+    """The bodies (`GoalBody`) of the goal ``name``, in the order in which they are tried."""
     return _goals[name].bodies if name in _goals else ()
 
 
@@ -158,7 +159,7 @@ def describe_goal(goal):
     if not isinstance(goal, Cons):
         return type_error(goal, "CONS", "\n(A goal is a list (name argument...), as in (describe-goal '(at ?x)).)")
     same = sym("CUT::PATTERNS-EQ").function
-    for body in _bodies(goal.car):
+    for body in bodies_of(goal.car):
         if body.pattern is None or goal.cdr is None:
             found = body.pattern is goal.cdr
         else:

@@ -22,9 +22,8 @@ from ..lisp.conditions import error
 from ..lisp.data import Cons
 from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.generic import generic
-from ..lisp.printer.printer import princ_to_string
 from ..utilities.locks import Lock
-from .executing import NEVER, await_online, monitor_process_module, pm_execute
+from .executing import NEVER, await_online, finished_fluent, monitor_process_module, pm_cancel, pm_execute, running_fluent
 from .modules import (
     OFFLINE,
     RUNNING,
@@ -36,7 +35,7 @@ from .modules import (
     pm_run,
     sym_of_class,
 )
-from .registry import not_running
+from .registry import in_one_line, not_running
 
 on_input = generic("CPM::ON-INPUT", "(process-module input-designator)", documentation="""
 What an asynchronous module does with an input; users write methods.""")
@@ -50,6 +49,12 @@ finish_process_module = generic("CPM::FINISH-PROCESS-MODULE", "(process-module &
 Say that the module has finished one designator, or all of them.""")
 fail_process_module = generic("CPM::FAIL-PROCESS-MODULE", "(process-module error &key designator)", documentation="""
 Say that one designator, or all unfinished ones, failed with the condition ``error``.""")
+
+on_input.advice = "Say what the module does with an input: (defmethod cpm:on-input ((module ...) input) ...)."
+synchronization_fluent.advice = ("Say when the module takes an input: (defmethod cpm:synchronization-fluent ((module ...) designator) "
+                                 "fluent), where a fluent of value T means at any time.")
+pm_cancel.advice = "An asynchronous module is cancelled by (setf (cpl:value (cpm:cancel module)) t)."
+running_fluent.advice = finished_fluent.advice = "Of an asynchronous module, (cpm:pm-status module) is the fluent of its status."
 
 
 class AsynchronousProcessModule(AbstractProcessModule):
@@ -97,7 +102,7 @@ class AsynchronousProcessModule(AbstractProcessModule):
             if on_process_module_started.methods:
                 on_process_module_started(self, designator)
 
-    @circumstance(lambda here: f"while process module {here['self'].name.name} took {princ_to_string(here['designator'])}")
+    @circumstance(lambda here: f"while process module {here['self'].name.name} took {in_one_line(here['designator'])}")
     def _call_on_input(self, designator):
         on_input(self, designator)
 

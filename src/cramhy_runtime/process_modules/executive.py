@@ -8,20 +8,28 @@ from __future__ import annotations
 
 from ..cpl.failure_types import SimplePlanFailure
 from ..cpl.failures import fail
-from ..cpl.plans import GOAL
+from ..cpl.plans import GOAL, bodies_of, call_goal, define_goal
 from ..cpl.tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
 from ..designators.resolution import reference
-from ..lisp.conditions import handler_case, type_error, warn
+from ..lisp.condition_types import SimpleWarning
+from ..lisp.conditions import Error, handler_case, warn
 from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list
+from ..lisp.evaluation.expansion_support import check_shape
+from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.generic import generic
 from ..lisp.packages import find_package, keyword
 from ..prolog.query import holds
 from .matching import execute_by, running_matches
+from .registry import in_one_line
 from .symbols import sym
 
 GOAL_KEY = keyword("GOAL")
-_PATH_PART = lisp_list(GOAL, lisp_list(sym("EXE::PERFORM"), sym("EXE::?DESIGNATOR")))
+PERFORM = sym("EXE::PERFORM")
+_PATTERN = lisp_list(sym("EXE::?DESIGNATOR"))
+_PATH_PART = lisp_list(GOAL, Cons(PERFORM, _PATTERN))
+_GOAL_SHAPE = lisp_list(sym("EXE::OCCASION"), sym("&REST"), sym("EXE::PARAMS"))
+_COMMAND_SHAPE = lisp_list(sym("EXE::COMMAND"), sym("&REST"), sym("EXE::ARGUMENTS"))
 
 
 class DesignatorReferenceFailure(SimplePlanFailure, DesignatorError):
@@ -30,31 +38,50 @@ class DesignatorReferenceFailure(SimplePlanFailure, DesignatorError):
     lisp_name = "CRAM-EXECUTIVE::DESIGNATOR-REFERENCE-FAILURE"
     initargs = {**DesignatorError.initargs, "RESULT": "result"}
     result = None
-    bare = "designator-failure"
 
     def report(self):
-        return self.bare if self.format_control is UNBOUND else SimplePlanFailure.report(self)
+        return "designator-failure" if self.format_control is UNBOUND else SimplePlanFailure.report(self)
 
 
-class DesignatorGoalParsingFailure(DesignatorReferenceFailure):
-    """The goal of an action designator is not a list. (In the original a sibling of the above, with the same superclasses.)"""
+class DesignatorGoalParsingFailure(SimplePlanFailure, DesignatorError):
+    """The goal of an action designator is not a list. A plan failure and an error."""
 
     lisp_name = "CRAM-EXECUTIVE::DESIGNATOR-GOAL-PARSING-FAILURE"
-    bare = "designator-goal-parsing-failure"
+    initargs = DesignatorReferenceFailure.initargs
+    result = None
+    hint = "A goal is a list (occasion parameter ...), given to the designator in a ?variable."
+
+    def report(self):
+        return "designator-goal-parsing-failure" if self.format_control is UNBOUND else SimplePlanFailure.report(self)
 
 
 generic_perform = generic("EXE::GENERIC-PERFORM", "(designator)", documentation="""
 Perform a motion or action designator; called by perform in a task of its own.""")
 
 
+generic_perform.advice = ("What can be performed are motions and actions, (desig:a motion ...) and (desig:an action ...), and what a "
+                          "(defmethod exe:generic-perform ((designator ...)) ...) is for.")
+
+
 def perform(designator):
     """Perform ``designator`` as a goal: the values of the process module or plan function. Only inside of a plan."""
-    return with_task_tree_node(_PATH_PART, generic_perform, name=_goal_name, parameters=lisp_list(designator),
-                               log_parameters=lisp_list(designator), log_pattern=_PATH_PART.cdr.car.cdr)
+    if bodies_of(PERFORM)[0] is not _own_body:  # somebody has defined the goal anew
+        return call_goal(PERFORM, lisp_list(designator))
+    parameters = lisp_list(designator)
+    return with_task_tree_node(_PATH_PART, _perform, name=_goal_name, parameters=parameters, log_parameters=parameters,
+                               log_pattern=_PATTERN, called_with=parameters)
 
 
 def _goal_name():
     return "[GOAL-PERFORM]"
+
+
+def _perform(designator):
+    return generic_perform(designator)
+
+
+define_goal(PERFORM, _PATTERN, lambda bindings: generic_perform(bindings.car.cdr), "Perform a motion or action designator.")
+_own_body = bodies_of(PERFORM)[0]
 
 
 def try_reference_designator(designator, error_message=""):
@@ -80,29 +107,36 @@ def _perform_motion(designator):
 @generic_perform.method(ActionDesignator)
 def _perform_action(designator):
     solution = try_reference_designator(designator)
-    if not isinstance(solution, Cons):
-        return type_error(solution, "LIST")
-    command, arguments = solution.car, solution.cdr
+    check_shape(solution, 1, None, "DESTRUCTURING-BIND", _COMMAND_SHAPE)
+    command = solution.car
     if not isinstance(command, Symbol) or (isinstance(command.function, UndefinedFunction) and command.macro is None):
         return fail("Action designator `~a' resolved to cram function `~a', but it isn't defined. Cannot perform action.",
                     designator, command)
     goal = desig_prop_value(designator, GOAL_KEY)
     if goal is None:
-        return command.function(*(arguments or ()))
-    if not isinstance(goal, Cons):
-        return fail(DesignatorGoalParsingFailure("Designator goal ~a could not be parsed.~%~a", goal,
-                                                 "A goal is a list (occasion parameter ...), given in a ?variable."))
+        return _call_plan(designator, solution)
+    _check_goal(goal)
     if _goal_holds(goal):
-        warn("Action goal `~a' already achieved.", goal)
+        warn(SimpleWarning("Action goal `~a' already achieved.", goal))
     else:
-        command.function(*(arguments or ()))
+        _call_plan(designator, solution)
     if not _goal_holds(goal):
         return fail("Goal `~a' of action `~a' was not achieved.", designator, goal)
     return None
 
 
+@circumstance(lambda here: f"while {in_one_line(here['designator'])} was performed, whose grounding is {in_one_line(here['solution'])}")
+def _call_plan(designator, solution):
+    return solution.car.function(*(solution.cdr or ()))
+
+
+def _check_goal(goal):
+    def refused(problem):
+        return fail(DesignatorGoalParsingFailure("Designator goal ~a could not be parsed.~%~a", goal, problem))
+
+    handler_case([(Error, refused)], lambda: check_shape(goal, 1, None, "DESTRUCTURING-BIND", _GOAL_SHAPE))
+
+
 def _goal_holds(goal):
     package = find_package("CRAM-OCCASIONS-EVENTS")
     return package is not None and holds(lisp_list(package.intern("HOLDS"), goal))
-
-

@@ -36,8 +36,7 @@ from ..lisp.objects.class_definition import define_class
 from ..lisp.objects.classes import class_name, find_class_or_error, make_instance
 from ..lisp.objects.generic import generic
 from ..lisp.packages import CURRENT, keyword
-from ..lisp.printer.printer import princ_to_string
-from .registry import ended_because, is_defined, not_running, register_process_module, running, start_under, unknown
+from .registry import ended_because, in_one_line, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym
 
 OFFLINE, WAITING, RUNNING, FAILED = map(keyword, ("OFFLINE", "WAITING", "RUNNING", "FAILED"))
@@ -203,7 +202,7 @@ class ProcessModule(AbstractProcessModule):
         finally:
             self._conclude(request, status, outcome)
 
-    @circumstance(lambda here: f"while process module {here['self'].name.name} executed {princ_to_string(here['request'].input)}")
+    @circumstance(lambda here: f"while process module {here['self'].name.name} executed {in_one_line(here['request'].input)}")
     def _call_body(self, body, request):
         request.started = True
         for later in self.queue:  # they announce that they wait, once it has begun

@@ -117,7 +117,12 @@ def ended_because(problem):
     """What ended a module, as a text that holds no object of the plan."""
     locate(problem, problem)
     place = describe(getattr(problem, "position", None))
-    return f"{princ_to_string(from_python(problem)).strip()}{f', at {place}' if place else ''}"
+    return f"{in_one_line(from_python(problem))}{f', at {place}' if place else ''}"
+
+
+def in_one_line(thing):
+    """``thing`` as ``princ`` shows it, on one line."""
+    return " ".join(princ_to_string(thing).split())
 
 
 def _with_hint(problem, name):

@@ -68,6 +68,8 @@ class GenericFunction(FunctionObject):
         _all.add(self)
 
     watcher = None
+    advice: str | None = None
+    """What the error that no method is applicable tells the user to do."""
     shortcut = shortcut_methods = None
 
     def take_shortcut(self, cls):

@@ -44,7 +44,9 @@ class NoNextMethodError(NoMethodError):
 
 
 def no_applicable_method_error(generic_function, arguments):
-    return error(NoApplicableMethodError(generic_function, list_from(arguments)))
+    problem = NoApplicableMethodError(generic_function, list_from(arguments))
+    problem.hint = getattr(generic_function, "advice", None)
+    return error(problem)
 
 
 def no_primary_method_error(generic_function, arguments):
