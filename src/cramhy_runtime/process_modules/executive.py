@@ -95,6 +95,10 @@ def try_reference_designator(designator, error_message=""):
     return handler_case([(DesignatorError, refused)], lambda: reference(designator))
 
 
+try_reference_designator.__lisp_lambda_list__ = lisp_list(sym("DESIG::DESIGNATOR"), sym("&OPTIONAL"),
+                                                          lisp_list(sym("EXE::ERROR-MESSAGE"), ""))
+
+
 @generic_perform.method(MotionDesignator)
 def _perform_motion(designator):
     modules = running_matches(designator)

@@ -25,32 +25,32 @@ def matching_names(designator):
     return [name for (name,) in ask(MATCHING, designator, Var()) if next(ask(AVAILABLE, name), None) is not None]
 
 
-def matching_process_module_names(designator):
+def matching_process_module_names(action_designator):
     """`matching_names` as a Lisp list."""
-    return list_from(matching_names(designator))
+    return list_from(matching_names(action_designator))
 
 
 def running_matches(designator):
     return [name for name in matching_names(designator) if get_running_process_module(name) is not None]
 
 
-def matching_available_process_modules(designator, *, fail_if_none=None):
+def matching_available_process_modules(action_designator, *, fail_if_none=None):
     """Those of them that are running; none is a plan failure with ``fail_if_none``."""
-    names = running_matches(designator)
+    names = running_matches(action_designator)
     if not names and truth(fail_if_none):
-        return fail("No process modules found for executing designator ~a", designator)
+        return fail("No process modules found for executing designator ~a", action_designator)
     return list_from(names)
 
 
-def pm_execute_matching(designator):
+def pm_execute_matching(action_designator):
     """Have the matching modules execute ``designator``, one after the other until one succeeds: the first value.
 
     If all fail, with the failure of the first. Lisp errors end it at once.
     """
-    names = running_matches(designator)
+    names = running_matches(action_designator)
     if not names:
-        return fail("No process modules found for executing designator ~a", designator)
-    return execute_by(names, designator)
+        return fail("No process modules found for executing designator ~a", action_designator)
+    return execute_by(names, action_designator)
 
 
 def execute_by(names, designator):

@@ -105,11 +105,16 @@ class Circumstances:
         for index, (frame, _) in enumerate(frames):
             tell = self._tellers.get(frame.f_code)
             line = tell and tell(frame.f_locals)
-            if line:
+            if line and not _told(condition, line):
                 caller = next((frame_position(*outer) for outer in frames[index:] if is_user_file(outer[0].f_code.co_filename)), None)
                 if caller is not None and caller != getattr(condition, "position", None):
                     line += f", called at {describe(caller)}"
                 self.add(condition, line)
+
+
+def _told(condition, line):
+    """Whether ``line`` is shown with ``condition``, which was noted before, on its way through another task."""
+    return any(known == line or known.startswith(line + ", called at ") for known in getattr(condition, "circumstances", None) or ())
 
 
 def _passed(exception):
