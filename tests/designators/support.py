@@ -42,7 +42,7 @@ class facts:  # noqa: N801  (reads as a statement)
     """``with facts(group, extendable, clause...):`` a fact group for the extent of a block."""
 
     def __init__(self, name, extendable, *clauses):
-        self.name, self.extendable, self.clauses = user(name), lisp(extendable), lisp(list(clauses))
+        self.name, self.extendable, self.clauses = user(name.upper()), lisp(extendable), lisp(list(clauses))
 
     def __enter__(self):
         define_fact_group(self.name, self.extendable, self.clauses)

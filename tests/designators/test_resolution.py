@@ -9,8 +9,8 @@ from cramhy_runtime.designators.classes import DesignatorError
 from cramhy_runtime.lisp.conditions import Error, handler_bind, invoke_restart
 from cramhy_runtime.lisp.data import lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import keyword, sym
-from cramhy_runtime.prolog import query
+from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.prolog import explanations, query
 from cramhy_runtime.utilities.lazy_lists import from_iterator
 
 from .support import facts, lisp, make, python, user
@@ -62,13 +62,84 @@ def test_what_cannot_be_resolved_says_so(kind, text):
     assert designator.effective is None and designator.timestamp is None
 
 
-def test_the_hint_names_the_clauses_and_what_they_miss(driving):
-    assert error_of(make("motion", [":type", ":driving"])).hint == (
-        "Tried 1 clause of motion-grounding:\n  (motion-grounding ?desig (drive ?speed)): property speed is missing")
-    assert error_of(make("motion", [":type", ":flying"], [":goal", 1])).hint == (
-        "Tried 2 clauses of motion-grounding:\n"
-        "  (motion-grounding ?desig (drive ?speed)): type is flying, not driving; property speed is missing\n"
-        "  (motion-grounding ?desig (move ?goal)): type is flying, not moving")
+HERE = find_package("HINTS") or make_package("HINTS", use=["CRAM-PROLOG", "CRAM-DESIGNATORS"])
+
+
+def hint_of(designator):
+    """The hint of the error, in a package where the names of Prolog and of designators need no prefix."""
+    with binding(sym("*PACKAGE*"), HERE):
+        return error_of(designator).hint.replace("cram-user::", "")
+
+
+def test_the_hint_tells_the_nearest_clause_and_what_it_misses(driving):
+    assert hint_of(make("motion", [":type", ":driving"])) == """\
+Of 2 clauses this one came furthest, clause 1 of driving:
+  (motion-grounding ?desig (drive ?speed))
+  holds  (desig-prop ?desig (:type :driving))
+  FAILS  (desig-prop ?desig (:speed ?speed))
+           There is no property :speed.
+  with ?desig = #<a motion (type driving)>
+(explain) tries it again and tells all of it."""
+
+
+def test_the_hint_names_a_property_that_is_misspelled(driving):
+    assert hint_of(make("motion", [":type", ":driving"], [":sped", 3])) == """\
+Of 2 clauses this one came furthest, clause 1 of driving:
+  (motion-grounding ?desig (drive ?speed))
+  holds  (desig-prop ?desig (:type :driving))
+  FAILS  (desig-prop ?desig (:speed ?speed))
+           There is no property :speed, but :sped; is that misspelled?
+  with ?desig = #<a motion (type driving) (sped 3)>
+(explain) tries it again and tells all of it."""
+
+
+def test_the_hint_names_a_type_that_is_misspelled_and_the_others_that_there_are(driving):
+    assert hint_of(make("motion", [":type", ":mvoing"], [":goal", 1])) == """\
+Of 2 clauses this one came furthest, clause 2 of driving:
+  (motion-grounding ?desig (move ?goal))
+  FAILS  (desig-prop ?desig (:type :moving))
+           :type is :mvoing, not :moving; is that misspelled?
+    -    (desig-prop ?desig (:goal ?goal))
+  with ?desig = #<a motion (type mvoing) (goal 1)>
+As far came:
+  clause 1: :type is :mvoing, not :driving
+(explain) tries it again and tells all of it."""
+
+
+def test_the_hint_calls_nothing_a_second_time():
+    calls = []
+    user("SPEED-OF").function = lambda name: calls.append(name)
+    with facts("driving", ["desig::motion-grounding"], [
+            ["desig::motion-grounding", "?desig", ["drive", "?speed"]], ["desig::desig-prop", "?desig", [":how", "?how"]],
+            ["prolog::lisp-fun", "speed-of", "?how", "?speed"], ["prolog::bound", "?speed"], ["prolog::==", "?speed", "fast"]]):
+        designator = make("motion", [":how", ":slowly"])
+        hint = hint_of(designator)
+        assert len(calls) == 1
+        assert hint == """\
+There is one clause, clause 1 of driving:
+  (motion-grounding ?desig (drive ?speed))
+  holds  (desig-prop ?desig (:how ?how))
+  STOPS  (lisp-fun speed-of ?how ?speed)
+           What it calls was not called again here.
+    -    (bound ?speed)
+    -    (== ?speed fast)
+  with ?desig = #<a motion (how slowly)>, ?how = :slowly
+(explain) tries it again and tells all of it."""
+        assert explanations.explain(designator).reason == "nil is not cram-user::fast"
+    assert len(calls) == 2
+
+
+def test_the_hint_says_when_there_is_a_solution_by_now():
+    designator = make("action", [":type", ":drawing"])
+    problem = error_of(designator)
+    with facts("drawing", ["desig::action-grounding"], [["desig::action-grounding", "?desig", ["draw"]]]):
+        assert problem.hint == "There is a solution now. This designator was tried before there was, and keeps to that: make a new one."
+
+
+def test_explain_without_a_goal_takes_the_designator_of_the_last_error(driving):
+    designator = make("motion", [":type", ":flying"])
+    hint_of(designator)
+    assert explanations.to_explain == [designator]
 
 
 def test_the_hint_without_any_clause_says_what_to_define():

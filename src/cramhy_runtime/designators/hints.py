@@ -1,69 +1,132 @@
 """Why a designator could not be resolved, in words for a student.
 
-A motion or action is resolved by the clauses of ``motion-grounding`` or ``action-grounding``. Most ask for properties of the designator,
-``(desig-prop ?designator (:speed ?speed))``; the hint compares what each clause asks for with what the designator has. It is a
-reading of the clauses, not a trace of the proof, and computed only when somebody asks for it.
+A motion or action is resolved by the clauses of ``motion-grounding`` or ``action-grounding``; the hint explains the proof that failed, as
+``(explain designator)`` does: the clause that came furthest, and the property that it misses. It is computed only when somebody looks
+at the error, and proves nothing that could do something a second time: goals that call Lisp are left out.
 """
 
 from __future__ import annotations
 
-from ..lisp.data import Cons, Symbol
-from ..lisp.printer.printer import princ_to_string
-from ..prolog.database import functors
-from ..utilities.patterns import is_var
-from .classes import ActionDesignator, DesignatorError, MotionDesignator, ObjectDesignator, desig_prop_value
+from ..lisp.condition_types import Warning_
+from ..lisp.conditions import handler_bind, muffle_warning
+from ..lisp.data import Cons, Symbol, lisp_list
+from ..lisp.evaluation.evaluator import PACKAGE
+from ..prolog import explanations
+from ..prolog.reasons import declare_harmless, explains, spelled_like
+from ..prolog.showing import show
+from ..prolog.terms import Var, deref
+from .classes import (
+    ActionDesignator,
+    Designator,
+    DesignatorError,
+    HumanDesignator,
+    LocationDesignator,
+    MotionDesignator,
+    ObjectDesignator,
+    type_keyword,
+)
 from .symbols import sym
 
-DESIG_PROP = sym("DESIG::DESIG-PROP")
+EXPLAIN = sym("CRAM-PROLOG::EXPLAIN")
+_SOLUTION = Symbol("?SOLUTION")
+_MOST_GOALS = 2000
+_BY_PERCEPTION = "{} designator stands for something only after perception has found {} and set its data."
 
 
 def hint(designator):
     """A text of one or more lines, or ``None`` when there is nothing to say."""
-    if isinstance(designator, (MotionDesignator, ActionDesignator)):
-        motion = isinstance(designator, MotionDesignator)
-        return _groundings_tried(designator, "motion-grounding" if motion else "action-grounding")
     if isinstance(designator, ObjectDesignator):
-        return "An object designator stands for something only after perception has found the object and set its data."
-    return None
+        return _BY_PERCEPTION.format("An object", "the object")
+    if isinstance(designator, HumanDesignator):
+        return _BY_PERCEPTION.format("A human", "the human")
+    if not isinstance(designator, (MotionDesignator, ActionDesignator)):
+        return None
+    predicate = _predicate(designator)
+    told = handler_bind([(Warning_, muffle_warning)],
+                        lambda: explanations.explain(designator, _MOST_GOALS, dry=True))
+    if told.undefined:
+        return (f"There is no clause of {show(predicate).rpartition(':')[2]} that could resolve it. Define one in a fact group that lists "
+                f"desig:{show(predicate).rpartition(':')[2]}, and load the file.")
+    if told.outcome == "given up":
+        explanations.to_explain[:] = [designator]
+        return f"{told}\n{_explain_form()} goes on longer."
+    if told.holds:
+        return "There is a solution now. This designator was tried before there was, and keeps to that: make a new one."
+    explanations.to_explain[:] = [designator]
+    return f"{told.hint()}\n{_explain_form()} tries it again and tells all of it."
 
 
-def _groundings_tried(designator, predicate):
-    entry = functors.get(sym("DESIG::" + predicate.upper()))
-    clauses = [clause for clause in entry.clauses if _asks(clause)] if entry is not None else []
-    if not clauses:
-        return (f"There is no clause of {predicate} that could resolve it. Define one in a fact group that lists "
-                f"desig:{predicate}, and load the file.")
-    # A clause for another type is of interest only if there is none for this one.
-    clauses = [clause for clause in clauses if not _contradictions(designator, clause)] or clauses
-    lines = [_compare(designator, clause) for clause in clauses]
-    return f"Tried {len(lines)} clause{'s' if len(lines) > 1 else ''} of {predicate}:\n" + "\n".join(lines)
+def _explain_form():
+    return "(explain)" if PACKAGE.value.lookup("EXPLAIN")[0] is EXPLAIN else "(prolog:explain)"
 
 
-def _asks(clause):
-    """The (key, value) pairs that a clause asks of its designator, in order."""
-    found = []
-    for goal in clause.goals or ():
-        if isinstance(goal, Cons) and goal.car is DESIG_PROP and isinstance(goal.cdr, Cons) and goal.cdr.cdr is not None:
-            pair = goal.cdr.cdr.car
-            if goal.cdr.car is clause.head.cdr.car and isinstance(pair, Cons) and isinstance(pair.cdr, Cons):
-                found.append((pair.car, pair.cdr.car))
-    return found
+def _predicate(designator):
+    return sym("DESIG::MOTION-GROUNDING" if isinstance(designator, MotionDesignator) else
+               "DESIG::LOCATION-GROUNDING" if isinstance(designator, LocationDesignator) else "DESIG::ACTION-GROUNDING")
 
 
-def _contradictions(designator, clause):
-    """The (key, value) pairs with constant values for which the designator has other values."""
-    present = {pair.car for pair in designator.description or ()}
-    return [(key, wanted) for key, wanted in _asks(clause)
-            if key in present and not isinstance(wanted, Cons) and not (isinstance(wanted, Symbol) and is_var(wanted))
-            and desig_prop_value(designator, key) is not wanted and desig_prop_value(designator, key) != wanted]
-
-
-def _compare(designator, clause):
-    present = {pair.car for pair in designator.description or ()}
-    problems = [f"{princ_to_string(key)} is {princ_to_string(desig_prop_value(designator, key))}, not {princ_to_string(wanted)}"
-                for key, wanted in _contradictions(designator, clause)]
-    problems += [f"property {princ_to_string(key)} is missing" for key, _ in _asks(clause) if key not in present]
-    return f"  {princ_to_string(clause.head)}: {'; '.join(problems) or 'all properties are there, another goal fails'}".lower()
-
+for _class in (ActionDesignator, MotionDesignator, LocationDesignator):
+    explanations.explained_by(_class, lambda designator: lisp_list(_predicate(designator), designator, _SOLUTION))
 
 DesignatorError.explain = staticmethod(hint)
+
+
+# --------------------------------------------------------------------------------------------------- why predicates fail
+
+declare_harmless(*(f"DESIG::{name}" for name in """DESIG-PROP LOC-DESIG? OBJ-DESIG? ACTION-DESIG? MOTION-DESIG? DESIG-DESCRIPTION
+    DESIG-TIMESTAMP DESIG-EFFECTIVE DESIG-VALUE EFFECTIVE-DESIGNATOR EQUATED-DESIGS DESIG-EQUAL DESIG-CLASS CURRENT-DESIGNATOR
+    NEWEST-EFFECTIVE-DESIGNATOR""".split()))
+
+
+def _no_designator(term):
+    """Why ``term`` is not described, or ``None`` when it is a designator."""
+    found = deref(term)
+    if isinstance(found, Designator):
+        return None
+    return f"{show(term)} has no value" if found.__class__ is Var else f"{show(term)} is no designator"
+
+
+@explains("DESIG::DESIG-PROP")
+def _property_missing(m, desig, pair, *time):
+    problem, pair = _no_designator(desig), deref(pair)
+    if problem or pair.__class__ is not Cons:
+        return problem
+    key = deref(pair.car)
+    entries = [entry for entry in deref(desig).description or () if isinstance(entry, Cons)]
+    same = [entry for entry in entries if entry.car is key]
+    if not same:
+        near = spelled_like(key, [entry.car for entry in entries if isinstance(entry.car, Symbol)]) if isinstance(key, Symbol) else ()
+        if near:
+            return f"there is no property {show(key)}, but {show(near[0])}; is that misspelled?", 0.9
+        return f"there is no property {show(key)}"
+    wanted = deref(pair.cdr)
+    wanted = deref(wanted.car) if wanted.__class__ is Cons else wanted
+    values = [entry.cdr.car for entry in same if isinstance(entry.cdr, Cons)]
+    text = f"{show(key)} is {' and '.join(map(show, values)) or 'without a value'}, not {show(wanted)}"
+    if isinstance(wanted, Symbol) and any(isinstance(value, Symbol) and value and spelled_like(value, [wanted]) for value in values):
+        return f"{text}; is that misspelled?", 0.8
+    return text
+
+
+@explains("DESIG::DESIG-CLASS")
+def _other_class(m, desig, type_):
+    problem = _no_designator(desig)
+    return problem or f"it is of the class {show(type_keyword(deref(desig)))}, not {show(type_)}"
+
+
+def _define_type_test(name, kind):
+    @explains(f"DESIG::{name}")
+    def test(m, desig):
+        problem = _no_designator(desig)
+        return problem or f"{show(desig)} is no {kind} designator"
+
+
+for _name, _kind in (("LOC-DESIG?", "location"), ("OBJ-DESIG?", "object"), ("ACTION-DESIG?", "action"), ("MOTION-DESIG?", "motion")):
+    _define_type_test(_name, _kind)
+
+
+@explains("DESIG::EFFECTIVE-DESIGNATOR")
+def _not_effective(m, desig):
+    return _no_designator(desig) or "it has not been resolved yet"
+
+

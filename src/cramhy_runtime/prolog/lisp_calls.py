@@ -54,7 +54,7 @@ def argument(m, term):
 
 
 def call_lisp(function, arguments, kind, written):
-    """(True, value) of a call, or (False, None) after the warning about the error in it.
+    """(True, value) of a call, or (False, condition) after the warning about the error in it.
 
     ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it.
     """
@@ -74,7 +74,7 @@ def call_lisp(function, arguments, kind, written):
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
     warn(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
-    return False, None
+    return False, problem
 
 
 def _apply(function, arguments):

@@ -1,7 +1,7 @@
 """The Lisp package of this room: CRAM-PROLOG (nickname PROLOG).
 
-Source: prolog.md sections 1, 13 and 14. The macros (``def-fact-group``, ``<-``, ...) are in ``hy_src``; here their names
-are exported.
+Source: prolog.md sections 1, 13 and 14; ``explain`` is more than the original has. The macros
+(``def-fact-group``, ``<-``, ...) are in ``hy_src``; here their names are exported.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from cramhy_runtime.utilities import patterns
 
 from . import (
     builtins,  # noqa: F401  the built-in predicates come along
+    explanations,
     productions,
     query,
     rete,
@@ -30,6 +31,7 @@ PROLOG = define_face(
         rete: "rete-assert rete-retract rete-holds rete-prove clear-alpha-network alpha-network-size",
         productions: """register-production clear-productions remove-production register-production-handler
             remove-production-handler""",
+        "explain": explanations.print_explanation,
     },
     variables={BREAK_ON_LISP_ERRORS.name: None},
     export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof

@@ -21,10 +21,14 @@ UNSET = type("Unset", (), {"__repr__": lambda self: "#<unset>", "__slots__": ()}
 
 
 class Var:
-    """A logic variable. ``ref`` is its value, another variable included, or `UNSET`; ``name`` the symbol that shows it."""
+    """A logic variable. ``ref`` is its value, another variable included, or `UNSET`; ``name`` the symbol that shows it.
+
+    ``written`` is the symbol that it has in the text of a clause, where goals are watched.
+    """
 
     ref = UNSET
     name = None
+    written = None
 
     def __repr__(self):
         return f"<{self.name.name if self.name else '?' + format(id(self), 'x')}{'' if self.ref is UNSET else ' = ' + repr(self.ref)}>"
