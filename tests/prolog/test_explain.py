@@ -116,13 +116,15 @@ with ?x = homer, ?y = bart, ?a = 10"""
 
 @pytest.mark.parametrize("goal, reason", [
     ("(parent hommer ?x)", "None of the 3 clauses of parent matches; in the nearest, clause 2 of family, argument 1 is homer, not hommer."),
-    ("(parent homer maggie)", "None of the 3 clauses of parent matches; in the nearest, clause 2 of family, argument 2 is bart, not maggie."),
+    ("(parent homer maggie)",
+     "None of the 3 clauses of parent matches; in the nearest, clause 2 of family, argument 2 is bart, not maggie."),
     ("(silly bart)", "The only clause of silly does not match: in clause 1 of family, argument 1 is homer, not bart."),
     ("(parent ?x)", "It has 1 argument, and the clauses of parent have 2."),
     ("(parent ?x ?y ?z)", "It has 3 arguments, and the clauses of parent have 2."),
     ("(parnet homer ?x)", "Nobody defines parnet; did you mean parent?"),
     ("(xyzzy)", "Nobody defines xyzzy."),
-    ("(cl-user::parent homer ?x)", "Nobody defines common-lisp-user::parent; there is prolog-tests-here:parent, another symbol of that name."),
+    ("(cl-user::parent homer ?x)",
+     "Nobody defines common-lisp-user::parent; there is prolog-tests-here:parent, another symbol of that name."),
     ("(?goal 1)", "?goal is no functor; (call ?goal) proves a goal that is the value of a variable."),
     ("(not (parent abe homer))", "(parent abe homer) holds."),
     ("(== (a b (c d)) (a b (c e)))", "Element 3: of it element 2: d is not e."),
