@@ -72,7 +72,8 @@ class Goal(ports.Box):
     ``shown`` is the goal as it was called, to be printed, and ``values`` the variables of its clause that had values then, as pairs;
     ``attempts`` the clauses tried; ``inner`` the boxes inside of a control
     construct; ``exits`` how often it succeeded; ``state`` one of called, exited, failed. ``reason`` says why a built-in failed, and
-    ``near`` from 0 to 1 how nearly it did not. ``trouble`` is ``undefined``, or ``dry`` for a goal that was not run.
+    ``near`` from 0 to 1 how nearly it did not. ``trouble`` is ``undefined``, ``empty`` when a predicate has no clauses, or ``dry``
+    for a goal that was not run.
     """
 
     __slots__ = ("term", "shown", "parent", "attempts", "inner", "exits", "state", "reason", "near", "trouble", "best", "values")
@@ -195,7 +196,13 @@ class Explaining(Machine):
         arguments = arguments_of(goal)
         built_in = entry.handler or entry.native and (entry.native.get(len(arguments)) or entry.native.get(None))
         if not built_in:
-            return (_clauses, k, box, entry.clauses, 0, arguments) if entry.clauses else fail(self)
+            if entry.clauses:
+                return (_clauses, k, box, entry.clauses, 0, arguments)
+            if entry.native:
+                box.reason = reasons.other_count(functor, len(arguments), entry.native)
+            else:
+                box.trouble = "empty"
+            return fail(self)
         if self.record.dry and not reasons.harmless(goal):
             box.trouble = "dry"
             return fail(self)

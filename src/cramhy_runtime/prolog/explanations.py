@@ -59,8 +59,8 @@ class Explanation:
 
     @property
     def undefined(self):
-        """Whether nobody defines the predicate of the goal."""
-        return self.root is not None and self.root.trouble == "undefined"
+        """Whether nobody has clauses for the predicate of the goal."""
+        return self.root.trouble in ("undefined", "empty")
 
     def __str__(self):
         return self.text
@@ -159,6 +159,8 @@ def _reason(box):
     """Why a goal failed that has nothing inside which tells it: a clause of a sentence, or ``None``."""
     if box.trouble == "undefined":
         return _undefined(box)
+    if box.trouble == "empty":
+        return f"there are no clauses of {show(box.functor)}"
     if box.trouble == "dry":
         return "what it calls was not called again here"
     if box.functor is _NOT and box.inner:
@@ -188,10 +190,8 @@ def _mismatches(box):
     attempts, functor = box.attempts, show(box.functor)
     best = _nearest(attempts)
     if best.mismatch[0] == 0:
-        counts = sorted({attempt.mismatch[1] for attempt in attempts if attempt.mismatch[0] == 0})
-        given = best.mismatch[2]
-        return (f"it has {given} argument{'' if given == 1 else 's'}, and the clauses of {functor} have "
-                f"{' or '.join(map(str, counts))}")
+        counts = {attempt.mismatch[1] for attempt in attempts if attempt.mismatch[0] == 0}
+        return reasons.other_count(box.functor, best.mismatch[2], counts)
     which = f"none of the {len(attempts)} clauses of {functor} matches; in the nearest, " if len(attempts) > 1 else \
         f"the only clause of {functor} does not match: in "
     return which + f"{_name(best.clause)}, {_mismatch(best)}"

@@ -93,6 +93,11 @@ def _agree(a, b):
     return same
 
 
+def other_count(functor, given, known):
+    """The reason of a goal with ``given`` arguments, where ``functor`` is known with the numbers ``known``."""
+    return f"it has {given} argument{'' if given == 1 else 's'}, and {show(functor)} takes {' or '.join(map(str, sorted(known)))}"
+
+
 def spelled_like(name, known):
     """(those of the symbols ``known`` whose names are like that of ``name``, the nearest first)."""
     by_name = {symbol.name: symbol for symbol in known}
