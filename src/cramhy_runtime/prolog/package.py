@@ -1,6 +1,6 @@
 """The Lisp package of this room: CRAM-PROLOG (nickname PROLOG).
 
-Source: prolog.md sections 1, 13 and 14; ``explain`` is more than the original has. The macros
+Source: prolog.md sections 1, 13 and 14; ``explain`` and ``trace-prolog`` are more than the original has. The macros
 (``def-fact-group``, ``<-``, ...) are in ``hy_src``; here their names are exported.
 """
 
@@ -37,6 +37,7 @@ PROLOG = define_face(
     export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof
         every forall member take generate-values == equal length append sort reduce max string-concat format warn error
         slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=
-        def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers""",
+        def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers
+        trace-prolog untrace-prolog""",
 )
 
