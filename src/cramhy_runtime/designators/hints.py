@@ -44,7 +44,7 @@ def hint(designator):
     predicate = _predicate(designator)
     told = handler_bind([(Warning_, muffle_warning)],
                         lambda: explanations.explain(designator, _MOST_GOALS, dry=True))
-    if told.undefined:
+    if told.outcome == "fails" and not told.root.attempts:
         return (f"There is no clause of {show(predicate).rpartition(':')[2]} that could resolve it. Define one in a fact group that lists "
                 f"desig:{show(predicate).rpartition(':')[2]}, and load the file.")
     if told.outcome == "given up":
@@ -75,7 +75,12 @@ DesignatorError.explain = staticmethod(hint)
 
 declare_harmless(*(f"DESIG::{name}" for name in """DESIG-PROP LOC-DESIG? OBJ-DESIG? ACTION-DESIG? MOTION-DESIG? DESIG-DESCRIPTION
     DESIG-TIMESTAMP DESIG-EFFECTIVE DESIG-VALUE EFFECTIVE-DESIGNATOR EQUATED-DESIGS DESIG-EQUAL DESIG-CLASS CURRENT-DESIGNATOR
-    NEWEST-EFFECTIVE-DESIGNATOR""".split()))
+    NEWEST-EFFECTIVE-DESIGNATOR MOTION-GROUNDING ACTION-GROUNDING LOCATION-GROUNDING""".split()))
+
+
+@explains("DESIG::MOTION-GROUNDING", "DESIG::ACTION-GROUNDING", "DESIG::LOCATION-GROUNDING")
+def _no_clauses(m, desig, solution):
+    return "there are no clauses for it"
 
 
 def _no_designator(term):

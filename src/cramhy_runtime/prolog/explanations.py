@@ -57,11 +57,6 @@ class Explanation:
     def holds(self):
         return self.outcome == "holds"
 
-    @property
-    def undefined(self):
-        """Whether nobody has clauses for the predicate of the goal."""
-        return self.root.trouble in ("undefined", "empty")
-
     def __str__(self):
         return self.text
 
