@@ -207,9 +207,9 @@ class Explaining(Machine):
             box.trouble = "dry"
             return fail(self)
         if entry.clauses:
-            if entry.handler:
-                k = (handled, k, len(self.choices))
-            self.choices.append((len(self.trail), (_clauses, k if not entry.handler else k[1], box, entry.clauses, 0, arguments)))
+            self.choices.append((_more_clauses, k, len(self.trail), box, entry.clauses, 0, arguments))
+            if entry.handler:  # the clauses are for when it has no solution
+                k = (handled, k, len(self.choices) - 1)
         if built_in is _LISP_CALLS.get(functor):
             return k if _call_lisp(self, box, functor, arguments) else fail(self)
         return built_in(self, (built_in, k, *arguments))
@@ -270,9 +270,14 @@ def _clauses(m, step):
             variable.written, variable.name = symbol, None
         attempt.variables = table
         if i < len(clauses):
-            m.choices.append((height, (_clauses, k, box, clauses, i, arguments)))
+            m.choices.append((_more_clauses, k, height, box, clauses, i, arguments))
         return (_body, k, attempt, 0, b)
     return fail(m)
+
+
+def _more_clauses(m, step):
+    m.choices.pop()
+    return _clauses(m, (_clauses, step[1], *step[3:]))
 
 
 def _match(patterns, arguments, trail):

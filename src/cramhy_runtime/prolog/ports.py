@@ -8,7 +8,7 @@ than others; a goal whose choice points are cut away is not heard of again.
 
 from __future__ import annotations
 
-from .machine import FAIL, fail
+from .machine import fail, give_up
 
 
 class Box:
@@ -29,29 +29,31 @@ class Box:
 def enter(m, box, k):
     """Watch a goal that is about to be proved: the continuation to prove it with, where its own would be ``k``."""
     height = len(m.choices)
-    m.choices.append((len(m.trail), (_failed, None, box)))
+    m.choices.append((_failed, None, len(m.trail), box))
     return (_exited, k, box, height)
 
 
 def _exited(m, step):
     _, k, box, height = step
     choices = m.choices
-    while len(choices) > height + 1 and choices[-1][1] is FAIL:
+    while len(choices) > height + 1 and choices[-1][0] is give_up:
         choices.pop()
     last = len(choices) <= height + 1
     if last:
         del choices[height:]
     else:
-        choices.append((len(m.trail), (_redone, None, box)))
+        choices.append((_redone, None, len(m.trail), box))
     box.exited(m, last)
     return k
 
 
 def _redone(m, step):
-    step[2].redone(m)
+    m.choices.pop()
+    step[3].redone(m)
     return fail(m)
 
 
 def _failed(m, step):
-    step[2].failed(m)
+    m.choices.pop()
+    step[3].failed(m)
     return fail(m)
