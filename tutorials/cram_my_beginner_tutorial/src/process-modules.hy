@@ -78,11 +78,18 @@
   (init)
   (top-level
     (with-process-modules-running (turtlesim-navigation)
-      (let* ((?place (desig:a location
-                       (horizontal-position ?horizontal-position)
-                       (vertical-position ?vertical-position)))
-             (motion (desig:a motion (type going-to) (goal ?place))))
-        (pm-execute 'turtlesim-navigation motion)))))
+      (with-retry-counters ((other-points 3))
+        (with-failure-handling
+            ((designator-error (failure)
+               (declare (ignore failure))
+               ;; chance may have put all points too near to a wall
+               (do-retry other-points
+                 (retry))))
+          (let* ((?place (desig:a location
+                           (horizontal-position ?horizontal-position)
+                           (vertical-position ?vertical-position)))
+                 (motion (desig:a motion (type going-to) (goal ?place))))
+            (pm-execute 'turtlesim-navigation motion)))))))
 
 (defun init ()
   "Starts a ROS node and listens to the turtle."

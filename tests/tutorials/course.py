@@ -1,0 +1,130 @@
+"""A run of the course's package: forms typed in TUT, in virtual time, and a witness of everything that the turtle does."""
+
+from __future__ import annotations
+
+import math
+import os
+from contextlib import contextmanager
+
+from cramhy_runtime import kernel, testing
+from cramhy_runtime.lisp.data import one
+from cramhy_runtime.lisp.numbers.random_state import seed_random
+from cramhy_runtime.lisp.systems import systems
+from cramhy_runtime.ros import graph
+from cramhy_runtime.ros.messages import message_class_exact
+from cramhy_runtime.testing.leftovers import leftovers
+from cramhy_runtime.testing.plans import plan_of, with_lisp
+from cramhy_runtime.turtlesim.canvas import METRE
+from cramhy_runtime.turtlesim.node import running_simulator, start_with_first_node
+from cramhy_runtime.turtlesim.world import EXTENT
+
+SOAK = bool(os.environ.get("CRAMHY_SOAK"))
+SEEDS = range(200 if SOAK else 20)
+BACKENDS = ("threads", "greenlet")
+TICK = 0.016
+STEP = 1.5 * TICK  # metres that a moving turtle goes in a tick: so much nearer than the threshold may it stop
+
+
+def backend_of(seed):
+    """Both back ends get half of the seeds each."""
+    return BACKENDS[seed % 2]
+
+
+def seeded(seed):
+    """A course in the order and with the random numbers of ``seed``, on the back end that is its turn."""
+    return course(backend_of(seed), seed)
+
+
+@contextmanager
+def course(backend="threads", seed=None):
+    """A `Course` after ``(init)``."""
+    with_lisp(lambda: systems.load_system("cram-my-beginner-tutorial"))
+    with testing.virtual_time(backend, seed) as clock:
+        clock.watch_fluents()
+        seed_random(seed)
+        start_with_first_node()
+        yield Course(clock)
+
+
+class Course:
+    """``commands`` are (time, speed, turn) as the turtle heard them, ``poses`` (x, y) of every tick, ``strokes`` what was drawn."""
+
+    def __init__(self, clock):
+        self.clock = clock
+        self.poses, self.commands, self.strokes = [], [], []
+        self("(init)")
+        self.simulator = running_simulator()
+        witness = graph.active().node("witness")
+        witness.subscribe("/turtle1/pose", message_class_exact("turtlesim/Pose"), self._see)
+        witness.subscribe("/turtle1/cmd_vel", message_class_exact("geometry_msgs/Twist"), self._hear)
+        paper = self.simulator.canvas
+        draw, paper.line = paper.line, lambda *line: (self._drawn(*line), draw(*line))
+
+    def __call__(self, form):
+        """The first value of a form, read in TUT."""
+        return one(plan_of(f"(in-package :tut) {form}")())
+
+    def teleport(self, x, y, theta):
+        """Put the turtle down somewhere, without a trace."""
+        turtle = self.turtle
+        turtle.pen_on = False
+        turtle.teleport_absolute(x, y, theta)
+        kernel.sleep(3 * TICK)
+        turtle.pen_on = True
+
+    @property
+    def turtle(self):
+        return self.simulator.turtles["turtle1"]
+
+    @property
+    def place(self):
+        """Where the turtle is, in metres."""
+        return self.turtle.pose()[:2]
+
+    @property
+    def pen(self):
+        """(on, colour, width)"""
+        return self.turtle.pen_on, self.turtle.pen_colour, self.turtle.pen_width
+
+    def _see(self, pose):
+        self.poses.append((float(pose.x), float(pose.y)))
+
+    def _hear(self, twist):
+        self.commands.append((kernel.now(), float(twist.linear.x), float(twist.angular.z)))
+
+    def _drawn(self, x1, y1, x0, y0, colour, width):
+        """A line of a tick, in pixels; a stroke is what one pen draws without being lifted: (colour, width, [point ...])."""
+        start, end = (x0 / METRE, EXTENT - y0 / METRE), (x1 / METRE, EXTENT - y1 / METRE)
+        if self.strokes:
+            last_colour, last_width, points = self.strokes[-1]
+            if (last_colour, last_width) == (colour, width) and math.dist(points[-1], start) < 1e-6:
+                points.append(end)
+                return
+        self.strokes.append((colour, width, [start, end]))
+
+    # ------------------------------------------------------------------------------------------------------ what must hold
+
+    def stands_still(self):
+        """No command comes after the stop, and the turtle does not move any more."""
+        kernel.sleep(3 * TICK)
+        before, heard = self.place, len(self.commands)
+        kernel.sleep(2)
+        return self.commands[-1][1:] == (0, 0) and len(self.commands) == heard and self.place == before
+
+    def left(self):
+        """What the plans have left behind: tasks, timers, nets of the pose, process modules that run."""
+        kernel.sleep(3 * TICK)  # until the node is connected
+        self.simulator.timer.cancel()
+        self.clock.settle()
+        pose = self("*turtle-pose*")
+        modules = [name for name in ("turtlesim-navigation", "turtlesim-pen-control") if self(f"(get-running-process-module '{name})")]
+        return leftovers(self.clock) + list(pose.living_nets()) + list(pose.waiters) + modules
+
+
+def missed(corners, points, near):
+    """The first of ``corners`` that the ``points`` do not come as near to, one corner after the other; ``None`` if there is none."""
+    on_the_way = iter(points)
+    for corner in corners:
+        if not any(math.dist(corner, point) < near for point in on_the_way):
+            return corner
+    return None
