@@ -52,7 +52,7 @@ def test_without_a_running_module_nothing_is_resolved(navigation):
 def test_a_motion_that_cannot_be_resolved_says_so_and_is_both_failure_and_designator_error(navigation):
     failure = failure_of(lambda: with_modules(lambda: pm.perform(make("motion"))))
     assert failure.report() == "Designator #<A MOTION> could not be resolved.\nCannot perform motion."
-    assert isinstance(failure, (cpl.PlanFailure, DesignatorError)) and "property speed is missing" in failure.hint
+    assert isinstance(failure, (cpl.PlanFailure, DesignatorError)) and "There is no property :speed" in failure.hint
     assert DesignatorReferenceFailure().report() == "designator-failure"
 
 

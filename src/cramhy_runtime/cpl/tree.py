@@ -81,9 +81,15 @@ class TaskTreeNode:
 
 
 def _key(part):
-    if isinstance(part, Cons):
-        return (*(_key(element) for element in part), None)
-    return part
+    if part.__class__ is not Cons:
+        return part
+    items = []
+    while part.__class__ is Cons:
+        element = part.car
+        items.append(_key(element) if element.__class__ is Cons else element)
+        part = part.cdr
+    items.append(None)
+    return tuple(items)
 
 
 def ensure_node(path, tree):
@@ -135,13 +141,21 @@ def _current_node():
 
 def _next_free(part, above):
     """The node for ``part`` below the node ``above``, or for its next repetition if the task there was executed already."""
-    first = node = above.child(part)
-    if _taken(node):
-        number = first.calls
-        while _taken(node):
+    key, children = _key(part), above.children
+    node = children.get(key)
+    if node is None:
+        node = children[key] = TaskTreeNode(Cons(part, above.path), above)
+    elif _taken(node):
+        first, number = node, node.calls
+        start = key[:-1] if part.__class__ is Cons else ()
+        while node is not None and _taken(node):
             number += 1
-            node = above.child(list_from(part, lisp_list(CALL, number)))
+            key = (*start, CALL, number, None)
+            node = children.get(key)
         first.calls = number
+        if node is None:
+            again = list_from(python_list(part), lisp_list(CALL, number))
+            node = children[key] = TaskTreeNode(Cons(again, above.path), above)
     return node
 
 

@@ -11,7 +11,6 @@ from ..cpl.current import current_task
 from ..cpl.failure_types import SimplePlanFailure
 from ..cpl.failures import signal_failure
 from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
-from ..cpl.pausing import pause
 from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_readers import result, status
 from ..cpl.waiting import wait_for
@@ -41,7 +40,7 @@ result.method(ProcessModule)(lambda module: module.result_fluent)
 @pm_execute.method(Symbol, None)
 @pm_execute.method(type(None), None)
 def _execute_by_name(name, input_, *, task=None):
-    return pm_execute(module_called(name), input_, TASK, task or current_task())
+    return pm_execute(module_called(name), input_) if task is None else pm_execute(module_called(name), input_, TASK, task)
 
 
 @pm_execute.method(ProcessModule, None)
@@ -65,6 +64,7 @@ def _attempt(module, input_, caller):
         return error(not_running(module.name))
     before = module.request or (module.queue[0] if module.queue else None)
     request = Request(input_, caller)
+    park = request.waiter.kernel.park
     module.submit(request)
     try:
         while not request.finished:
@@ -72,7 +72,7 @@ def _attempt(module, input_, caller):
                 warn(SimpleWarning("Process module ~a already processing input. Waiting for it to become free.", module))
                 before = None
                 continue
-            pause(lambda: f"process module {module.name.name}")
+            park(lambda: f"process module {module.name.name}")
     except BaseException:
         if not request.finished:
             module.withdraw(request)

@@ -6,10 +6,10 @@ from ..cpl.failures import attempt, fail, signal_failure
 from ..lisp.data import list_from, one, truth
 from ..lisp.hooks import Hook
 from ..prolog.facts import built_in_group
-from ..prolog.query import ask
+from ..prolog.query import ask_all
 from ..prolog.terms import Var
 from .executing import pm_execute
-from .registry import get_running_process_module
+from .registry import running
 from .symbols import sym
 
 MATCHING, AVAILABLE = sym("CPM::MATCHING-PROCESS-MODULE"), sym("CPM::AVAILABLE-PROCESS-MODULE")
@@ -21,8 +21,9 @@ for _functor in (MATCHING, AVAILABLE, sym("CPM::PROJECTION-RUNNING")):
 
 
 def matching_names(designator):
-    """The names of modules that match ``designator`` and are available, in clause order, as a Python list."""
-    return [name for (name,) in ask(MATCHING, designator, Var()) if next(ask(AVAILABLE, name), None) is not None]
+    """The names of modules that match ``designator`` and are available, in clause order, each once, as a Python list."""
+    name = Var()
+    return ask_all(name, (MATCHING, designator, name), (AVAILABLE, name))
 
 
 def matching_process_module_names(action_designator):
@@ -31,7 +32,8 @@ def matching_process_module_names(action_designator):
 
 
 def running_matches(designator):
-    return [name for name in matching_names(designator) if get_running_process_module(name) is not None]
+    modules = running().modules
+    return [name for name in matching_names(designator) if name in modules]
 
 
 def matching_available_process_modules(action_designator, *, fail_if_none=None):
@@ -55,7 +57,7 @@ def pm_execute_matching(action_designator):
 
 def execute_by(names, designator):
     """Have the running modules ``names`` execute ``designator``, one after the other until one succeeds: the first value."""
-    observed = on_preparing_performing or on_finishing_performing
+    observed = on_preparing_performing.methods or on_finishing_performing.methods
     run_id = on_preparing_performing.first(designator, list_from(names)) if observed else None
     success = None
     try:

@@ -22,7 +22,6 @@ from ..cpl.ending import awaiting_death
 from ..cpl.errands import Errand
 from ..cpl.failure_types import PlanFailure, opened
 from ..cpl.fluents import make_fluent
-from ..cpl.pausing import pause
 from ..cpl.statuses import EVAPORATED
 from ..cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.task_variables import inherit
@@ -179,10 +178,12 @@ class ProcessModule(AbstractProcessModule):
             self.request.cancel()
 
     def _await_request(self):
-        self.sleeper = kernel.current()
+        if self.queue:
+            return
+        me = self.sleeper = kernel.current()
         try:
             while not self.queue:
-                pause(lambda: f"a request to process module {self.name.name}")
+                me.kernel.park(lambda: f"a request to process module {self.name.name}")
         finally:
             self.sleeper = None
 
@@ -191,7 +192,8 @@ class ProcessModule(AbstractProcessModule):
         self.request = request
         status, outcome = EVAPORATED, None
         try:
-            self.cancel.set(None)
+            if self.cancel.stored is not None:
+                self.cancel.set(None)
             self.caller.set(request.caller)
             self.input.set(request.input)
             self.status_fluent.set(RUNNING)

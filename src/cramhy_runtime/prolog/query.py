@@ -6,6 +6,7 @@ From Lisp: `prolog` takes a goal, returns ``nil`` or a lazy list with one bindin
 * ``first(goal, variable)`` is the value in the first solution;
 * ``ask(functor, *arguments)`` asks one predicate with Python values as arguments and `Var` objects where values
   are wanted, without building a goal: what designators use. It iterates over the values of the variables of each solution.
+  ``ask_all(variable, *goals)`` asks several together, and gives all values of one variable.
 
 Everything is computed on demand; a query that is dropped costs nothing more.
 """
@@ -152,6 +153,18 @@ def ask(functor, *arguments):
     m.prove((find_predicate(functor, len(arguments)).call, SOLVED, *arguments))
     while m.next_solution():
         yield tuple([resolve(variable) for variable in wanted])
+
+
+def ask_all(wanted, *goals):
+    """The values of the `Var` ``wanted`` in all solutions of ``goals`` together, a Python list without repetitions.
+
+    A goal is a tuple (functor, argument...) with arguments as in `ask`.
+    """
+    m, step, found = Machine(), SOLVED, {}
+    for functor, *arguments in reversed(goals):
+        step = (find_predicate(functor, len(arguments)).call, step, *arguments)
+    m.prove(step).drain(lambda: found.setdefault(resolve(wanted)))
+    return list(found)
 
 
 def query_var(var, function, query, *args):
