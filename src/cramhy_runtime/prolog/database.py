@@ -33,10 +33,9 @@ traced: set = set()
 class Predicate:
     """The code for goals with ``functor`` and ``arity`` arguments: ``call(machine, (call, continuation, *arguments))``.
 
-    ``relation`` is the `Relation` whose rows they are, if ``call`` is made and they are only that.
     """
 
-    __slots__ = ("functor", "arity", "call", "relation")
+    __slots__ = ("functor", "arity", "call", "_relation")
 
     def __init__(self, functor, arity):
         self.functor, self.arity = functor, arity
@@ -44,15 +43,21 @@ class Predicate:
 
     def forget(self):
         """Make the code anew at the next call."""
-        self.call, self.relation = self.compile_and_call, None
+        self.call, self._relation = self.compile_and_call, False
 
     def compile(self):
         """Make the code now. Code that runs meanwhile goes on with what it has."""
         entry = functors.get(self.functor)
         if entry is not None and entry.defined:
-            self.call, self.relation = entry.code(self.arity)
+            self.call, self._relation = entry.code(self.arity)
         else:
-            self.call = _undefined(self.functor)
+            self.call, self._relation = _undefined(self.functor), None
+
+    def as_relation(self):
+        """The `Relation` whose rows are all that goals can be; ``None`` if there is more to them."""
+        if self._relation is False:
+            self.compile()
+        return self._relation
 
     def compile_and_call(self, m, step):
         """The first call: make the code, then call it. A change of the database brings this function back."""

@@ -26,6 +26,7 @@ from . import (
 )
 from .database import find_predicate
 from cramhy_runtime.utilities.lazy_lists import tail
+from .joins import find_join
 from .machine import SOLVED, Machine
 from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, var_value, variables_of
 from .terms import UNSET, Var, import_term, resolve
@@ -66,6 +67,10 @@ class Proof(Machine):
             result = Cons(Cons(symbol, value), result)
         return result
 
+    def lazy_list(self):
+        """The binding lists of all solutions to come as a lazy list, its first element computed now."""
+        return Cons(self.bindings(), tail(self.lazy_list, self.remaining)) if self.next_solution() else None
+
     def remaining(self):
         """The binding lists of all solutions to come, as a Python list."""
         found = []
@@ -105,12 +110,8 @@ def prolog(query, binds=None):
         return type_error(query, "LIST")
     hooked = on_prepare_prolog_prove or on_finish_prolog_prove
     log = on_prepare_prolog_prove.first(query, binds) if hooked else None
-    proof = Proof(query, binds)
-
-    def rest():
-        return Cons(proof.bindings(), tail(rest, proof.remaining)) if proof.next_solution() else None
-
-    solutions = rest()
+    join = find_join(query) if binds is None and query is not None else None
+    solutions = Proof(query, binds).lazy_list() if join is None else join.lazy_list()
     if hooked:
         on_finish_prolog_prove(log, True if solutions is not None else None)
     return solutions
