@@ -19,6 +19,7 @@ from cramhy_runtime.utilities.patterns import variable
 
 from . import database
 from .bodies import CALL, CONSTRUCTS, CUT, FILTER, IF, OR, SOFT_IF, Bodies, Context, direct, flat, is_test, known_goal, may_cut
+from .holes import FILL, Holes, can_wait, hole_positions
 from .machine import fail
 from .matching import A_LIST, SAME, UNBOUND
 from .relations import compile_relation, index_key
@@ -87,8 +88,10 @@ def _weight(item):
     return count
 
 
-class PredicateCode(Bodies):
+class PredicateCode(Holes, Bodies):
     """The code of one predicate in the making. ``fitting``: pairs (argument patterns, clause)."""
+
+    waiting = False  # whether the clause to come may find a hole
 
     def __init__(self, predicate, fitting):
         super().__init__(f"<clauses of {predicate.functor!r}/{predicate.arity}>")
@@ -98,6 +101,11 @@ class PredicateCode(Bodies):
         self.weights = [_weight([clause.head, *(clause.goals or ())]) for _, clause in fitting]
         self.arguments = "".join(f", a{i}" for i in range(self.arity))
         self.looping = predicate.functor not in database.traced and any(map(self._repeats, self.goals))
+        self.repeating = Context(repeat="continue")
+        positions = [hole_positions(predicate.functor, patterns, goals) for (patterns, _), goals in zip(fitting, self.goals)]
+        telling = self._telling(range(len(fitting)), {})
+        self.hole = next((i for i in sum(positions, []) if i != telling), None) if self.looping else None
+        self.builders = {n for n, found in enumerate(positions) if self.hole in found}
         self.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses)
         self.tries, self.buckets, self.clause_names = {}, {}, {}
 
@@ -121,10 +129,14 @@ class PredicateCode(Bodies):
         return self.space["predicate"]
 
     def _loop(self, body):
+        if self.hole is not None:
+            self.emit("hole = None")
         self.emit("for _ in LOOP:")
         self.depth += 1
         body()
         self.depth -= 1
+        if self.hole is not None:
+            self.emit(FILL.format(self.hole))
         self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
         self.emit("if not m.choices: trail.clear()")
         self.emit(f"return P.call, k{self.arguments}")
@@ -178,8 +190,10 @@ class PredicateCode(Bodies):
         def fit(*wanted):
             return [n for n in numbers if kinds[n] is _ANY or any(kinds[n] is kind or kinds[n] == kind for kind in wanted)]
 
-        self._case(f"if {c} is Cons:", lambda: self._candidates(fit(_LIST), {**known, position: A_LIST}))
-        self._case(f"elif {c} is Var:", lambda: self._dispatch(numbers, {**known, position: UNBOUND}))
+        outermost = not known
+        telling = position if outermost else None
+        self._case(f"if {c} is Cons:", lambda: self._candidates(fit(_LIST), {**known, position: A_LIST}, telling))
+        self._case(f"elif {c} is Var:", lambda: (self._fill(outermost), self._dispatch(numbers, {**known, position: UNBOUND})))
         keys = {kinds[n]: self.fitting[n][0][position] for n in numbers if kinds[n] not in (_ANY, _LIST, _OTHER)}
         if len(keys) <= 4:
             for key, value in list(keys.items()):
@@ -187,12 +201,13 @@ class PredicateCode(Bodies):
                 test = f"{a} is {self.constant(value)}" if isinstance(value, Symbol) or value is None or value is True \
                     else f"{c} is int and {a} == {self.constant(value)}" if value.__class__ is int else None
                 if test and self._light(chosen):
-                    self._case(f"elif {test}:", lambda: self._candidates(chosen, {**known, position: SAME}))
+                    self._case(f"elif {test}:", lambda: self._candidates(chosen, {**known, position: SAME}, telling))
                     del keys[key]
         self._case(f"elif {c} is LazyTail or {c} is TermTail:", lambda: (
-            self.emit(f"{a} = {a}.force()"), self.emit(f"return P.call, k{self.arguments}")))
+            self._fill(outermost), self.emit(f"{a} = {a}.force()"), self.emit(f"return P.call, k{self.arguments}")))
         self.emit("else:")
         self.depth += 1
+        self._fill(outermost)
         if keys:
             index = self._bucket({key: fit(_OTHER, key) for key in keys})
             others = self._bucket(fit(_OTHER))
@@ -211,8 +226,20 @@ class PredicateCode(Bodies):
     def _light(self, numbers):
         return len(self.fitting) == 1 or sum(self.weights[n] for n in numbers) <= _HEAVY
 
-    def _candidates(self, numbers, known):
-        """Code that tries the clauses ``numbers``."""
+    def _fill(self, outermost):
+        if outermost and self.hole is not None:
+            self.emit(FILL.format(self.hole))
+
+    def _candidates(self, numbers, known, telling=None):
+        """Code that tries the clauses ``numbers``. ``telling``: the argument that chose them, where there may be a hole."""
+        if telling is not None and self.hole is not None:
+            if len(numbers) == 1 and numbers[0] in self.builders and known[telling] is A_LIST:
+                self._owned(numbers[0], lambda: self.turn_with_hole(numbers[0], self.hole, telling))
+                return
+            if len(numbers) == 1 and can_wait(self.fitting[numbers[0]][0], self.hole) and self._light(numbers):
+                self.waiting = True
+            elif numbers:
+                self._fill(True)
         if not numbers:
             self.emit("return fail(m)")
         elif self._light(numbers) and UNBOUND not in known.values():
@@ -268,7 +295,8 @@ class PredicateCode(Bodies):
             self.emit("b = len(m.choices)")
         if len(numbers) == 1:
             def last():
-                self.match_head(patterns, names, self._known(n, known))
+                waiting, self.waiting = self.waiting, False
+                self.match_head(patterns, names, self._known(n, known), self.hole if waiting else None)
                 self.body(goals, names, Context(repeat=repeat))
 
             self._owned(n, last)

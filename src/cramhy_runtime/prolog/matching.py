@@ -25,8 +25,8 @@ class Matching(Source):
     def fail_unless(self, test):
         self.emit(f"if not {test}: {self.failing}")
 
-    def match_head(self, patterns, names, known=None):
-        """Code for the arguments ``a0``, ``a1``, ...; ``known``: number of an argument → what is known of it."""
+    def match_head(self, patterns, names, known=None, hole=None):
+        """Code for the arguments ``a0``, ``a1``, ...; ``known``: argument → what is known of it; ``hole``: see ``holes.py``."""
         for i, pattern in enumerate(patterns):
             if isinstance(pattern, Rest):
                 break
@@ -35,7 +35,15 @@ class Matching(Source):
         # A variable that stands alone as an argument is that argument; the other occurrences must be the same as it.
         # Arguments may be the same variable, so once something is matched none is known to be unset.
         count = len(self.lines)
+        if hole is not None:
+            self.emit(f"if hole is not None: hole.cdr = {self.build(patterns[hole], names)}")
+            self.emit("else:")
+            self.depth += 1
+            self.match(patterns[hole], f"a{hole}", names, 0)
+            self.depth -= 1
         for i, pattern in enumerate(patterns):
+            if i == hole:
+                continue
             if isinstance(pattern, Rest):
                 self._match_rest(i, pattern, names)
             elif not (variable(pattern) and (pattern is ANONYMOUS or names[pattern] == f"a{i}")):

@@ -48,10 +48,10 @@ class Proof(Machine):
     def __init__(self, goal, binds=None):
         super().__init__(_Names(binds) if binds is not None else {})
         self.binds = binds
-        term = import_term(goal, self.names)
-        self.variables = [(symbol, variable) for symbol, variable in self.names.items()
-                          if binds is None or entry(symbol, binds) is None][::-1]
-        self.prove((_start, SOLVED, term))
+        self.start = _start, SOLVED, import_term(goal, self.names)
+        self.variables = [*self.names.items()][::-1]
+        if binds is not None:
+            self.variables = [(symbol, variable) for symbol, variable in self.variables if entry(symbol, binds) is None]
 
     def bindings(self):
         """The binding list of the solution."""

@@ -12,9 +12,8 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
 from cramhy_runtime.lisp.equality import equal_key
 
-from cramhy_runtime.utilities.lazy_lists import LazyTail
 from .machine import fail
-from .terms import UNSET, TermTail, Var, deref, undo, unify
+from .terms import UNSET, Var, deref, unify
 
 _BY_VALUE = frozenset([int, str, float, DoubleFloat])
 _WRITTEN_OUT = 4
@@ -43,34 +42,31 @@ class Relation:
     def __init__(self, rows):
         self.rows = rows
         self.arity = len(rows[0])
-        self.keyed = [all(column_key(row[i]) is not NotImplemented for row in rows) for i in range(self.arity)]
+        columns = range(self.arity)
+        self.keyed = [all(column_key(row[i]) is not NotImplemented for row in rows) for i in columns]
+        self.lists = [any(row[i].__class__ is Cons for row in rows) for i in columns]
         self.exact = all(index_key(value) is not NotImplemented for row in rows for value in row)
         self._tables = {}
 
-    def table(self, mask, whole=False):
-        """Known values → for each row that fits, its unknown values; the bare value when there is one.
+    def table(self, mask, kept=None):
+        """Known values → for each row that fits, the values of the columns ``kept``; the bare value when there is one.
 
-        ``mask``: bit i is set when argument i is known; when there is one, its bare value is the key. ``whole``: the rows as they are.
+        ``mask``: bit i is set when argument i is known; when there is one, its bare value is the key. ``kept``: by default the others.
         """
-        table = self._tables.get((mask, whole))
+        table = self._tables.get((mask, kept))
         if table is None:
             known = [i for i in range(self.arity) if mask >> i & 1]
-            kept = [i for i in range(self.arity) if whole or not mask >> i & 1]
+            columns = [i for i in range(self.arity) if not mask >> i & 1] if kept is None else kept
             table = {}
             for row in self.rows:
                 keys = [column_key(row[i]) for i in known]
-                rest = row[kept[0]] if len(kept) == 1 and not whole else tuple([row[i] for i in kept])
+                rest = row[columns[0]] if len(columns) == 1 else tuple([row[i] for i in columns])
                 table.setdefault(keys[0] if len(keys) == 1 else tuple(keys), []).append(rest)
-            self._tables[mask, whole] = table
+            self._tables[mask, kept] = table
         return table
-
-    def every(self):
-        """All rows, as `table` would give them."""
-        return self.table(0).get(())
 
     def call_general(self, m, step):
         """The call function for any goal."""
-        k = step[1]
         terms, mask, keys = [], 0, []
         for i, term in enumerate(step[2:]):
             term = deref(term)
@@ -81,14 +77,17 @@ class Relation:
             if key is not NotImplemented:
                 mask |= 1 << i
                 keys.append(key)
-        rows = self.table(mask, True).get(keys[0] if len(keys) == 1 else tuple(keys)) if mask else self.rows
-        return fail(m) if rows is None else _unify_rows(m, k, rows, terms, 0)
+        every = tuple(range(self.arity))
+        rows = self.table(mask, every).get(keys[0] if len(keys) == 1 else tuple(keys), ())
+        return _unify_rows(m, step[1], [(row,) for row in rows] if self.arity == 1 else rows, terms, 0)
 
     def call_function(self):
         """The call function, written for this relation if it is simple enough."""
         if not self.arity:
             return _constant(len(self.rows))
-        return self._written() if self.exact and self.arity <= _WRITTEN_OUT else self.call_general
+        if self.arity <= (4 if self.exact else 3) and all(self.keyed):
+            return self._written()
+        return self.call_general
 
     def _written(self):
         arguments = ", ".join(f"a{i}" for i in range(self.arity))
@@ -96,42 +95,51 @@ class Relation:
         for i in range(self.arity):
             lines += [f"    while a{i}.__class__ is Var:", f"        r = a{i}.ref", "        if r is UNSET: break", f"        a{i} = r",
                       f"    c{i} = a{i}.__class__",
-                      f"    if c{i} is not Symbol and c{i} is not Var:",
-                      f"        a{i} = index_key(a{i})",
-                      f"        if a{i} is NotImplemented: return general(m, step)"]
+                      f"    if c{i} is Symbol: k{i} = a{i}",
+                      f"    elif c{i} is not Var:",
+                      f"        k{i} = column_key(a{i})" if self.lists[i] else f"        k{i} = index_key(a{i})",
+                      f"        if k{i} is NotImplemented: return general(m, step)"]
 
-        def tests(i, known, depth):
+        def tests(i, known, lists, depth):
             indent = "    " * depth
-            if i < self.arity:
-                lines.append(f"{indent}if c{i} is Var:")
-                tests(i + 1, known, depth + 1)
-                lines.append(f"{indent}else:")
-                tests(i + 1, [*known, i], depth + 1)
+            if i == self.arity:
+                lines.extend(indent + line for line in self._leaf(known, lists))
                 return
-            unknown = [j for j in range(self.arity) if j not in known]
-            mask = sum(1 << j for j in known)
-            for n, j in enumerate(unknown):
-                for other in unknown[:n]:
-                    lines.append(f"{indent}if a{other} is a{j}: return general(m, step)")
-            if not known:
-                lines.append(f"{indent}rows = every")
-            else:
-                key = f"a{known[0]}" if len(known) == 1 else f"({', '.join(f'a{j}' for j in known)})"
-                lines.append(f"{indent}rows = (tables.get(({mask}, False)) or table({mask})).get({key})")
-                lines.append(f"{indent}if rows is None: return fail(m)")
-            if not unknown:
-                lines.append(f"{indent}return again(m, k, len(rows)) if len(rows) > 1 else k")
-            else:
-                lines.append(f"{indent}return set_{min(len(unknown), 3)}(m, k, rows, "
-                             + (f"[{', '.join(f'a{j}' for j in unknown)}])" if len(unknown) > 2 else
-                                ", ".join(f"a{j}" for j in unknown) + ")"))
+            lines.append(f"{indent}if c{i} is Var:")
+            tests(i + 1, known, lists, depth + 1)
+            if self.lists[i]:
+                lines.append(f"{indent}elif c{i} is Cons:")
+                tests(i + 1, [*known, i], [*lists, i], depth + 1)
+            lines.append(f"{indent}else:")
+            tests(i + 1, [*known, i], lists, depth + 1)
 
-        tests(0, [], 1)
-        space = {"Var": Var, "UNSET": UNSET, "Symbol": Symbol, "index_key": index_key, "general": self.call_general, "fail": fail,
-                 "every": self.every(), "tables": self._tables, "table": self.table, "again": _again, "set_1": _set_one, "set_2": _set_two,
-                 "set_3": _set_many}
+        tests(0, [], [], 1)
+        space = {"Var": Var, "UNSET": UNSET, "Symbol": Symbol, "Cons": Cons, "index_key": index_key, "column_key": column_key,
+                 "general": self.call_general, "fail": fail, "tables": self._tables, "table": self.table, "again": _again,
+                 "set_1": _set_one, "set_2": _set_two, "set_3": _set_many, "unify": unify, "unify_rows": _unify_rows,
+                 "unify_one": _unify_one}
         exec("\n".join(lines), space)
         return space["call"]
+
+    def _leaf(self, known, lists):
+        """The lines for goals of which the arguments ``known`` are known, and ``lists`` among them are lists."""
+        unknown = [j for j in range(self.arity) if j not in known]
+        for n, j in enumerate(unknown):
+            for other in unknown[:n]:
+                yield f"if a{other} is a{j}: return general(m, step)"
+        mask = sum(1 << j for j in known)
+        kept = tuple(j for j in range(self.arity) if j in unknown or j in lists) if lists else None
+        key = f"k{known[0]}" if len(known) == 1 else f"({', '.join(f'k{j}' for j in known)})"
+        yield f"rows = (tables.get(({mask}, {kept})) or table({mask}, {kept})).get({key})"
+        yield "if rows is None: return fail(m)"
+        if lists:
+            terms = ", ".join(f"a{j}" for j in kept)
+            yield f"return unify_one(m, k, rows, {terms}, 0)" if len(kept) == 1 else f"return unify_rows(m, k, rows, ({terms}), 0)"
+        elif not unknown:
+            yield "return again(m, k, len(rows)) if len(rows) > 1 else k"
+        else:
+            terms = ", ".join(f"a{j}" for j in unknown)
+            yield f"return set_{min(len(unknown), 3)}(m, k, rows, {f'[{terms}]' if len(unknown) > 2 else terms})"
 
 
 def compile_relation(rows):
@@ -250,4 +258,23 @@ def _unify_rows(m, k, rows, terms, i):
     return fail(m)
 
 
-__all__ = ["LazyTail", "Relation", "TermTail", "column_key", "compile_relation", "index_key", "undo"]
+def _retry_one(m, step):
+    m.choices.pop()
+    return _unify_one(m, step[1], step[3], step[4], step[5])
+
+
+def _unify_one(m, k, rows, term, i):
+    """The same for a single argument."""
+    trail = m.trail
+    height = len(trail)
+    count = len(rows)
+    while i < count:
+        value = rows[i]
+        i += 1
+        if unify(term, value, trail):
+            if i < count:
+                m.choices.append((_retry_one, k, height, rows, term, i))
+            return k
+        while len(trail) > height:
+            trail.pop().ref = UNSET
+    return fail(m)

@@ -94,6 +94,20 @@ def import_term(term, table):
         return variable
     if kind is not Cons:
         return None if term is False else term
+    cell = term
+    while True:  # as far as nothing changes
+        car = cell.car
+        kind = car.__class__
+        if kind is Symbol or kind is Keyword:
+            if car.name[:1] == "?":
+                break
+        elif kind is Cons:
+            break
+        cell = cell.cdr
+        if cell.__class__ is not Cons:
+            if cell is None:
+                return term
+            break
     cars, changed, cell = [], False, term
     while cell.__class__ is Cons:
         car = cell.car
@@ -145,6 +159,18 @@ _CYCLE_SUSPECTED = 1_000_000
 
 
 def _resolve_list(term, names):
+    cell, count = term, 0
+    while count < _CYCLE_SUSPECTED:  # as far as nothing changes
+        car = cell.car
+        kind = car.__class__
+        if kind is Var or kind is LazyTail or kind is TermTail or kind is Cons:
+            break
+        cell = cell.cdr
+        if cell.__class__ is not Cons:
+            if cell is None:
+                return term
+            break
+        count += 1
     cars, changed, cell = [], False, term
     while True:
         kind = cell.__class__
