@@ -13,6 +13,7 @@ from measuring import Table, repeat
 from cramhy_runtime import cpl, image, kernel
 from cramhy_runtime import designators as desig
 from cramhy_runtime import process_modules as pm
+from cramhy_runtime.designators.protocol import reference
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.packages import intern, keyword, sym
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
@@ -47,17 +48,17 @@ def reasoning_and_acting(table, navigation):
 
     def refused():
         try:
-            desig.reference(fresh(incomplete))
+            reference(fresh(incomplete))
         except desig.DesignatorError:
             pass
 
     motion = fresh()
-    desig.reference(motion)
+    reference(motion)
     table.row("making a designator", repeat(fresh), 200, goal=5, cram="0.38")
     table.row("printing a designator", repeat(lambda: prin1_to_string(motion)), 40, goal=10, cram="1.7")
-    table.row("reference of a fresh motion", repeat(lambda: desig.reference(fresh())), 40, goal=15, cram="193")
+    table.row("reference of a fresh motion", repeat(lambda: reference(fresh())), 40, goal=15, cram="193")
     table.row("the same when it cannot be resolved", repeat(refused), 40, goal=20, cram="190")
-    table.row("cached reference", repeat(lambda: desig.reference(motion)), 2000, goal=0.2, cram="0.06")
+    table.row("cached reference", repeat(lambda: reference(motion)), 2000, goal=0.2, cram="0.06")
 
     def acting():
         table.row("matching process modules", repeat(lambda: pm.matching_process_module_names(motion)), 50, goal=10, cram="94")

@@ -33,7 +33,7 @@ def make(kind, *pairs):
 
 def python(thing):
     """Lisp lists as Python lists, symbols as their names."""
-    if isinstance(thing, Cons):
+    if isinstance(thing, (Cons, list)):
         return [python(item) for item in thing]
     return getattr(thing, "name", thing)
 

@@ -119,9 +119,8 @@ def python_exception(condition):
     cause = error.__cause__
     if cause is None or getattr(cause, "__lisp_condition__", None) is not error:
         cause = error
-    told = getattr(cause, "__notes__", ())
     for label, other in getattr(error, "beside", ()):  # what else is to be told stands below the traceback
         note = f"{label}: {type(python_exception(other)).__name__}: {other}"
-        if note not in told:
+        if note not in getattr(cause, "__notes__", ()):
             cause.add_note(note)
     return cause

@@ -1,16 +1,22 @@
 """Designators: symbolic descriptions that are resolved when their meaning is needed. Usable from Python:
 
-    from cramhy_runtime import designators as desig
-    from cramhy_runtime.lisp.data import lisp_list
-    from cramhy_runtime.lisp.packages import keyword
+    from cramhy_runtime.designators import Motion, motion_grounding, reference
 
-    motion = desig.make_designator(keyword("MOTION"), lisp_list(lisp_list(keyword("TYPE"), keyword("DRIVING"))))
-    desig.reference(motion)        # the first solution of motion-grounding, or a DesignatorError
+    class Driving(Motion):
+        speed: float
+
+    @motion_grounding(Driving)
+    def drive_command(motion):
+        return ["drive", motion.speed]
+
+    reference(Driving(speed=1.5))        # ["drive", 1.5], or a DesignatorError where nothing is found
+
+The page docs/reasoning-in-python.md tells the whole story.
 
 ``classes`` the kinds and their properties · ``protocol`` what one can ask of them · ``equating`` chains of designators for one
 thing · ``resolution``, ``locations`` from description to thing · ``hints`` why not · ``predicates`` for Prolog · ``syntax`` the
-notation ``(a motion ...)`` · ``printing`` · ``language_support`` with-designators · ``package`` the Lisp faces. Reference:
-designators.md.
+notation ``(a motion ...)`` · ``printing`` · ``language_support`` with-designators · ``package`` the Lisp faces. Python's face:
+``python_kinds`` making and reading them, ``python_resolution``, ``python_grounding``. Reference: designators.md.
 """
 
 from .. import cpl as _cpl  # noqa: F401  the floor below comes first
@@ -29,11 +35,16 @@ from .classes import (
                       make_all_designator,
                       make_designator,
 )
-from .equating import current_desig, desig_equal, equate, first_desig
-from .resolution import next_solution, reference, resolve_designator
+from .equating import current_desig, desig_equal, first_desig
+from .python_grounding import action_grounding, forget, location_generator, location_validator, motion_grounding
+from .python_kinds import Action, Human, Location, Motion, Object, properties, property_values, replace
+from .python_resolution import equate, next_solution, reference, solutions
+from .resolution import resolve_designator
 
 __all__ = [
-    "ActionDesignator", "current_desig", "desig_equal", "desig_prop_value", "desig_prop_values", "Designator",
-    "DesignatorError", "equate", "first_desig", "HumanDesignator", "LocationDesignator", "make_all_designator",
-    "make_designator", "MotionDesignator", "next_solution", "ObjectDesignator", "reference", "resolve_designator",
+    "Action", "action_grounding", "ActionDesignator", "current_desig", "desig_equal", "desig_prop_value", "desig_prop_values", "Designator",
+    "DesignatorError", "equate", "first_desig", "forget", "Human", "HumanDesignator", "Location", "location_generator",
+    "location_validator", "LocationDesignator", "make_all_designator", "make_designator", "Motion", "motion_grounding",
+    "MotionDesignator", "next_solution", "Object", "ObjectDesignator", "properties", "property_values", "reference", "replace",
+    "resolve_designator", "solutions",
 ]  # fmt: skip

@@ -53,10 +53,14 @@ HELPERS = {
 }
 
 
+_filled: list = []
+
+
 def fill():
     """Define the faces. Called by `image.boot`, and by Python code that uses a room without an image; calling it again does nothing."""
-    if COMMON_LISP.locked:
+    if _filled:
         return
+    _filled.append(True)
     for name in MODULES:
         module = importlib.import_module(f"{__package__}.{name}")
         names = " ".join(lisp_name for lisp_name in module.LISP_NAMES.split()

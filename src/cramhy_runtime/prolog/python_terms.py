@@ -97,7 +97,7 @@ class Variable:
     @property
     def name(self) -> str:
         """Its Python name: an answer has an attribute called so."""
-        return _python_name(self.symbol.name[1:])
+        return python_name(self.symbol.name[1:])
 
     def __iter__(self) -> Iterator[Tail]:
         """For ``[first, *V.rest]``: the variable as the rest of a list, or of the arguments of a goal."""
@@ -149,7 +149,7 @@ class Variables:
     def __getattr__(self, name: str) -> Variable:
         if name.startswith("__"):
             raise AttributeError(name)
-        return self.of(ANONYMOUS if name == "_" else USER.intern("?" + _lisp_name(name)))
+        return self.of(ANONYMOUS if name == "_" else USER.intern("?" + lisp_name(name)))
 
     def of(self, symbol: Symbol) -> Variable:
         """The variable of a symbol of Lisp; one without a package is met once only, and not remembered."""
@@ -174,7 +174,7 @@ class Name:
 
     @property
     def python_name(self) -> str:
-        return _python_name(self.symbol.name)
+        return python_name(self.symbol.name)
 
     def __call__(self, *arguments: Any) -> Goal:
         return make_goal(self.symbol, arguments)
@@ -199,7 +199,7 @@ class Names:
         if name.startswith("__"):
             raise AttributeError(name)
         known = attribute_symbols(self._package, name)
-        return Name(known[0]) if known else self[_lisp_name(name)]
+        return Name(known[0]) if known else self[lisp_name(name)]
 
     def __getitem__(self, name: str) -> Name:
         symbol = self._package.intern(name.upper())
@@ -217,7 +217,7 @@ class Keywords:
     def __getattr__(self, name: str) -> Keyword:
         if name.startswith("__"):
             raise AttributeError(name)
-        return self[_lisp_name(name)]
+        return self[lisp_name(name)]
 
     def __getitem__(self, name: str) -> Keyword:
         found: Keyword = KEYWORD.intern(name.upper())
@@ -241,11 +241,11 @@ def import_predicates(*symbols: Any) -> None:
             USER.export(symbol)
 
 
-def _lisp_name(name: str) -> str:
+def lisp_name(name: str) -> str:
     return (name.rstrip("_") or name).replace("_", "-").upper()
 
 
-def _python_name(name: str) -> str:
+def python_name(name: str) -> str:
     return name.lower().replace("-", "_")
 
 
@@ -329,7 +329,7 @@ def function_symbol(function: Callable[..., Any]) -> Symbol:
     found = known.get("__lisp_symbol__") if known is not None else None
     if found is None:
         named = getattr(function, "func", function)  # what a partial calls
-        found = Symbol(_lisp_name(getattr(named, "__name__", "function")))
+        found = Symbol(lisp_name(getattr(named, "__name__", "function")))
         found.function = _LispFunction(function)
         if isinstance(function, (FunctionType, functools.partial)):
             function.__dict__["__lisp_symbol__"] = found

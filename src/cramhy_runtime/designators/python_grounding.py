@@ -1,0 +1,264 @@
+"""Grounding written in Python: decorators for functions that say what a designator stands for.
+
+    @motion_grounding(Driving)
+    def drive_command(motion):
+        return ["drive", motion.speed]              # one solution; yield several, or return None for none
+
+    @action_grounding(Fetching)
+    def fetch(action):
+        return fetch_it, action.object              # the plan function and its arguments
+
+    @location_generator(On, priority=5)
+    def on_the_table(place):
+        yield from grid(place.table)                # candidates, as many as are wanted
+
+    @location_validator(priority=5)
+    def reachable(place, candidate):
+        return distance(candidate) < 1.2            # True accepts, False refuses, None does not mind
+
+The class says for which designators the function is asked; without one it is asked for all of the kind. A motion or action grounding is
+a rule of a fact group of its own, so that rules of Lisp, their order and the hints of errors count it as one of theirs; generators and
+validators are registered with their priority. A second definition of the same name in the same module replaces the first one, and
+`forget` takes a function out again. The functions stay what they are. Source: designators.md 7.1 and 8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, TypeVar, overload
+
+from ..lisp.data import Keyword, Symbol
+from ..lisp.packages import sym
+from ..prolog import natives
+from ..prolog.python_ground import reasoning
+from ..prolog.python_rules import fact_group, remove_fact_group
+from ..prolog.python_terms import USER, Goal, Name, V, import_predicates, kw, lisp_name, to_lisp, to_python
+from ..prolog.terms import deref, import_term
+from ..utilities.lazy_lists import from_iterator
+from . import locations
+from .classes import ActionDesignator, LocationDesignator, MotionDesignator
+from .locations import ACCEPT, MAYBE_REJECT, UNKNOWN
+from .python_kinds import TYPE, Kind, type_name
+
+F = TypeVar("F", bound=Callable[..., Any])
+PYTHON_GROUNDING = sym("CRAMHY::PYTHON-GROUNDING")
+DESIG_PROP, ONCE = sym("DESIG::DESIG-PROP"), sym("CRAM-PROLOG::ONCE")
+REJECT = kw.reject
+VERDICTS = (ACCEPT, UNKNOWN, MAYBE_REJECT, REJECT)
+_forgetting: dict[Callable[..., Any], Callable[[], None]] = {}
+
+import_predicates(*map(sym, """DESIG::DESIG-PROP DESIG::ACTION-GROUNDING DESIG::MOTION-GROUNDING DESIG::LOCATION-GROUNDING
+    DESIG::DESIG-REFERENCE DESIG::DESIGNATOR-GROUNDINGS DESIG::CURRENT-DESIGNATOR DESIG::LOC-DESIG? DESIG::OBJ-DESIG? DESIG::ACTION-DESIG?
+    DESIG::MOTION-DESIG? DESIG::DESIG-DESCRIPTION DESIG::EFFECTIVE-DESIGNATOR DESIG::DESIG-LOCATION-PROP DESIG::EQUATED-DESIGS""".split()))
+
+
+class Grounding:
+    """A function in Python that grounds designators, as it stands in the rule."""
+
+    def __init__(self, function: Callable[..., Any], what: str, form: str):
+        self.function, self.what, self.form = function, what, form
+
+    @property
+    def where(self) -> str:
+        code = getattr(self.function, "__code__", None)
+        place = f" ({code.co_filename}:{code.co_firstlineno})" if code is not None else ""
+        return f"the {self.what} {getattr(self.function, '__name__', self.function)}{place}"
+
+    def __repr__(self) -> str:
+        return f"<{self.where}>"
+
+    def called(self, designator: Any, step: Callable[[], Any]) -> Any:
+        """``step()``, whose exceptions are told for which designator they came up."""
+        try:
+            return step()
+        except Exception as problem:
+            note = f"This happened in {self.where}, for {one_line(designator)}."
+            if note not in getattr(problem, "__notes__", ()):
+                problem.add_note(note)
+            raise
+
+    def solutions(self, designator: Any) -> Iterator[Any]:
+        """What the function gives for ``designator``, one after the other, as Lisp data."""
+        result = self.called(designator, lambda: self.function(designator))
+        if result is None:
+            return
+        if not hasattr(result, "__next__"):
+            yield self.called(designator, lambda: self.lisp_solution(result))
+            return
+        while True:
+            value = self.called(designator, lambda: next(result, _END))
+            if value is _END:
+                return
+            if value is not None:
+                yield self.called(designator, partial(self.lisp_solution, value))
+
+    def lisp_solution(self, value: Any) -> Any:
+        """``value`` as the rest of CRAM wants it: a command of an action is a list."""
+        if self.what != "action grounding":
+            return to_lisp(value)
+        command = value if isinstance(value, (tuple, list)) and value else [value]
+        if not (callable(command[0]) or isinstance(command[0], (Symbol, Name))):
+            raise TypeError(f"An action grounding gives a plan function and its arguments, (pick_up, cup), not {value!r}.")
+        return to_lisp(list(command))
+
+
+_END = object()
+
+
+def one_line(designator: Any) -> str:
+    """A designator as text in one line."""
+    return " ".join(repr(designator).split())
+
+
+@natives.predicate("CRAMHY::PYTHON-GROUNDING")
+def python_grounding(m: Any, grounding: Any, designator: Any, solution: Any) -> Iterator[None]:
+    """``(python-grounding function designator ?solution)``: what the function of a `Grounding` gives."""
+    for value in deref(grounding).solutions(deref(designator)):
+        if m.unify(solution, import_term(value, {})):
+            yield
+
+
+@overload
+def motion_grounding(kind: type[MotionDesignator], /) -> Callable[[F], F]: ...
+@overload
+def motion_grounding(function: F, /) -> F: ...
+def motion_grounding(given: Any) -> Any:
+    """Decorator: ``function(motion)`` gives what a motion stands for, mostly a command for a process module; see the head."""
+    return _decorated(given, MotionDesignator, lambda function, kind: _define_rule(function, kind, "motion"))
+
+
+@overload
+def action_grounding(kind: type[ActionDesignator], /) -> Callable[[F], F]: ...
+@overload
+def action_grounding(function: F, /) -> F: ...
+def action_grounding(given: Any) -> Any:
+    """Decorator: ``function(action)`` gives the plan function for an action and its arguments; see the head of this module."""
+    return _decorated(given, ActionDesignator, lambda function, kind: _define_rule(function, kind, "action"))
+
+
+@overload
+def location_generator(kind: type[LocationDesignator], /, *, priority: int = 10) -> Callable[[F], F]: ...
+@overload
+def location_generator(*, priority: int = 10) -> Callable[[F], F]: ...
+@overload
+def location_generator(function: F, /) -> F: ...
+def location_generator(given: Any = None, /, *, priority: int = 10) -> Any:
+    """Decorator: ``function(location)`` gives candidates for a place, the best first; generators of lower priority are asked first."""
+    return _decorated(given, LocationDesignator, lambda function, kind: _define_generator(function, kind, priority))
+
+
+@overload
+def location_validator(kind: type[LocationDesignator], /, *, priority: int = 10) -> Callable[[F], F]: ...
+@overload
+def location_validator(*, priority: int = 10) -> Callable[[F], F]: ...
+@overload
+def location_validator(function: F, /) -> F: ...
+def location_validator(given: Any = None, /, *, priority: int = 10) -> Any:
+    """Decorator: ``function(location, candidate)`` judges a candidate.
+
+    True accepts it, False refuses it, ``None`` does not mind; ``kw.maybe_reject`` refuses it unless another one accepts it.
+    """
+    return _decorated(given, LocationDesignator, lambda function, kind: _define_validator(function, kind, priority))
+
+
+def _decorated(given: Any, cls: type, define: Callable[[Any, Kind | None], None]) -> Any:
+    if isinstance(given, type) or given is None:
+        if given is not None and not issubclass(given, cls):
+            raise TypeError(f"{given.__name__} does not describe {type_name(cls(None))}s, which this decorator is for.")
+        if given is not None and not isinstance(given, Kind):
+            raise TypeError(f"{given.__name__} is the class of all {type_name(cls(None))}s. Leave it out, or name a declared type.")
+
+        def decorate(function: Any) -> Any:
+            define(function, given)
+            return function
+
+        return decorate
+    define(given, None)
+    return given
+
+
+def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> None:
+    grounding = Grounding(function, f"{what} grounding", what)
+    name, head = Name(_symbol(function)), sym(f"DESIG::{what.upper()}-GROUNDING")
+    goals = [Goal(to_lisp([Name(DESIG_PROP), V.designator, [TYPE, kind.type_]]))] if kind is not None and kind.type_ is not None else []
+    if kind is not None:
+        goals += [Goal(to_lisp([Name(ONCE), [Name(DESIG_PROP), V.designator, [kw[lisp_name(field)], V._]]])) for field in kind.required]
+    with fact_group(name, extends=[head]) as group:
+        group.rule(Goal(to_lisp([Name(head), V.designator, V.solution])), *goals,
+                   Goal(to_lisp([Name(PYTHON_GROUNDING), grounding, V.designator, V.solution])))
+    _forgetting[function] = lambda: remove_fact_group(name)
+
+
+def _symbol(function: Callable[..., Any]) -> Symbol:
+    """The name under which ``function`` is known: that of its module and itself."""
+    found: Symbol = USER.intern(f"{function.__module__}.{function.__qualname__}".replace(".<locals>", "").replace("_", "-").upper())
+    return found
+
+
+def _define_generator(function: Callable[..., Any], kind: Kind | None, priority: int) -> None:
+    grounding, name = Grounding(function, "location generator", "location"), _symbol(function)
+
+    def candidates(location: Any) -> Any:
+        if kind is not None and not isinstance(location, kind):
+            return None
+        found = grounding.called(location, lambda: _iterated(function(location)))
+        return from_iterator(_lisp_candidates(grounding, location, found))
+
+    name.function = candidates
+    with reasoning():
+        locations.register_location_generator(priority, name)
+    _forgetting[function] = lambda: locations.delete_location_generator_function(name)
+
+
+def _iterated(result: Any) -> Iterator[Any]:
+    if result is None:
+        return iter(())
+    if isinstance(result, (str, bytes, dict)) or not hasattr(result, "__iter__"):
+        raise TypeError(f"A location generator yields candidates, or returns a list of them, not {result!r}.")
+    return iter(result)
+
+
+def _lisp_candidates(grounding: Grounding, location: Any, found: Iterator[Any]) -> Iterator[Any]:
+    while True:
+        candidate = grounding.called(location, lambda: next(found, _END))
+        if candidate is _END:
+            return
+        yield to_lisp(candidate)
+
+
+def _define_validator(function: Callable[..., Any], kind: Kind | None, priority: int) -> None:
+    grounding, name = Grounding(function, "location validator", "location"), _symbol(function)
+
+    def verdict(location: Any, candidate: Any) -> Any:
+        if kind is not None and not isinstance(location, kind):
+            return UNKNOWN
+        return grounding.called(location, lambda: _verdict(function(location, to_python(candidate))))
+
+    name.function = verdict
+    with reasoning():
+        locations.register_location_validation_function(priority, name)
+    _forgetting[function] = lambda: locations.delete_location_validation_function(name)
+
+
+def _verdict(answer: Any) -> Keyword:
+    if answer.__class__.__module__ == "numpy":
+        answer = answer.item()
+    if answer is True:
+        return ACCEPT
+    if answer is False:
+        return REJECT
+    if answer is None:
+        return UNKNOWN
+    if answer in VERDICTS:
+        found: Keyword = answer
+        return found
+    raise TypeError(f"A validator returns True, False, None or kw.maybe_reject, not {answer!r}.")
+
+
+def forget(function: Callable[..., Any]) -> None:
+    """Take out what a decorator of this module made of ``function``; for another one nothing is done."""
+    taking_out = _forgetting.pop(function, None)
+    if taking_out is not None:
+        taking_out()
+

@@ -1,0 +1,312 @@
+"""Designators as Python writes them: ``Motion(type=kw.driving, speed=1.5)`` is ``(a motion (type driving) (speed 1.5))``.
+
+`Motion`, `Action`, `Location`, `Object` and `Human` make designators. A class derived from one declares a type of them, as a
+dataclass does:
+
+    class Driving(Motion):              # the type :driving
+        speed: float                    # m/s
+        angle: float = 0.0
+
+    motion = Driving(speed=1.5)
+
+What comes out is a designator like any other, and a description of the same type that was written in Lisp is a ``Driving``, too:
+`isinstance` looks at the kind, the type, and whether the properties without default are there. So ``match`` works as well.
+
+Properties are read as attributes (``motion.speed``) or items (``motion["speed"]``), and never changed; `replace` makes a new designator.
+A key in ``Python_style`` is the keyword ``:python-style``. ``None`` leaves a property out, as ``(when ...)`` does. Values are mapped as
+in Prolog (`python_terms`): strings are strings, names like those of types are keywords, ``kw.driving``. Several values of one key, and
+names that Python does not allow, are given as pairs in front: ``Motion(("goal", 1), ("goal", 2), type=kw.driving)``.
+Designators are equal by identity, and shown as Lisp prints them. Source: designators.md 3 to 5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, dataclass_transform
+
+from ..lisp.data import Cons, Keyword, Symbol, lisp_list, list_from
+from ..lisp.packages import near_names
+from ..lisp.printer.printer import prin1_to_string
+from ..lisp.python.python_names import lisp_spelling
+from ..prolog.python_ground import reasoning
+from ..prolog.python_terms import kw, lisp_name, nil_as, python_name, show, to_lisp, to_python
+from . import package as _package  # noqa: F401  how designators are printed, and the functions of their package
+from .classes import (
+    ActionDesignator,
+    Designator,
+    HumanDesignator,
+    LocationDesignator,
+    MotionDesignator,
+    ObjectDesignator,
+    new,
+)
+
+TYPE = kw.type
+_OWN = frozenset(name for cls in Designator.__mro__ for name in vars(cls) if not name.startswith("_"))
+"""The attributes that every designator has, whatever its properties are."""
+_declared: dict[tuple[type, Keyword], Kind] = {}
+
+
+@dataclass_transform(kw_only_default=True)
+class Kind(type):
+    """The class of `Motion` and its like, and of the types that are derived from them."""
+
+    designators: type
+    """The class of the designators of this kind."""
+    type_: Keyword | None
+    """The value of their property ``:type``; ``None`` for a kind as such."""
+    fields: dict[str, Any]
+    """The declared properties: Python name → annotation."""
+    defaults: dict[str, Any]
+
+    def __new__(mcs, name: str, bases: tuple[type, ...], body: dict[str, Any], of: type | None = None, type: Any = None) -> Kind:  # noqa: A002
+        made = super().__new__(mcs, name, bases, body)
+        if of is not None:
+            made.designators, made.type_, made.fields, made.defaults = of, None, {}, {}
+            return made
+        parent: Any = bases[0]
+        made.designators = parent.designators
+        made.type_ = _type_keyword(name, type)
+        own = body.get("__annotations__", {})
+        made.fields = {**parent.fields, **{field: annotation for field, annotation in own.items() if "ClassVar" not in str(annotation)}}
+        made.defaults = {**parent.defaults, **{field: body[field] for field in own if field in body}}
+        for field in own:
+            _check_name(field, name)
+        _declared[made.designators, made.type_] = made
+        return made
+
+    def __init__(cls, name: str, bases: tuple[type, ...], body: dict[str, Any], **options: Any):
+        super().__init__(name, bases, body)
+
+    def __call__(cls, *pairs: Any, **properties: Any) -> Any:
+        return new(cls.designators, list_from([*map(_pair, pairs), *cls._entries(properties)]))
+
+    def _entries(cls, properties: dict[str, Any]) -> Iterator[Cons]:
+        if cls.type_ is None:
+            for name in properties:
+                _check_name(name, cls.__name__)
+            if isinstance(properties.get("type"), str):
+                raise TypeError(f"The type of a designator is a keyword: {cls.__name__}(type=kw.{properties['type']}). "
+                                "A string is never the same as it.")
+            given = properties
+        else:
+            cls._check_given(properties)
+            yield lisp_list(TYPE, cls.type_)
+            given = {name: properties.get(name, cls.defaults.get(name)) for name in cls.fields}
+        for name, value in given.items():
+            if value is not None:
+                yield lisp_list(kw[lisp_name(name)], to_lisp(value))
+
+    def _check_given(cls, properties: dict[str, Any]) -> None:
+        for name in properties:
+            if name not in cls.fields:
+                near = near_names(name, cls.fields, 1)
+                hint = f" Did you mean {near[0]!r}?" if near else f" It has: {', '.join(cls.fields) or 'none'}."
+                raise TypeError(f"{cls.__name__} has no property {name!r}.{hint}")
+        missing = [name for name in cls.required if name not in properties]
+        if missing:
+            raise TypeError(f"{cls.__name__} needs the propert{'ies' if len(missing) > 1 else 'y'} {', '.join(map(repr, missing))}.")
+
+    @property
+    def required(cls) -> list[str]:
+        """The declared properties without default."""
+        return [name for name in cls.fields if name not in cls.defaults]
+
+    def __instancecheck__(cls, thing: Any) -> bool:
+        if not isinstance(thing, cls.designators):
+            return False
+        return cls.type_ is None or cls._fits(thing)
+
+    def _fits(cls, designator: Any) -> bool:
+        if value_of(designator, TYPE) is cls.type_:
+            return all(_entry(designator, lisp_name(name)) is not None for name in cls.required)
+        derived: Any = type.__subclasses__(cls)  # type: ignore[arg-type, var-annotated]
+        return any(other._fits(designator) for other in derived)
+
+
+def _type_keyword(class_name: str, given: Any) -> Keyword:
+    if given is None:
+        return kw[lisp_spelling(class_name)]
+    if isinstance(given, str):
+        return kw[lisp_name(given)]
+    if isinstance(given, Keyword):
+        return given
+    raise TypeError(f"The type of {class_name} is to be a keyword or its name, not {given!r}: "
+                    f"class {class_name}(Motion, type=\"driving\").")
+
+
+def _check_name(name: str, of: str) -> None:
+    if name in _OWN:
+        raise TypeError(f"A property of {of} cannot be called {name!r}: designators have an attribute of that name. "
+                        f"Give it as a pair, {of}((\"{name}\", value)), and read designator[\"{name}\"].")
+
+
+def _pair(pair: Any) -> Cons:
+    if isinstance(pair, (tuple, list)) and len(pair) == 2 and isinstance(pair[0], (str, Symbol)):
+        return lisp_list(_key(pair[0]), to_lisp(pair[1]))
+    raise TypeError(f"{pair!r} is no property. In front of the keyword arguments stand pairs: (\"goal\", value).")
+
+
+def _key(key: str | Symbol) -> Symbol:
+    return kw[lisp_name(key)] if isinstance(key, str) else key
+
+
+class _Readable:
+    """What a type checker is to know of all designators: `Designator` itself learns it below. Attributes are those that are declared."""
+
+    if TYPE_CHECKING:
+        type: Any
+
+        def __getitem__(self, key: str | Symbol) -> Any: ...
+        def __contains__(self, key: str | Symbol) -> bool: ...
+
+
+class Motion(MotionDesignator, _Readable, metaclass=Kind, of=MotionDesignator):
+    """A movement, which `perform` hands to a process module."""
+
+    def __init__(self, *pairs: Any, **properties: Any): ...
+
+
+class Action(ActionDesignator, _Readable, metaclass=Kind, of=ActionDesignator):
+    """Something to be done, by a plan function that `reference` finds."""
+
+    def __init__(self, *pairs: Any, **properties: Any): ...
+
+
+class Location(LocationDesignator, _Readable, metaclass=Kind, of=LocationDesignator):
+    """A place, which generators propose and validators judge."""
+
+    def __init__(self, *pairs: Any, **properties: Any): ...
+
+
+class Object(ObjectDesignator, _Readable, metaclass=Kind, of=ObjectDesignator):
+    """An object in the world; perception sets its ``data``."""
+
+    def __init__(self, *pairs: Any, **properties: Any): ...
+
+
+class Human(HumanDesignator, _Readable, metaclass=Kind, of=HumanDesignator):
+    """A human; perception sets its ``data``."""
+
+    def __init__(self, *pairs: Any, **properties: Any): ...
+
+
+# ------------------------------------------------------------------------------------------------------------------ reading
+
+
+def properties(designator: Designator) -> list[tuple[str, Any]]:
+    """The properties of a designator in order, as pairs of a Python name and a value; a repeated key comes repeatedly."""
+    return [(python_name(entry.car.name), _value(designator, entry)) for entry in _entries_of(designator)]
+
+
+def property_values(designator: Designator, name: str | Symbol) -> list[Any]:
+    """All values of one key, in order."""
+    wanted = _key(name).name
+    return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name == wanted]
+
+
+def replace(designator: Designator, **changed: Any) -> Any:
+    """A new designator, not equated to the old one, in which these properties have these values; ``None`` takes one out.
+
+    The order is kept; the first of a repeated key is replaced and the others go; properties that are new stand at the end.
+    """
+    description, left = [], {lisp_name(name): value for name, value in changed.items()}
+    done: set[str] = set()
+    for entry in designator.description or ():
+        name = entry.car.name if isinstance(entry, Cons) and isinstance(entry.car, Symbol) else None
+        if name in left:
+            if left[name] is not None and name not in done:
+                description.append(lisp_list(entry.car, to_lisp(left[name])))
+            done.add(name)
+        else:
+            description.append(entry)
+    description += [lisp_list(kw[name], to_lisp(value)) for name, value in left.items() if name not in done and value is not None]
+    return new(designator.__class__, list_from(description))
+
+
+def value_of(designator: Designator, key: Symbol) -> Any:
+    """The value of the first property ``key``, as Lisp data; ``None`` if there is none."""
+    found = _entry(designator, key.name)
+    return found.cdr.car if found is not None and found.cdr is not None else None
+
+
+def _entries_of(designator: Designator) -> Iterator[Cons]:
+    for entry in designator.description or ():
+        if isinstance(entry, Cons) and isinstance(entry.car, Symbol):
+            yield entry
+
+
+def _entry(designator: Designator, name: str) -> Cons | None:
+    for entry in _entries_of(designator):
+        if entry.car.name == name:
+            return entry
+    return None
+
+
+def _value(designator: Designator, entry: Cons) -> Any:
+    value = entry.cdr.car if isinstance(entry.cdr, Cons) else None
+    if value is not None:
+        return to_python(value)
+    kind = declaration(designator)
+    annotation = kind.fields.get(python_name(entry.car.name)) if kind is not None else None
+    return to_python(None, nil_as(annotation, None) if annotation is not None else None)
+
+
+def declaration(designator: Designator) -> Kind | None:
+    """The class that declares the type of ``designator``, if one does."""
+    if not _declared:
+        return None
+    for cls in designator.__class__.__mro__:
+        found = _declared.get((cls, value_of(designator, TYPE)))
+        if found is not None:
+            return found
+    return None
+
+
+def _attribute(self: Designator, name: str) -> Any:
+    if not name.startswith("_"):
+        found = _entry(self, lisp_name(name))
+        if found is not None:
+            return _value(self, found)
+        kind = declaration(self)
+        if kind is not None and name in kind.defaults:
+            return to_python(to_lisp(kind.defaults[name]), nil_as(kind.fields[name], None))
+    raise AttributeError(_no_property(self, name), name=name, obj=self)
+
+
+def _no_property(designator: Designator, name: str) -> str:
+    known = [python_name(entry.car.name) for entry in _entries_of(designator)]
+    near = near_names(name, known, 1)
+    hint = f" Did you mean {near[0]!r}?" if near else f" It has: {', '.join(known) or 'none'}."
+    return f"This {type_name(designator)} has no property {name!r}.{hint}"
+
+
+def type_name(designator: Designator) -> str:
+    """``"motion"`` for a motion."""
+    return designator.__class__.__name__.removesuffix("Designator").lower() or "designator"
+
+
+def _item(self: Designator, key: str | Symbol) -> Any:
+    found = _entry(self, _key(key).name)
+    if found is None:
+        raise KeyError(_no_property(self, key if isinstance(key, str) else show(key)))
+    return _value(self, found)
+
+
+def _contains(self: Designator, key: str | Symbol) -> bool:
+    return _entry(self, _key(key).name) is not None
+
+
+def _representation(self: Designator) -> str:
+    with reasoning():
+        text: str = prin1_to_string(self)
+    return text
+
+
+def _names(self: Designator) -> list[str]:
+    return sorted({*object.__dir__(self), *(name for name, _ in properties(self))})
+
+
+for _special, _function in (("__getattr__", _attribute), ("__getitem__", _item), ("__contains__", _contains), ("__iter__", None),
+                            ("__repr__", _representation), ("__dir__", _names)):
+    setattr(Designator, _special, _function)

@@ -1,0 +1,119 @@
+"""Resolving designators from Python: the functions of ``protocol.py`` and ``equating.py`` with what Python expects.
+
+Solutions are Python's: lists are Python lists, and a plan function in a solution is the function itself. What Python code raised in a
+grounding, a generator or a validator is raised by `reference`, that very exception. None of this needs a plan. Source: designators.md 6, 7.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+from .. import kernel
+from ..cpl.border import for_python, raise_in_python
+from ..lisp import package as lisp_package
+from ..lisp.condition_types import Condition
+from ..lisp.data import UNSUPPLIED, Cons
+from ..prolog.python_ground import reasoning
+from ..prolog.python_terms import to_lisp, to_python
+from . import protocol
+from .classes import Designator, DesignatorError
+from .resolution import known
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def for_reasoning(function: Callable[P, T]) -> Callable[P, T]:
+    """A decorator: ``function`` may be called outside of plans, and what leaves it is what Python raised."""
+    inside = for_python(function)
+
+    @wraps(function)
+    def call(*arguments: P.args, **keywords: P.kwargs) -> T:
+        with reasoning():
+            return inside(*arguments, **keywords)
+
+    return call
+
+
+def reference(designator: Designator, role: Any = UNSUPPLIED) -> Any:
+    """What the designator stands for: a pose, a command, an object; always the same object for the same designator.
+
+    A motion is what ``motion-grounding`` says, an action the list of its plan function and arguments. Errors: DesignatorError if it cannot
+    be resolved, with a note that says why.
+    """
+    if isinstance(designator, Designator) and designator.effective:
+        found = known(designator)
+        if found is not None:
+            return _as_python(designator, found)
+    if kernel.active() is None:
+        with reasoning():
+            return reference(designator, role)
+    lisp_package.fill()
+    try:
+        found = protocol.reference(_designator(designator), *(() if role is UNSUPPLIED else (to_lisp(role),)))
+    except Condition as condition:
+        problem = condition
+    else:
+        return _as_python(designator, found)
+    raise_in_python(problem)
+
+
+def _as_python(designator: Designator, found: Any) -> Any:
+    """A solution as Python sees it; a list is the same Python list each time."""
+    if found.__class__ is not Cons:
+        return to_python(found)
+    known_as = designator.__dict__.get("in_python")
+    if known_as is None or known_as[0] is not found:
+        known_as = designator.__dict__["in_python"] = (found, to_python(found))
+    return known_as[1]
+
+
+def _notes(self: DesignatorError) -> list[str]:
+    """What stands below a traceback: why the designator could not be resolved, found when the first one looks."""
+    notes: list[str] | None = self.__dict__.get("notes")
+    if notes is None:
+        notes = self.__dict__["notes"] = []
+        try:
+            with reasoning():
+                hint = self.hint
+        except Exception:  # a traceback is no place for errors
+            hint = None
+        if hint:
+            notes.append(hint)
+    return notes
+
+
+setattr(DesignatorError, "__notes__", property(_notes))
+
+
+@for_reasoning
+def next_solution(designator: Designator) -> Any:
+    """A designator, equated to this one, for the next thing that it may stand for; ``None`` if there is no other."""
+    return protocol.next_solution(_designator(designator))
+
+
+@for_reasoning
+def equate(parent: Designator, successor: Designator) -> Designator:
+    """Say that both describe the same thing: the successor, now the youngest of the chain. An error if that was said already."""
+    protocol.equate(_designator(parent), _designator(successor))
+    return successor
+
+
+def solutions(designator: Designator) -> Iterator[Any]:
+    """Iterate over all that the designator may stand for, each searched for when it is asked for; nothing if it cannot be resolved."""
+    member: Any = _designator(designator)
+    while member is not None:
+        try:
+            value = reference(member)
+        except DesignatorError:
+            return
+        yield value
+        member = next_solution(member)
+
+
+def _designator(thing: Any) -> Designator:
+    if not isinstance(thing, Designator):
+        raise TypeError(f"{thing!r} is no designator. Make one: Motion(type=kw.driving), Driving(speed=1.0).")
+    return thing
