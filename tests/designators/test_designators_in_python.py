@@ -32,9 +32,10 @@ from cramhy_runtime.designators import (
 from cramhy_runtime.lisp.condition_types import SimpleError
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.prolog import P, V, fact_group, findall, kw
+from cramhy_runtime.prolog import P, V, explain, fact_group, findall, kw
 
 pytestmark = pytest.mark.usefixtures("no_rules_left")
+NAME = __name__.replace("_", "-")
 
 
 class Driving(Motion):
@@ -336,16 +337,27 @@ def test_mistakes_say_what_to_write(mistake, kind, text):
 def test_why_a_designator_could_not_be_resolved_stands_below_the_traceback():
     @motion_grounding(Driving)
     def drive(motion):
-        return ["drive", motion.speed]
+        if motion.speed < 3:
+            yield ["drive", motion.speed]
 
     with pytest.raises(DesignatorError) as problem:
-        reference(Motion(type=kw.driving))
-    assert "".join(traceback.format_exception_only(problem.value)).partition(": ")[2] == """\
+        reference(Motion(type=kw.driving, sped=1))
+    assert "".join(traceback.format_exception_only(problem.value)).partition(": ")[2] == f"""\
 Cannot resolve motion designator #<A MOTION
-    (TYPE DRIVING)>.
-Tried 1 clause of motion-grounding:
-  (motion-grounding ?designator ?solution): property speed is missing
+    (TYPE DRIVING)
+    (SPED 1)>.
+There is one clause, clause 1 of {NAME}.test-why-a-designator-could-not-be-resolved-stands-below-the-traceback.drive:
+  (motion-grounding ?designator ?solution)
+  holds  (desig-prop ?designator (:type :driving))
+  FAILS  (once (desig-prop ?designator (:speed ?_)))
+           (desig-prop #<a motion (type driving) (sped 1)> (:speed ?_)) fails:
+             There is no property :speed, but :sped; is that misspelled?
+    -    (python-grounding #<drive ({place(drive)})> ?designator ?solution)
+  with ?designator = #<a motion (type driving) (sped 1)>
+explain(designator) tries it again and tells all of it.
 """
+    told = explain(Driving(speed=5))
+    assert not told.holds and told.reason == "drive gave no solution" and "drive gave no solution." in str(told)
 
 
 def test_what_a_grounding_raises_comes_out_with_the_designator_and_the_place():

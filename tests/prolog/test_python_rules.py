@@ -12,7 +12,7 @@ from prolog_text import ask, group
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp.condition_types import SimpleError
 from cramhy_runtime.lisp.data import Cons, Symbol
-from cramhy_runtime.prolog import P, UnknownPredicate, V, fact_group, findall, first, holds, kw, names, remove_fact_group, solve
+from cramhy_runtime.prolog import P, UnknownPredicate, V, explain, fact_group, findall, first, holds, kw, names, remove_fact_group, solve
 from cramhy_runtime.prolog.python_terms import Tail, show, to_lisp, to_python
 
 
@@ -253,3 +253,15 @@ def test_symbols_of_lisp_in_that_place_keep_the_rule_of_lisp(warnings_given):
 def test_a_symbol_that_python_has_met_in_an_answer_is_a_term_again():
     tea = first(P["=="](V.x, P.tea)).x
     assert isinstance(tea, Symbol) and holds(P["=="](tea, P.tea))
+
+
+def test_explain_tells_why(family):
+    told = explain(P.ancestor("ann", V.who))
+    assert (told.holds, told.outcome) == (False, "fails") and repr(told) == str(told)
+    assert str(told).startswith("""\
+(ancestor "ann" ?who) has no solution.
+Of 2 clauses this one came furthest, clause 1 of family:
+  (ancestor ?x ?y)
+  FAILS  (parent ?x ?y)""")
+    with kernel.aside():
+        assert explain(P.ancestor("tom", V.who)).holds

@@ -30,10 +30,12 @@ from typing import Any, TypeVar, overload
 
 from ..lisp.data import Keyword, Symbol
 from ..lisp.packages import sym
+from ..lisp.printer.printer import define_printer, print_unreadable
 from ..prolog import natives
 from ..prolog.python_ground import reasoning
 from ..prolog.python_rules import fact_group, remove_fact_group
 from ..prolog.python_terms import USER, Goal, Name, V, import_predicates, kw, lisp_name, to_lisp, to_python
+from ..prolog.reasons import explains
 from ..prolog.terms import deref, import_term
 from ..utilities.lazy_lists import from_iterator
 from . import locations
@@ -48,22 +50,28 @@ REJECT = kw.reject
 VERDICTS = (ACCEPT, UNKNOWN, MAYBE_REJECT, REJECT)
 _forgetting: dict[Callable[..., Any], Callable[[], None]] = {}
 
-import_predicates(*map(sym, """DESIG::DESIG-PROP DESIG::ACTION-GROUNDING DESIG::MOTION-GROUNDING DESIG::LOCATION-GROUNDING
-    DESIG::DESIG-REFERENCE DESIG::DESIGNATOR-GROUNDINGS DESIG::CURRENT-DESIGNATOR DESIG::LOC-DESIG? DESIG::OBJ-DESIG? DESIG::ACTION-DESIG?
-    DESIG::MOTION-DESIG? DESIG::DESIG-DESCRIPTION DESIG::EFFECTIVE-DESIGNATOR DESIG::DESIG-LOCATION-PROP DESIG::EQUATED-DESIGS""".split()))
+import_predicates(PYTHON_GROUNDING, *(sym(f"DESIG::{name}") for name in """ACTION-GROUNDING MOTION-GROUNDING LOCATION-GROUNDING DESIG-PROP
+    DESIG-REFERENCE DESIG-DESCRIPTION DESIG-LOCATION-PROP DESIGNATOR-GROUNDINGS CURRENT-DESIGNATOR EFFECTIVE-DESIGNATOR EQUATED-DESIGS
+    ACTION-DESIG? MOTION-DESIG? LOC-DESIG? OBJ-DESIG?""".split()))
 
 
 class Grounding:
     """A function in Python that grounds designators, as it stands in the rule."""
 
-    def __init__(self, function: Callable[..., Any], what: str, form: str):
-        self.function, self.what, self.form = function, what, form
+    def __init__(self, function: Callable[..., Any], what: str):
+        self.function, self.what = function, what
+        self.name: str = getattr(function, "__name__", "function")
+
+    @property
+    def place(self) -> str:
+        """Where the function stands."""
+        code = getattr(self.function, "__code__", None)
+        return f" ({code.co_filename}:{code.co_firstlineno})" if code is not None else ""
 
     @property
     def where(self) -> str:
-        code = getattr(self.function, "__code__", None)
-        place = f" ({code.co_filename}:{code.co_firstlineno})" if code is not None else ""
-        return f"the {self.what} {getattr(self.function, '__name__', self.function)}{place}"
+        """What it is, and its place, for messages."""
+        return f"the {self.what} {self.name}{self.place}"
 
     def __repr__(self) -> str:
         return f"<{self.where}>"
@@ -103,6 +111,8 @@ class Grounding:
         return to_lisp(list(command))
 
 
+define_printer(Grounding, lambda grounding, stream: print_unreadable(grounding, stream, f"{grounding.name}{grounding.place}"))
+
 _END = object()
 
 
@@ -117,6 +127,11 @@ def python_grounding(m: Any, grounding: Any, designator: Any, solution: Any) -> 
     for value in deref(grounding).solutions(deref(designator)):
         if m.unify(solution, import_term(value, {})):
             yield
+
+
+@explains("CRAMHY::PYTHON-GROUNDING")
+def _no_solution(m: Any, grounding: Any, designator: Any, solution: Any) -> str:
+    return f"{deref(grounding).name} gave no solution"
 
 
 @overload
@@ -179,7 +194,7 @@ def _decorated(given: Any, cls: type, define: Callable[[Any, Kind | None], None]
 
 
 def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> None:
-    grounding = Grounding(function, f"{what} grounding", what)
+    grounding = Grounding(function, f"{what} grounding")
     name, head = Name(_symbol(function)), sym(f"DESIG::{what.upper()}-GROUNDING")
     goals = [Goal(to_lisp([Name(DESIG_PROP), V.designator, [TYPE, kind.type_]]))] if kind is not None and kind.type_ is not None else []
     if kind is not None:
@@ -192,12 +207,13 @@ def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> 
 
 def _symbol(function: Callable[..., Any]) -> Symbol:
     """The name under which ``function`` is known: that of its module and itself."""
-    found: Symbol = USER.intern(f"{function.__module__}.{function.__qualname__}".replace(".<locals>", "").replace("_", "-").upper())
+    module = "" if function.__module__ == "__main__" else f"{function.__module__}."
+    found: Symbol = USER.intern(f"{module}{function.__qualname__}".replace(".<locals>", "").replace("_", "-").upper())
     return found
 
 
 def _define_generator(function: Callable[..., Any], kind: Kind | None, priority: int) -> None:
-    grounding, name = Grounding(function, "location generator", "location"), _symbol(function)
+    grounding, name = Grounding(function, "location generator"), _symbol(function)
 
     def candidates(location: Any) -> Any:
         if kind is not None and not isinstance(location, kind):
@@ -228,7 +244,7 @@ def _lisp_candidates(grounding: Grounding, location: Any, found: Iterator[Any]) 
 
 
 def _define_validator(function: Callable[..., Any], kind: Kind | None, priority: int) -> None:
-    grounding, name = Grounding(function, "location validator", "location"), _symbol(function)
+    grounding, name = Grounding(function, "location validator"), _symbol(function)
 
     def verdict(location: Any, candidate: Any) -> Any:
         if kind is not None and not isinstance(location, kind):

@@ -16,7 +16,7 @@ from ..lisp import package as lisp_package
 from ..lisp.condition_types import Condition
 from ..lisp.data import UNSUPPLIED, Cons
 from ..prolog.python_ground import reasoning
-from ..prolog.python_terms import to_lisp, to_python
+from ..prolog.python_terms import in_python_names, to_lisp, to_python
 from . import protocol
 from .classes import Designator, DesignatorError
 from .resolution import known
@@ -76,8 +76,10 @@ def _notes(self: DesignatorError) -> list[str]:
     if notes is None:
         notes = self.__dict__["notes"] = []
         try:
-            with reasoning():
+            with in_python_names():
                 hint = self.hint
+            if hint:
+                hint = hint.replace("(explain)", "explain(designator)")
         except Exception:  # a traceback is no place for errors
             hint = None
         if hint:

@@ -16,10 +16,10 @@ queries, ``python_predicates`` predicates written in Python. For other rooms the
 """
 
 from .python_predicates import Predicate, UnboundVariable, function, predicate, test
-from .python_rules import Answer, FactGroup, UnknownPredicate, fact_group, findall, first, holds, remove_fact_group, solve
+from .python_rules import Answer, FactGroup, UnknownPredicate, explain, fact_group, findall, first, holds, remove_fact_group, solve
 from .python_terms import Goal, Name, Names, P, Tail, V, Variable, kw, names
 
 __all__ = [
-    "Answer", "fact_group", "FactGroup", "findall", "first", "function", "Goal", "holds", "kw", "Name", "names", "Names", "P", "predicate",
-    "Predicate", "remove_fact_group", "solve", "Tail", "test", "UnboundVariable", "UnknownPredicate", "V", "Variable",
+    "Answer", "explain", "fact_group", "FactGroup", "findall", "first", "function", "Goal", "holds", "kw", "Name", "names", "Names", "P",
+    "predicate", "Predicate", "remove_fact_group", "solve", "Tail", "test", "UnboundVariable", "UnknownPredicate", "V", "Variable",
 ]  # fmt: skip

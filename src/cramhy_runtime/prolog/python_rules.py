@@ -24,14 +24,17 @@ from ..lisp.conditions import handler_bind
 from ..lisp.data import Cons, Symbol, list_from
 from ..lisp.packages import near_names
 from ..lisp.restarts import muffle_warning
-from . import control, facts, query
+from . import control, explanations, facts, query
 from . import package as _package  # noqa: F401  the built-in predicates are there
 from .database import functors
+from .explanations import Explanation
 from .python_ground import reasoning
-from .python_terms import USER, Goal, Name, Variable, goal_form, import_predicates, show, to_lisp, to_python
+from .python_terms import USER, Goal, Name, Variable, goal_form, import_predicates, in_python_names, show, to_lisp, to_python
+from ..utilities.patterns import ANONYMOUS
 from .symbols import sym
 
-import_predicates(*control.CONTROL, *functors)  # as far as this room has come, these are the predicates that come with it
+# As far as this room has come, the functors are the predicates that come with it.
+import_predicates(*control.CONTROL, *functors, sym("CRAM-PROLOG::EXPLAIN"), ANONYMOUS)
 
 class UnknownPredicate(LookupError):
     """A query asks a predicate that nobody has defined."""
@@ -181,6 +184,19 @@ def _instance(template: Any, answer: Answer) -> Any:
     if isinstance(template, (tuple, list)):
         return template.__class__([_instance(part, answer) for part in template])
     return template
+
+
+def explain(question: Any) -> Explanation:
+    """Why a goal, or a designator, has a solution or none: an object whose text tells it. The goal is proved anew for that.
+
+    ``explain(goal).holds`` is the outcome, ``.reason`` why the goal at the bottom failed; ``print(explain(goal))``.
+    """
+    with in_python_names():
+        told: Explanation = explanations.explain(question.form if isinstance(question, Goal) else question)
+    return told
+
+
+setattr(Explanation, "__repr__", Explanation.__str__)
 
 
 def _question(goals: tuple[Any, ...]) -> Cons:

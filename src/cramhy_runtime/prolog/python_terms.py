@@ -18,12 +18,14 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import BuiltinFunctionType, FunctionType, MethodType
 from typing import Any, NoReturn
 
 from ..lisp.data import Character, Cons, Keyword, LispString, Symbol, list_from
 from ..lisp.faces import attribute_symbols
 from ..lisp.packages import KEYWORD, Package, ensure_package, find_package_or_error
+from ..lisp.printer import print_controls
 from ..utilities.lazy_lists import force_ll, lazy_list_p
 from ..utilities.patterns import ANONYMOUS
 from .python_ground import reasoning
@@ -383,6 +385,13 @@ def python_arguments(arguments: Any, nothing: list[Any], default: Any) -> list[A
 
 
 # ---------------------------------------------------------------------------------------------------------------------- text
+
+
+@contextmanager
+def in_python_names() -> Iterator[None]:
+    """What is printed while the block runs has no packages where Python has none: it is printed as in PYTHON-USER."""
+    with reasoning(), print_controls.bound(print_controls.PACKAGE, USER):
+        yield
 
 
 def show(form: Any) -> str:
