@@ -16,6 +16,7 @@ golden: $(READY)
 
 docs: $(READY)
 	@$(BIN)/python tests/lisp/standard_page.py
+	@$(BIN)/python tests/tutorials/pages.py
 
 bench: $(READY)
 	@for file in benchmarks/*_bench.py; do echo "== $$file"; $(BIN)/python $$file; done
