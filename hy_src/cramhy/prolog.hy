@@ -22,6 +22,13 @@
 (defoperator with-facts-asserted [facts #* body]
   `(%with-facts-asserted (list ~@(lfor fact (elements facts) `(lambda [] ~fact))) (lambda [] ~@body)))
 
+;; More than the original has: watching goals. What is traced is named as with `trace`.
+(defoperator trace-prolog [#* functors]
+  `(%trace-prolog (quote ~functors)))
+
+(defoperator untrace-prolog [#* functors]
+  `(%untrace-prolog (quote ~functors)))
+
 (defoperator def-production [name #* definition]
   `(register-production (quote ~name) (quote ~definition)))
 

@@ -16,7 +16,7 @@ from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from . import control
-from .database import arguments_of, extended, find_predicate, in_place, valid_functor
+from .database import arguments_of, find_predicate, in_place, looked_up, valid_functor
 from .machine import FAIL
 from .matching import Matching
 from .source import is_ground, proper, variables
@@ -53,7 +53,7 @@ class Context:
 
 def known_goal(goal, table):
     """The arguments of ``goal`` if it is one of the functors in ``table`` with a fitting number of arguments, else ``None``."""
-    if not isinstance(goal, Cons) or goal.car not in table or not proper(goal) or extended(goal.car):
+    if not isinstance(goal, Cons) or goal.car not in table or not proper(goal) or looked_up(goal.car):
         return None
     least, most = table[goal.car]
     arguments = arguments_of(goal)
@@ -72,7 +72,7 @@ def is_test(goal):
 def flat(goals):
     """The goals of a body, conjunctions in it flattened."""
     for goal in goals or ():
-        if isinstance(goal, Cons) and goal.car is AND and proper(goal) and not extended(AND):
+        if isinstance(goal, Cons) and goal.car is AND and proper(goal) and not looked_up(AND):
             yield from flat(goal.cdr)
         else:
             yield goal
@@ -210,19 +210,24 @@ class Bodies(Matching):
             return f"resolve_argument(m, {self.build(pattern, names)})"
         if not isinstance(pattern, Cons) or is_ground(pattern):
             return self.constant(pattern)
+        return f"raw_argument(m, {self._as_written(pattern, names)})"
+
+    def _as_written(self, pattern, names):
+        """An expression for a list in which the variables are variables, even where their values are known."""
         self.first_occurrences(pattern, names)
         boxes = {}
         for name in variables(pattern):
             boxes[name] = self.fresh("v")
             self.emit(f"{boxes[name]} = as_variable({names[name]})")
-        return f"raw_argument(m, {self.build(pattern, boxes)})"
+        return self.build(pattern, boxes)
 
     # ------------------------------------------------------------------------------------------------------------------ calls
 
     def _call(self, goal, goals, names, context):
         functor = goal.car if isinstance(goal, Cons) else None
         if direct(goal):
-            given = [self.build(argument, names) for argument in goal.cdr or ()]
+            build = self._as_written if functor in (LISP_FUN, LISP_PRED) else self.build
+            given = [build(argument, names) for argument in goal.cdr or ()]
             predicate = self.predicate
             if not goals and context.repeat and functor is predicate.functor and len(given) == predicate.arity:
                 if given:
@@ -404,6 +409,7 @@ class Bodies(Matching):
                 inner = [goal]
                 if variable(template) and template is not ANONYMOUS and template not in here:
                     here[template] = "template"
+                    self.name_variable("template", template)
                 elif is_ground(template):
                     self.emit(f"template.ref = {self.constant(template)}")
                 else:

@@ -51,6 +51,12 @@ def compile_clauses(predicate, clauses):
 database.compile_clauses = compile_clauses
 
 
+def clause_functions(predicate, clauses):
+    """For who chooses among the clauses itself: (clause, function) pairs, called ``function(m, k, barrier, *arguments)``."""
+    fitting = [(arguments, clause) for clause in clauses if (arguments := _head_arguments(clause.head, predicate.arity)) is not None]
+    return PredicateCode(predicate, fitting).each() if fitting else []
+
+
 def _head_arguments(head, arity):
     """The argument patterns of ``head`` for goals of ``arity`` arguments, or ``None`` if it cannot match such a goal."""
     arguments, cell = [], head.cdr
@@ -127,6 +133,13 @@ class PredicateCode(Holes, Bodies):
             else:
                 self.space[name] = tuple([self.space[self.clause_names[n]] for n in content])
         return self.space["predicate"]
+
+    def each(self):
+        """Write and compile a function for each clause."""
+        for n in range(len(self.fitting)):
+            self._clause_function(n)
+        self.make()
+        return [(clause, self.space[self.clause_names[n]]) for n, (_, clause) in enumerate(self.fitting)]
 
     def _loop(self, body):
         if self.hole is not None:

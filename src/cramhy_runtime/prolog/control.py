@@ -49,6 +49,8 @@ def extend(name, entry):
     base = _BASE.get(name)
     if base is None:
         return
+    if database.traced and name in database.traced:
+        base = watch(name, base)
     if entry is None or not entry.clauses:
         CONTROL[name] = base
         return
@@ -63,6 +65,8 @@ def extend(name, entry):
 
 
 database.watchers.append(extend)
+watch = None
+"""``watch(functor, construct)``: the control function of a construct that is traced; of the module ``tracing``."""
 
 
 # ------------------------------------------------------------------------------------------------------------ solving goals
@@ -387,8 +391,11 @@ CONTROL[_FILTER] = _BASE[_FILTER] = _FILTER_IN_QUERY
 
 
 database.in_place.update(CONTROL)
+database.traced.constructs.update(CONTROL)
 
 
 def in_clause(functor):
     """The control function for a goal that stands in a clause."""
-    return _FILTER_IN_CLAUSE if functor is _FILTER and CONTROL[functor] is _FILTER_IN_QUERY else CONTROL[functor]
+    if functor is not _FILTER or database.extended(functor):
+        return CONTROL[functor]
+    return watch(functor, _FILTER_IN_CLAUSE) if functor in database.traced else _FILTER_IN_CLAUSE

@@ -26,8 +26,28 @@ in_place: set = set()
 """Functors whose goals are compiled in place: when users give one clauses, all code is made anew."""
 watchers: list = []
 """Functions that are called with the name of a functor and its entry, or ``None``, after its clauses have changed."""
-traced: set = set()
-"""Functors all of whose calls go through `Predicate.call`: no code repeats or replaces them. Call `changed` after a change of this set."""
+class Traced(dict):
+    """Functors whose goals are watched, in the order in which they were named.
+
+    All of their calls go through `Predicate.call`, and no code repeats or replaces them.
+
+    With ``everything`` all predicates are, but the constructs of control, the set ``constructs``, only if they are named.
+    """
+
+    everything = False
+    constructs: set = set()
+
+    def __contains__(self, functor):
+        return dict.__contains__(self, functor) or (self.everything and functor not in self.constructs)
+
+    def __bool__(self):
+        return self.everything or len(self) > 0
+
+
+traced = Traced()
+"""The functors that are watched now. After a change of it call `forget_all`."""
+watch = None
+"""``watch(predicate, entry)``: the call function of a traced predicate, whose `Functor` may be ``None``; of the module ``tracing``."""
 
 
 class Predicate:
@@ -48,7 +68,9 @@ class Predicate:
     def compile(self):
         """Make the code now. Code that runs meanwhile goes on with what it has."""
         entry = functors.get(self.functor)
-        if entry is not None and entry.defined:
+        if traced and self.functor in traced:
+            self.call, self._relation = watch(self, entry if entry is not None and entry.defined else None), None
+        elif entry is not None and entry.defined:
             self.call, self._relation = entry.code(self.arity)
         else:
             self.call, self._relation = _undefined(self.functor), None
@@ -139,11 +161,22 @@ def changed(name):
     """Forget the compiled code of a functor. If its goals may be compiled into other predicates, forget all code."""
     global version
     version += 1
-    for watch in watchers:
-        watch(name, functors.get(name))
+    for watcher in watchers:
+        watcher(name, functors.get(name))
     for predicate in list(_predicates.values()):
         if predicate.functor is name or name in in_place:
             predicate.forget()
+
+
+def forget_all():
+    """Forget the compiled code of all functors, because other ones are traced now."""
+    global version
+    version += 1
+    for name in traced.constructs:
+        for watcher in watchers:
+            watcher(name, functors.get(name))
+    for predicate in list(_predicates.values()):
+        predicate.forget()
 
 
 version = 0
@@ -159,6 +192,11 @@ def extended(name):
     """Whether users have added clauses to a built-in."""
     entry = functors.get(name)
     return entry is not None and bool(entry.clauses)
+
+
+def looked_up(name):
+    """Whether goals of a built-in that could be compiled in place must be looked up: users have clauses for it, or it is traced."""
+    return extended(name) or name in traced
 
 
 # ------------------------------------------------------------------------------------------------------------------- calling

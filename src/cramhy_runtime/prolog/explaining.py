@@ -10,7 +10,7 @@ And a *dry* proof calls nothing that might do something in the world: such a goa
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import Cons, Symbol, list_from, truth
+from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.packages import is_symbol
 
 from . import (
@@ -21,15 +21,13 @@ from . import (
 )
 from .control import CONTROL
 from .database import arguments_of, extended, functors, handled, valid_functor
-from .lisp_calls import argument, call_lisp
 from .machine import SOLVED, Machine, fail
 from .showing import Names, readable
 from .symbols import sym
-from .terms import Var, deref, import_term, raw, resolve, undo, unify, unset_variables
+from .terms import Var, deref, import_term, undo, unify, unset_variables
 
 AND = sym("AND")
 IF, SOFT_IF, FORALL, FAIL = (sym("CRAM-PROLOG::" + name) for name in ("->", "*->", "FORALL", "FAIL"))
-LISP_FUN, LISP_PRED = sym("CRAM-PROLOG::LISP-FUN"), sym("CRAM-PROLOG::LISP-PRED")
 
 
 class Attempt:
@@ -210,8 +208,9 @@ class Explaining(Machine):
             self.choices.append((_more_clauses, k, len(self.trail), box, entry.clauses, 0, arguments))
             if entry.handler:  # the clauses are for when it has no solution
                 k = (handled, k, len(self.choices) - 1)
-        if built_in is _LISP_CALLS.get(functor):
-            return k if _call_lisp(self, box, functor, arguments) else fail(self)
+        if built_in is LISP_CALLS.get(functor):
+            succeeded, box.reason = reasons.call_lisp_goal(self, functor, arguments)
+            return k if succeeded else fail(self)
         return built_in(self, (built_in, k, *arguments))
 
 
@@ -223,8 +222,8 @@ class Record:
         self.count, self.root, self.latest, self.stopped = 0, None, None, None
 
 
-_LISP_CALLS = {functor: functors[functor].handler for functor in (LISP_FUN, LISP_PRED)}
-"""The handlers of the calls of Lisp, which are made here so that it can be told what came of them."""
+LISP_CALLS = {functor: functors[functor].handler for functor in (reasons.LISP_FUN, reasons.LISP_PRED)}
+"""The handlers of the calls of Lisp; who watches makes these calls itself, to tell what came of them."""
 
 
 def start(goal, limit, dry=False):
@@ -319,30 +318,3 @@ def _body(m, step):
     if not attempt.boxes:
         attempt.boxes = [[] for _ in goals]
     return m.call(goals[i], k if i + 1 == len(goals) else (_body, k, attempt, i + 1, b), b, attempt, i)
-
-
-def _call_lisp(m, box, functor, arguments):
-    """``lisp-fun`` and ``lisp-pred`` as the built-ins are, noting what came of the call."""
-    if not arguments:
-        return False
-    if functor is LISP_PRED:
-        function, given, result, kind = raw(arguments[0], m.names), arguments[1:], None, "predicate"
-    else:
-        function, given, kind = resolve(arguments[0], m.names), arguments[1:-1], "function"
-        result = arguments[-1] if len(arguments) > 1 else None
-    values = [argument(m, term) for term in given]
-    done, value = call_lisp(function, values, kind, function)
-    if not done:
-        box.reason = reasons.signalled(function, values, value)
-        return False
-    if functor is LISP_PRED:
-        if not truth(value):
-            box.reason = reasons.returned(function, values, value)
-        return truth(value)
-    height = len(m.trail)
-    term = import_term(value, m.names) if value.__class__ is Cons or isinstance(value, (Symbol, bool)) else value
-    if unify(result, term, m.trail):
-        return True
-    undo(m.trail, height)
-    box.reason = reasons.returned(function, values, value, result)
-    return False

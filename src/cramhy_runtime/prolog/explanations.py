@@ -18,7 +18,7 @@ from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, output_stream
 from . import explaining, reasons
 from .database import functors
 from .explaining import start
-from .showing import Names, show
+from .showing import Names, clause_name, clause_number, show
 from .symbols import sym
 from .terms import resolve
 
@@ -189,7 +189,7 @@ def _mismatches(box):
         return reasons.other_count(box.functor, best.mismatch[2], counts)
     which = f"none of the {len(attempts)} clauses of {functor} matches; in the nearest, " if len(attempts) > 1 else \
         f"the only clause of {functor} does not match: in "
-    return which + f"{_name(best.clause)}, {_mismatch(best)}"
+    return which + f"{clause_name(best.clause)}, {_mismatch(best)}"
 
 
 def _mismatch(attempt):
@@ -212,18 +212,6 @@ def _nearest(attempts):
             if near and attempt.mismatch[1] is near[0]:
                 return attempt
     return best[0]
-
-
-def _name(clause):
-    """``clause 2 of turtle-motions at motions.lisp:14:3``: its number among those of its functor in its group, and where it stands."""
-    place = describe(getattr(clause, "position", None))
-    return f"clause {_number(clause)} of {show(clause.group)}" + (f" at {place}" if place else "")
-
-
-def _number(clause):
-    entry = functors.get(clause.head.car)
-    clauses = [other for other in entry.clauses if other.group is clause.group] if entry is not None else []
-    return str(clauses.index(clause) + 1) if clause in clauses else "?"
 
 
 def _tell(box, depth=0):
@@ -254,8 +242,8 @@ def _sentence(text):
 
 def _tell_clauses(box, best, depth):
     count = len(box.attempts)
-    lines = [f"Of {count} clauses this one came furthest, {_name(best.clause)}:" if count > 1 else
-             f"There is one clause, {_name(best.clause)}:"]
+    lines = [f"Of {count} clauses this one came furthest, {clause_name(best.clause)}:" if count > 1 else
+             f"There is one clause, {clause_name(best.clause)}:"]
     lines += ["  " + line for line in [show(best.clause.head), *_tell_body(best, depth)]]
     others = _others(box, best) if depth == 0 else []
     if others:
@@ -274,7 +262,7 @@ def _others(box, best, as_far=False):
             stopped.setdefault((attempt.clause.group, _brief(attempt)), []).append(attempt.clause)
     lines = []
     for (group, brief), clauses in stopped.items():
-        numbers = [_number(clause) for clause in clauses]
+        numbers = [clause_number(clause) for clause in clauses]
         of = "" if group is best.clause.group else f" of {show(group)}"
         place = describe(getattr(clauses[0], "position", None))
         lines.append(f"clause{'s' if len(numbers) > 1 else ''} {', '.join(numbers)}{of}{f' at {place}' if place else ''}: {brief}")
@@ -342,7 +330,7 @@ def _proof(root, depth):
     while stack:
         box, depth = stack.pop()
         attempt = box.attempts[-1] if box.attempts and box.attempts[-1].mismatch is None else None
-        by = f"  by {_name(attempt.clause)}" if attempt is not None and attempt.clause is not None else ""
+        by = f"  by {clause_name(attempt.clause)}" if attempt is not None and attempt.clause is not None else ""
         if box.functor is not explaining.AND:
             lines.append(f"{'  ' * (depth + 1)}{show(box.term, names)}{by}")
             depth += 1
@@ -376,7 +364,7 @@ def _tell_given_up(explanation, record):
                   if box.attempts and "..." not in _shown(box) and chain.count(_shown(box)) > 1), None)
     if again is not None:
         clause = again.attempts[-1].clause
-        lines.append(f"{_shown(again)} comes back to itself" + (f" through {_name(clause)}" if clause is not None else "")
+        lines.append(f"{_shown(again)} comes back to itself" + (f" through {clause_name(clause)}" if clause is not None else "")
                      + ": nothing has changed in between, so it never ends.")
     else:
         lines.append(f"If it only takes long, allow it more goals: (explain goal :limit {10 * record.limit}).")

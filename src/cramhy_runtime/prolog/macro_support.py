@@ -5,7 +5,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import python_list
 from cramhy_runtime.lisp.faces import define_face
 
-from . import facts, natives, productions, rete
+from . import facts, natives, productions, rete, tracing
 
 
 class FactCollector:
@@ -51,5 +51,5 @@ define_face("CRAMHY", functions={
     "define-prolog-handler": natives.define_handler, "with-facts-asserted": with_facts_asserted, "with-productions": with_productions,
     "with-production-handlers": with_production_handlers,
     "fact-collector": fact_collector, "collect-fact": collect_fact, "finish-fact-group": finish_fact_group,
-    "fact-outside-group": fact_outside_group,
+    "fact-outside-group": fact_outside_group, "trace-prolog": tracing.trace_prolog, "untrace-prolog": tracing.untrace_prolog,
 })

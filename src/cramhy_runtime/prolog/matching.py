@@ -12,6 +12,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp.data import Cons, Symbol
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
+from .database import traced
 from .source import Rest, Source, is_ground, variables
 
 _DEEP = 4
@@ -130,7 +131,7 @@ class Matching(Source):
         inside = variables(pattern)
         for name in names:
             if name not in before and name in inside:
-                self.emit(f"{names[name]} = Var()")
+                self.new_variable(names[name], name)
         self._set(x, self._cell(pattern, dict(names)))
         self.depth -= 1
         self.emit(f"else: {self.failing}")
@@ -163,7 +164,7 @@ class Matching(Source):
                 return "Var()"
             if pattern not in names:
                 names[pattern] = self.fresh("v")
-                self.emit(f"{names[pattern]} = Var()")
+                self.new_variable(names[pattern], pattern)
             return names[pattern]
         if not isinstance(pattern, Cons) or is_ground(pattern):
             return self.constant(pattern)
@@ -183,4 +184,13 @@ class Matching(Source):
         for name in variables(item):
             if name not in names:
                 names[name] = self.fresh("v")
-                self.emit(f"{names[name]} = Var()")
+                self.new_variable(names[name], name)
+
+    def new_variable(self, python_name, symbol):
+        """Code that makes a variable; while goals are traced it knows what it is called in the clause."""
+        self.emit(f"{python_name} = Var()")
+        self.name_variable(python_name, symbol)
+
+    def name_variable(self, python_name, symbol):
+        if traced:
+            self.emit(f"{python_name}.written = {self.constant(symbol)}")

@@ -9,13 +9,15 @@ misspelled is nearer than one that is not there at all. Rooms above add reasons 
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import Cons, MultipleValues, Symbol, list_from
+from cramhy_runtime.lisp.data import Cons, MultipleValues, Symbol, list_from, truth
 from cramhy_runtime.lisp.packages import near_names
 
 from .showing import Names, readable, show
 from .symbols import sym
-from .terms import Var, deref, elements, list_end, undo, unify, unset_variables
+from .lisp_calls import argument, call_lisp
+from .terms import Var, deref, elements, import_term, list_end, raw, resolve, undo, unify, unset_variables
 
+LISP_FUN, LISP_PRED = sym("CRAM-PROLOG::LISP-FUN"), sym("CRAM-PROLOG::LISP-PRED")
 _reasons: dict = {}
 _harmless: set = set()
 
@@ -124,6 +126,28 @@ def signalled(function, values, problem):
     return f"{_call(function, values)} signalled an error: {text.rstrip('.')}"
 
 
+def call_lisp_goal(m, functor, terms):
+    """Prove a goal of ``lisp-fun`` or ``lisp-pred`` as the built-in does: whether it succeeds, and the reason if not."""
+    if not terms:
+        return False, None
+    if functor is LISP_PRED:
+        function, given, kind = raw(terms[0], m.names), terms[1:], "predicate"
+    else:
+        function, given, kind = resolve(terms[0], m.names), terms[1:-1], "function"
+    values = [argument(m, term) for term in given]
+    done, value = call_lisp(function, values, kind, function)
+    if not done:
+        return False, signalled(function, values, value)
+    if functor is LISP_PRED:
+        return (True, None) if truth(value) else (False, returned(function, values, value))
+    result, height = terms[-1] if len(terms) > 1 else None, len(m.trail)
+    term = import_term(value, m.names) if value.__class__ is Cons or isinstance(value, (Symbol, bool)) else value
+    if unify(result, term, m.trail):
+        return True, None
+    undo(m.trail, height)
+    return False, returned(function, values, value, result)
+
+
 # ----------------------------------------------------------------------------------------------------------------- built-ins
 
 
@@ -206,7 +230,6 @@ def _rete_holds(m, pattern):
     return f"no fact that is asserted matches {show(pattern)}"
 
 
-LISP_FUN, LISP_PRED = sym("CRAM-PROLOG::LISP-FUN"), sym("CRAM-PROLOG::LISP-PRED")
 _HARMLESS_FUNCTIONS = frozenset(sym(name) for name in """IDENTITY EQ EQL EQUAL EQUALP TYPEP NUMBERP INTEGERP SYMBOLP STRINGP LISTP CONSP
     NULL ATOM KEYWORDP + - * / < > <= >= = 1+ 1- MIN MAX ABS MOD CAR CDR FIRST SECOND THIRD REST LAST NTH LENGTH LIST CONS
     GETF ASSOC ZEROP PLUSP MINUSP EVENP ODDP STRING= STRING-EQUAL""".split())

@@ -10,12 +10,13 @@ import re
 
 from cramhy_runtime.lisp.conditions import Error, handler_case
 from cramhy_runtime.lisp.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp.evaluation.places_in_source import describe
 from cramhy_runtime.lisp.packages import keyword
 from cramhy_runtime.lisp.printer import print_controls as controls
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.utilities.lazy_lists import LazyTail
-from cramhy_runtime.utilities.patterns import ANONYMOUS
 
+from .database import functors
 from .terms import UNSET, TermTail, Var
 
 MOST_ELEMENTS = 12
@@ -24,7 +25,7 @@ MOST_DEPTH = 6
 """So deep are lists in lists shown."""
 MOST_CHARACTERS = 240
 """So long is a goal on a line."""
-_MORE = Symbol("...")
+_MORE, _ANYTHING = Symbol("..."), Symbol("?_")
 _BREAK = re.compile(r"\s*\n\s*")
 
 
@@ -39,7 +40,7 @@ class Names:
         if symbol is None:
             written = variable.written or variable.name
             if written is None:
-                return ANONYMOUS
+                return _ANYTHING
             count = self.counts[written.name] = self.counts.get(written.name, 0) + 1
             symbol = self.symbols[variable] = written if count == 1 else Symbol(f"{written.name}-{count}")
         return symbol
@@ -92,3 +93,16 @@ def line(data, case=None):
 def show(term, names=None):
     """``term`` as text for a student: small letters, as one types them."""
     return line(readable(term, names), "DOWNCASE")
+
+
+def clause_name(clause, case="DOWNCASE"):
+    """``clause 2 of turtle-motions at motions.lisp:14:3``: its number among those of its functor in its group, and where it stands."""
+    place = describe(getattr(clause, "position", None))
+    return f"clause {clause_number(clause)} of {line(clause.group, case)}" + (f" at {place}" if place else "")
+
+
+def clause_number(clause):
+    """The number of a clause, from 1, among those of its functor in its group."""
+    entry = functors.get(clause.head.car)
+    clauses = [other for other in entry.clauses if other.group is clause.group] if entry is not None else []
+    return str(clauses.index(clause) + 1) if clause in clauses else "?"

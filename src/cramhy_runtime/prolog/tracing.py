@@ -1,0 +1,299 @@
+"""``trace-prolog``: watching goals pass their four ports, a line for each, on ``*trace-output*``.
+
+    0: CALL (GRANDPARENT ABE ?WHO)
+      1: CALL (PARENT ABE ?Y)
+      1: EXIT (PARENT ABE HOMER)   by clause 1 of FAMILY at family.lisp:2:3
+
+A goal is called, exits with a solution, is asked for another (redo), and fails; what left it by an error or because its task was ended is
+told as well. A line has the depth of the goal, the goal with the values of now, and the clause that the solution is of. Of several
+tasks each but the main one is named. Nothing costs anything while nothing is traced: the code of a traced predicate is another one,
+and code that calls it is made anew when the trace begins and ends.
+
+A name that is traced may be any functor: a predicate of facts and rules, a built-in, a construct of control, or one that nobody has
+defined yet. The layout is that of ``trace``, see ``lisp/tools/tracing.py``.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from cramhy_runtime import kernel
+from cramhy_runtime.lisp.conditions import Condition, HandlerExit, error, warn
+from cramhy_runtime.lisp.data import Cons, Keyword, list_from
+from cramhy_runtime.lisp.streams.streams import TRACE_OUTPUT, output_stream
+
+from . import control, database, ports, reasons
+from .compiler import clause_functions
+from .database import arguments_of, functors, handled, traced, valid_functor
+from .explaining import LISP_CALLS
+from .machine import Machine, call_again, fail
+from .showing import Names, clause_name, line, readable
+from .symbols import sym
+from .terms import import_term, undo, unify
+
+
+class TracedGoal(ports.Box):
+    """A traced goal. ``parent`` is the traced goal that it is proved for; ``clause`` the one that is tried now."""
+
+    __slots__ = ("functor", "terms", "parent", "depth", "clause", "reason", "exits")
+
+    def __init__(self, functor, terms, parent):
+        self.functor, self.terms, self.parent = functor, terms, parent
+        self.depth = 0 if parent is None else parent.depth + 1
+        self.clause = self.reason = None
+        self.exits = 0
+
+    def called(self):
+        _proofs()[-1].goal = self
+        self.tell("CALL")
+
+    def exited(self, m, last):
+        self.exits += 1
+        self.tell("EXIT", f"by {clause_name(self.clause, None)}" if self.clause is not None else None)
+        _proofs()[-1].goal = self.parent
+
+    def redone(self, m):
+        _proofs()[-1].goal = self
+        self.tell("REDO")
+
+    def failed(self, m):
+        reason = self.reason
+        if reason is None and not self.exits:
+            reason = reasons.why(m, Cons(self.functor, list_from(self.terms)))[0]
+        self.tell("FAIL", None if self.exits else reason)
+        _proofs()[-1].goal = self.parent
+
+    def left(self, exception):
+        """The goal is left without a solution and without a failure."""
+        if isinstance(exception, HandlerExit):
+            exception = exception.condition
+        if isinstance(exception, kernel.Cancelled):
+            self.tell("LEFT", "its task was ended")
+        elif isinstance(exception, Condition):
+            self.tell("LEFT", " ".join(str(exception).split()))
+        else:
+            self.tell("LEFT", f"{type(exception).__name__}: {exception}" if isinstance(exception, Exception) else "by a non-local exit")
+
+    def tell(self, port, more=None):
+        if self.functor not in traced:
+            return  # it was untraced while this goal was proved
+        proofs = _proofs()
+        if proofs[-1].printing:  # how something of the goal is printed asks Prolog in turn
+            return
+        proofs[-1].printing = True
+        try:
+            text = line(readable(Cons(self.functor, list_from(self.terms)), Names()))
+            task = kernel.current()
+            name = "" if task is kernel.active().main else f"[{task.name}] "
+            stream = output_stream(TRACE_OUTPUT.value)
+            stream.fresh_line()
+            stream.write(f"{name}{'  ' * (self.depth % 20)}  {self.depth}: {port} {text}{f'   {more}' if more else ''}\n")
+        finally:
+            proofs[-1].printing = False
+
+
+# ----------------------------------------------------------------------------------------------------------- whose goals they are
+
+
+class _Proof:
+    """A proof that a task is about: ``goal`` is the traced goal that it is in, ``outer`` the one that the whole proof is made for."""
+
+    __slots__ = ("goal", "outer", "printing")
+
+    def __init__(self, outer):
+        self.goal = self.outer = outer
+        self.printing = False
+
+
+_proofs_of_tasks: dict = {}
+
+
+def _proofs():
+    """The proofs that the current task is about, the innermost last."""
+    task = kernel.current()
+    found = _proofs_of_tasks.get(task)
+    if found is None:  # a proof that began before anything was traced
+        found = _proofs_of_tasks[task] = [_Proof(None)]
+    return found
+
+
+_next_solution = Machine.next_solution
+
+
+def _watched_next_solution(m):
+    """`Machine.next_solution` while something is traced: notes what the proof is made for, and tells which goals an exception leaves."""
+    task = kernel.current()
+    proofs = _proofs_of_tasks.setdefault(task, [])
+    proof = _Proof(proofs[-1].goal if proofs else None)
+    proof.printing = bool(proofs) and proofs[-1].printing
+    proofs.append(proof)
+    try:
+        return _next_solution(m)
+    except BaseException as exception:
+        goal = proof.goal
+        while goal is not None and goal is not proof.outer:
+            goal.left(exception)
+            goal = goal.parent
+        raise
+    finally:
+        proofs.remove(proof)
+        if not proofs:
+            _proofs_of_tasks.pop(task, None)
+
+
+# ------------------------------------------------------------------------------------------------- the code of what is traced
+
+
+def _watch_predicate(predicate, entry):
+    """The call function of a traced predicate; ``entry`` is ``None`` for one that nobody has defined."""
+    functor = predicate.functor
+    body = _watched_body(predicate, entry)
+
+    def call(m, step):
+        goal = TracedGoal(functor, step[2:], _proofs()[-1].goal)
+        goal.called()
+        return body(m, ports.enter(m, goal, step[1]), goal)
+
+    return call
+
+
+def _watched_body(predicate, entry):
+    """``body(m, k, goal)``: the step that proves a goal, as the code of `Functor.code` does, noting the clause."""
+    if entry is None:
+        return lambda m, k, goal: database.undefined_step(m, Cons(goal.functor, list_from(goal.terms)))
+    clauses = clause_functions(predicate, entry.clauses)
+    built_in = entry.handler or entry.native and (entry.native.get(predicate.arity) or entry.native.get(None))
+    if not built_in:
+        return lambda m, k, goal: _try_clauses(m, k, goal, clauses, 0)
+
+    def body(m, k, goal):
+        if clauses:
+            height = len(m.choices)
+            m.choices.append((call_again, k, len(m.trail), _clauses_call, goal, clauses))
+            if entry.handler:
+                k = (handled, k, height)
+        if built_in is LISP_CALLS.get(goal.functor):
+            succeeded, goal.reason = reasons.call_lisp_goal(m, goal.functor, goal.terms)
+            return k if succeeded else fail(m)
+        return built_in(m, (built_in, k, *goal.terms))
+
+    return body
+
+
+def _clauses_call(m, step):
+    _, k, goal, clauses = step
+    return _try_clauses(m, k, goal, clauses, 0)
+
+
+def _try_clauses(m, k, goal, clauses, i):
+    """Try the clauses from a number on whose heads match the goal; a choice point only when there is another one."""
+    matching = _next_match(m, goal, clauses, i)
+    if matching is None:
+        return fail(m)
+    barrier = len(m.choices)
+    following = _next_match(m, goal, clauses, matching + 1)
+    if following is not None:
+        m.choices.append((_following, k, len(m.trail), goal, clauses, following))
+    goal.clause, function = clauses[matching]
+    return function(m, k, barrier, *goal.terms)
+
+
+def _following(m, step):
+    _, k, _, goal, clauses, i = step
+    m.choices.pop()
+    return _try_clauses(m, k, goal, clauses, i)
+
+
+def _next_match(m, goal, clauses, i):
+    """The number of the first clause from ``i`` on whose head matches; ``None`` without one. Nothing stays set."""
+    while i < len(clauses):
+        height = len(m.trail)
+        matches = unify(import_term(clauses[i][0].head.cdr, {}), list_from(goal.terms), m.trail)
+        undo(m.trail, height)
+        if matches:
+            return i
+        i += 1
+    return None
+
+
+def _watch_construct(functor, construct):
+    """The control function of a construct that is traced."""
+    def call(m, terms, k, b):
+        goal = TracedGoal(functor, arguments_of(Cons(functor, terms)), _proofs()[-1].goal)
+        goal.called()
+        return construct(m, terms, ports.enter(m, goal, k), b)
+
+    return call
+
+
+database.watch, control.watch = _watch_predicate, _watch_construct
+
+
+# -------------------------------------------------------------------------------------------------------------- on and off
+
+_ALL = "ALL"
+
+
+def trace_prolog(names=None):
+    """``(trace-prolog functor...)``: show the goals of these functors; ``:all`` those of all predicates. Returns what is new.
+
+    Without names: the list of the functors that are traced, ``(:all)`` first if all are.
+    """
+    if names is None:
+        return list_from([*([sym(":ALL")] if traced.everything else []), *traced])
+    names = list(names)
+    for name in names:
+        if not (_is_all(name) or valid_functor(name)):
+            return error("TRACE-PROLOG takes the functors of goals, and :ALL: ~S is none.", name)
+    for name in names:
+        if _is_all(name):
+            traced.everything = True
+            continue
+        if name not in traced.constructs and (name not in functors or not functors[name].defined):
+            near = reasons.spelled_like(name, [known for known in functors if functors[known].defined])
+            hint = f" Did you mean {' or '.join(line(symbol, 'DOWNCASE') for symbol in near)}?" if near else ""
+            warn(f"Nobody has defined ~S yet; its goals will be shown all the same.{hint.replace('~', '~~')}", name)
+        traced[name] = True
+    _changed()
+    return list_from(names)
+
+
+def untrace_prolog(names=None):
+    """``(untrace-prolog functor...)``: show the goals of these functors no more, without names no goals at all; ``t``."""
+    for name in [*traced, sym(":ALL")] if names is None else names:
+        if _is_all(name):
+            traced.everything = False
+        elif dict.__contains__(traced, name):
+            del traced[name]
+        else:
+            warn("~S is not traced.", name)
+    _changed()
+    return True
+
+
+def _is_all(name):
+    return isinstance(name, Keyword) and name.name == _ALL
+
+
+def _changed():
+    if traced:
+        Machine.next_solution = _watched_next_solution  # so that it costs nothing while nothing is traced
+    else:
+        Machine.next_solution = _next_solution
+        _proofs_of_tasks.clear()
+    database.forget_all()
+
+
+@contextmanager
+def tracing(*functors):
+    """Within it the goals of ``functors`` are shown, without any those of all predicates.
+
+    functors: symbols, or names such as ``"DESIG::MOTION-GROUNDING"``.
+    """
+    names = [sym(name) if isinstance(name, str) else name for name in functors] or [sym(":ALL")]
+    new = [name for name in names if not (traced.everything if _is_all(name) else dict.__contains__(traced, name))]
+    trace_prolog(new)
+    try:
+        yield
+    finally:
+        untrace_prolog(new)
