@@ -26,6 +26,8 @@ in_place: set = set()
 """Functors whose goals are compiled in place: when users give one clauses, all code is made anew."""
 watchers: list = []
 """Functions that are called with the name of a functor and its entry, or ``None``, after its clauses have changed."""
+
+
 class Traced(dict):
     """Functors whose goals are watched, in the order in which they were named.
 
