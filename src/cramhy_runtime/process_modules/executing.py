@@ -15,8 +15,8 @@ from ..cpl.suspension import retry_after_suspension
 from ..cpl.task_readers import result, status
 from ..cpl.waiting import wait_for
 from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import error, warn
-from ..lisp.data import Symbol, python_list, values
+from ..lisp.conditions import error, type_error, warn
+from ..lisp.data import Cons, Symbol, python_list, values
 from ..lisp.objects.generic import generic
 from ..lisp.packages import keyword
 from .modules import OFFLINE, RUNNING, AbstractProcessModule, ProcessModule, Request
@@ -140,13 +140,12 @@ def _monitor_by_name(name, *, designators=None):
 
 @monitor_process_module.method(ProcessModule)
 def _monitor(module, *, designators=None):
-    wanted = python_list(designators)
+    wanted = python_list(designators) if designators is None or isinstance(designators, Cons) else type_error(designators, "LIST")
     while True:
         wait_for(finished_fluent(module))
-        results = module.unprocessed_results
-        for designator in wanted or list(results):
-            if designator in results:
-                return values(*results.pop(designator))
+        found = module.results.take(wanted)
+        if found is not None:
+            return values(*found)
         wait_for(fl_pulsed(module.status_fluent, handle_missed_pulses=NEVER))
         if module.status_fluent.stored is OFFLINE:
             return error(not_running(module.name))

@@ -25,6 +25,7 @@ from ..cpl.fluents import make_fluent
 from ..cpl.statuses import EVAPORATED
 from ..cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.task_variables import inherit
+from ..designators.classes import Designator
 from ..designators.equating import current_desig
 from ..lisp.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, from_python, handler_bind, restart_case, type_error
 from ..lisp.data import Symbol, all_values, lisp_list, list_from, truth
@@ -72,6 +73,30 @@ class Request:
         self.cancelled = True
         if self.errand is not None:
             self.errand.end()
+
+
+class Results:
+    """What a module's runs returned, until ``monitor-process-module`` takes it or nobody holds the designator any more.
+
+    The values stand with the designator, for they may hold it: in a weak table of our own they would keep it for ever.
+    """
+
+    def __init__(self):
+        self._inputs = weakref.WeakKeyDictionary()  # in the order of completion
+        self._key = object()
+
+    def note(self, designator, values):
+        if isinstance(designator, Designator):
+            self._inputs.pop(designator, None)
+            self._inputs[designator] = True
+            designator.__dict__.setdefault("_results_of_modules", {})[self._key] = values
+
+    def take(self, wanted):
+        """The values for the first designator among ``wanted`` that has some, or for any one if it is empty; else ``None``."""
+        for designator in wanted or list(self._inputs):
+            if isinstance(designator, Designator) and self._inputs.pop(designator, False):
+                return designator.__dict__["_results_of_modules"].pop(self._key)
+        return None
 
 
 class AbstractProcessModule:
@@ -138,7 +163,7 @@ class ProcessModule(AbstractProcessModule):
         self.request = None  # the one in progress
         self.sleeper = None  # the kernel task of the main loop, while it waits for requests
         self.terminating = False
-        self.unprocessed_results = weakref.WeakKeyDictionary()
+        self.results = Results()
 
     def submit(self, request):
         """Put ``request`` into the queue."""
@@ -256,7 +281,7 @@ class ProcessModule(AbstractProcessModule):
             request.values = all_values(outcome)
             if request.values:
                 self.result_fluent.set(list_from(request.values))
-                self.unprocessed_results[request.input] = request.values
+                self.results.note(request.input, request.values)
 
     def ended(self):
         while self.queue:

@@ -12,6 +12,7 @@ from difflib import get_close_matches
 
 from cramhy_runtime import kernel
 
+from ..cpl.failure_types import opened
 from ..cpl.pausing import pause
 from ..cpl.task_variables import inherit
 from ..lisp.conditions import SimpleError, error, from_python
@@ -115,9 +116,10 @@ def not_running(name):
 
 def ended_because(problem):
     """What ended a module, as a text that holds no object of the plan."""
+    problem = from_python(opened(problem))
     locate(problem, problem)
     place = describe(getattr(problem, "position", None))
-    return f"{in_one_line(from_python(problem))}{f', at {place}' if place else ''}"
+    return f"{in_one_line(problem)}{f', at {place}' if place else ''}"
 
 
 def in_one_line(thing):
@@ -135,8 +137,7 @@ def _with_hint(problem, name):
         nearest = _nearest(name, [*registry.modules, *_defined])
         if nearest is not None:
             lines.append(f"Did you mean {_typed(nearest)}?")
-    lines.append(f"Running now: {', '.join(map(_typed, registry.modules)) or 'none'}. "
-                 f"Defined: {', '.join(map(_typed, _defined)) or 'none'}.")
+    lines.append(f"Running now: {_listed(registry.modules)}. Defined: {_listed(_defined)}.")
     if name in _defined and name not in registry.modules:
         lines.append(f"Modules run in (cpm:with-process-modules-running ({shown}) ...).")
     problem.hint = " ".join(lines)
@@ -146,6 +147,10 @@ def _with_hint(problem, name):
 def _typed(name):
     """A name as the user types it."""
     return str(getattr(name, "name", name)).lower()
+
+
+def _listed(names):
+    return ", ".join(dict.fromkeys(map(_typed, names))) or "none"
 
 
 def _nearest(name, names):
