@@ -11,12 +11,12 @@ warns of nothing; their default clauses only check, with ``*break-on-lisp-errors
 from __future__ import annotations
 
 from ..lisp.conditions import error
-from ..lisp.data import Cons, Keyword, Symbol, truth
+from ..lisp.data import Cons, Keyword, Symbol
 from ..prolog.facts import built_in_group
 from ..prolog.lisp_calls import BREAK_ON_LISP_ERRORS, call_lisp
 from ..prolog.machine import fail, retry_iterator
 from ..prolog.natives import deref, predicate, resolve, step_predicate, test
-from ..prolog.terms import Var, ground
+from ..prolog.terms import Var, ground, unify
 from .classes import (
     ActionDesignator,
     Designator,
@@ -27,6 +27,7 @@ from .classes import (
     living,
     type_keyword,
 )
+from .clause_index import index_by_properties
 from .equating import chain, desig_equal, designator_solutions, get_equal_designators, newest_effective_designator, youngest
 from .symbols import sym
 
@@ -45,6 +46,46 @@ def _members(m, desig):
 def _call(name, *arguments):
     """(True, value) of a Lisp function; (False, None) and a warning when it signals an error, as with ``lisp-fun``."""
     return call_lisp(sym(f"DESIG::{name}"), arguments, "function", sym(f"DESIG::{name}"))
+
+
+@step_predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS", arity=2)
+def desig_prop(m, step):
+    """``(desig-prop d (key value))``: the matching properties, in order. Nearly always the key is a keyword, as written."""
+    designator, pair = step[2], step[3]
+    if designator.__class__ is Var:
+        designator = deref(designator)
+    if not isinstance(designator, Designator):
+        return fail(m)
+    if pair.__class__ is Cons:
+        key, rest = pair.car, pair.cdr
+        if key.__class__ is Keyword and rest.__class__ is Cons and rest.cdr is None:
+            return _values(m, step[1], key, rest.car, designator.description)
+    return retry_iterator(m, step[1], _properties(m, designator, pair))
+
+
+def _values(m, k, key, value, cell):
+    """Unify ``value`` with the value of the first property with ``key`` from ``cell`` on; a choice point only if there are more."""
+    while cell.__class__ is Cons:
+        entry = cell.car
+        cell = cell.cdr
+        if entry.__class__ is Cons and entry.car is key:
+            rest = entry.cdr
+            if rest.__class__ is Cons and rest.cdr is None:
+                while cell.__class__ is Cons and (cell.car.__class__ is not Cons or cell.car.car is not key):
+                    cell = cell.cdr
+                found = rest.car
+                if cell is not None:
+                    m.choices.append((_further_values, k, len(m.trail), key, value, cell))
+                if value is found or unify(value, found, m.trail):
+                    return k
+                break
+    return fail(m)
+
+
+def _further_values(m, step):
+    m.choices.pop()
+    _, k, _, key, value, cell = step
+    return _values(m, k, key, value, cell)
 
 
 def _properties(m, designator, pair, *also):
@@ -66,13 +107,6 @@ def _pairs(designator):
         entry, cell = cell.car, cell.cdr
         if isinstance(entry, Cons) and isinstance(entry.cdr, Cons) and entry.cdr.cdr is None:
             yield entry
-
-
-@step_predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS", arity=2)
-def desig_prop(m, step):
-    """``(desig-prop d (key value))``: the matching properties, in order."""
-    designator = _designator(m, step[2])
-    return fail(m) if designator is None else retry_iterator(m, step[1], _properties(m, designator, step[3]))
 
 
 @predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS")
@@ -214,19 +248,20 @@ def desig_location_prop(m, desig, pose):
 built_in_group(sym("DESIG::LOCATION-DESIGNATORS"), sym("DESIG::DESIG-LOC"))
 
 
-def _default_clause(group, functor, cls):
-    tag = functor.lower()
+def _grounding(group, functor, cls):
+    """Define a grounding predicate, without clauses but the default one, which checks, if wanted, and fails."""
+    functor = sym(f"DESIG::{functor}")
+    built_in_group(sym(f"DESIG::{group}"), functor)
 
-    @step_predicate(f"DESIG::{functor}", group=f"DESIG::{group}", arity=2)
     def check(m, step):
-        """The clause that every grounding begins with: it checks, if wanted, and fails."""
-        if truth(BREAK_ON_LISP_ERRORS.value):
+        if BREAK_ON_LISP_ERRORS.value is not None and len(step) == 4:
             asked = resolve(step[2], m.names)
             if not isinstance(asked, cls):
-                return error("[~a]: ~a had to be of type ~a", f"default {tag}", asked, sym(cls.lisp_name))
-        return fail(m)
+                error("[~a]: ~a had to be of type ~a", f"default {functor.name.lower()}", asked, sym(cls.lisp_name))
+
+    index_by_properties(functor, check)
 
 
-_default_clause("DEFAULT-ACTION-GROUNDING", "ACTION-GROUNDING", ActionDesignator)
-_default_clause("DEFAULT-MOTION-SOLUTION", "MOTION-GROUNDING", MotionDesignator)
-_default_clause("LOCATION-DESIGNATOR-GENERATORS", "LOCATION-GROUNDING", LocationDesignator)
+_grounding("DEFAULT-ACTION-GROUNDING", "ACTION-GROUNDING", ActionDesignator)
+_grounding("DEFAULT-MOTION-SOLUTION", "MOTION-GROUNDING", MotionDesignator)
+_grounding("LOCATION-DESIGNATOR-GENERATORS", "LOCATION-GROUNDING", LocationDesignator)

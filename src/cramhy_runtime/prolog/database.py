@@ -106,14 +106,15 @@ class Functor:
 
     ``handler`` is a call function; ``native`` maps numbers of arguments (``None``: any) to call functions that stand for the
     clauses of the built-in fact group ``native_group``; ``clauses`` are those of users, in order. A functor of a built-in group
-    without native facts is there to be extended: its goals just fail until users add clauses.
+    without native facts is there to be extended: its goals just fail until users add clauses. ``compiler`` makes the call function
+    of the clauses, where a room knows a better way than `compile_clauses`.
     """
 
-    __slots__ = ("name", "handler", "native", "native_group", "clauses")
+    __slots__ = ("name", "handler", "native", "native_group", "clauses", "compiler")
 
     def __init__(self, name):
         self.name = name
-        self.handler = self.native = self.native_group = None
+        self.handler = self.native = self.native_group = self.compiler = None
         self.clauses = []
 
     @property
@@ -131,7 +132,10 @@ class Functor:
         """The call function for goals with ``arity`` arguments, and the `Relation` if they are rows of one."""
         native = self.native and (self.native.get(arity) or self.native.get(None) or _failing)
         predicate = find_predicate(self.name, arity)
-        from_clauses, relation = compile_clauses(predicate, self.clauses) if self.clauses else (None, None)
+        if self.compiler is not None:
+            from_clauses, relation = self.compiler(predicate, self.clauses)
+        else:
+            from_clauses, relation = compile_clauses(predicate, self.clauses) if self.clauses else (None, None)
         if self.handler is not None:
             return (_with_fallback(self.handler, from_clauses) if from_clauses else self.handler), None
         if native:
