@@ -19,11 +19,12 @@ from ..lisp.dynamic import special
 from ..lisp.objects.generic import GenericFunction, generic, no_applicable_method
 from ..lisp.objects.generic_errors import NoApplicableMethodError
 from ..lisp.printer.printer import princ_to_string
-from ..utilities.lazy_lists import from_iterator, lazy_car, lazy_cdr
+from ..utilities.lazy_lists import lazy_car, lazy_cdr, tail
 from ..utilities.lines import Line
 from ..utilities.patterns import is_var
-from ..prolog.query import ask
-from ..prolog.terms import Var
+from ..prolog.database import find_predicate
+from ..prolog.machine import SOLVED, Machine
+from ..prolog.terms import Var, resolve
 from ..utilities.small_functions import current_timestamp
 from .classes import (
     ActionDesignator,
@@ -144,10 +145,23 @@ def _endless(ring):
     return error(problem)
 
 
-def _groundings(designator, predicate):
-    for (value,) in ask(predicate, designator, Var()):
-        if not (isinstance(value, Symbol) and is_var(value)):
-            yield value
+class Groundings(Machine):
+    """The proof of a goal ``(predicate designator value)``, and the lazy list of the values."""
+
+    __slots__ = ("value",)
+
+    def __init__(self, predicate, designator):
+        super().__init__()
+        self.value = Var()
+        self.start = find_predicate(predicate, 2).call, SOLVED, designator, self.value
+
+    def rest(self):
+        """The values to come, the first one computed now. A variable is none."""
+        while self.next_solution():
+            value = resolve(self.value)
+            if value.__class__ is not Symbol or not is_var(value):
+                return Cons(value, tail(self.rest))
+        return None
 
 
 @resolve_designator.method(ActionDesignator, None)
@@ -156,7 +170,7 @@ def _resolve_by_prolog(designator, role=None):
     # An action or motion without solution stays without, even when facts are added later: a new designator is tried afresh.
     action = isinstance(designator, ActionDesignator)
     if designator.solutions is UNBOUND:
-        designator.solutions = from_iterator(_groundings(designator, ACTION_GROUNDING if action else MOTION_GROUNDING))
+        designator.solutions = Groundings(ACTION_GROUNDING if action else MOTION_GROUNDING, designator).rest()
     solutions = designator.solutions
     value = solutions.car if solutions is not None else None
     if value is None:

@@ -8,22 +8,26 @@ plan failures and other conditions that are no errors go through. Source: prolog
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import Error, StorageCondition, handler_bind, type_error, undefined_function, warn
-from cramhy_runtime.lisp.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, truth
-from cramhy_runtime.lisp.dynamic import special
+from cramhy_runtime.lisp.conditions import (
+    Condition,
+    Error,
+    HandlerExit,
+    StorageCondition,
+    caught,
+    enter_case,
+    foreign_case,
+    type_error,
+    undefined_function,
+    warn,
+)
+from cramhy_runtime.lisp.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, lisp_list, truth
+from cramhy_runtime.lisp.dynamic import special, unbind
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
 from .symbols import CUT, PROLOG, sym
 from .terms import TermTail, Var, import_term, raw, resolve, undo, unify
 
 BREAK_ON_LISP_ERRORS = special(PROLOG.intern("*BREAK-ON-LISP-ERRORS*"))
-
-
-class _CallFailed(BaseException):
-    """Unwinds from the error in a called Lisp function to the goal that called it."""
-
-    def __init__(self, token, condition):
-        self.token, self.condition = token, condition
 
 
 def resolve_argument(m, term):
@@ -60,28 +64,33 @@ def call_lisp(function, arguments, kind, written):
     """
     if truth(BREAK_ON_LISP_ERRORS.value):
         return True, _apply(function, arguments)
-    token = object()
-
-    def leave(condition):
-        raise _CallFailed(token, condition)
-
+    case = enter_case(_ERRORS)
     try:
-        return True, handler_bind([(Error, leave)], lambda: _apply(function, arguments))
-    except _CallFailed as failed:
-        if failed.token is not token:
-            raise
-        problem = failed.condition
+        try:
+            return True, _apply(function, arguments)
+        except (Condition, Exception) as exception:  # raised by Python code without being signalled
+            foreign_case(exception, case)
+        finally:
+            unbind()
+    except HandlerExit as left:
+        problem = caught(left, case)
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
     warn(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
     return False, problem
 
 
+_ERRORS = lisp_list(Error)
+
+
 def _apply(function, arguments):
     if function.__class__ is not Symbol and function.__class__ is not Keyword:
         return type_error(function, "SYMBOL")
     if function.package is not CUT:
-        arguments = [_whole(item) for item in arguments]
+        for item in arguments:
+            if item.__class__ is Cons:
+                arguments = [_whole(item) for item in arguments]
+                break
     code = function.function
     if code.__class__ is UndefinedFunction:
         return undefined_function(function, tuple(arguments), {})

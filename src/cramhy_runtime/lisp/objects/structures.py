@@ -104,9 +104,7 @@ class Structure:
         """The keyword constructor. Python callers may use keywords."""
         if len(initargs) % 2:
             return program_error("odd number of &KEY arguments")
-        given = {}
-        for index in range(0, len(initargs), 2):
-            given.setdefault(initargs[index], initargs[index + 1])
+        given = dict(zip(initargs[-2::-2], initargs[::-2]))  # from the last to the first: of equal keywords the first one counts
         for name, value in keywords.items():
             slot = next((slot for slot in self.slots if slot.attribute == name), None)
             given[slot.keyword if slot else keyword(name.upper())] = value
