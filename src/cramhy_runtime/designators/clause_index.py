@@ -9,22 +9,29 @@ The rules by which designators are ground all have one form:
 
 so a designator without a speed, or of another type, fails them at once. Prolog indexes clauses by their first argument, and that is
 the same variable everywhere; here the properties are the index. When the first argument of a goal is a designator, the clauses whose
-first goals ask for a key that it lacks, or for another type, are left out before anything is proved. What is left is compiled as a
-predicate of its own, once for each combination of clauses.
+first goals ask for a key that it lacks, or for another type, are left out before anything is proved. In those that are left these
+goals become arguments: what stands above is proved as if it were
+
+    (<- (motion-grounding ?desig (drive ?motion) :driving ?speed)
+      ...
+
+for a goal that brings the values along. That is compiled once for each set of keys and type that designators have.
 
 Nobody can tell the difference but by the clock: only goals ``desig-prop`` with a constant key at the very beginning of a body count,
-which do nothing but fail, and the clauses that are left are tried in their order. If users have given ``desig-prop`` itself clauses,
-nothing is left out.
+which do nothing but fail, and the clauses that are left are tried in their order. For a designator with two properties of one key
+everything is proved as it is written; so it is when users have given ``desig-prop`` itself clauses, or trace it.
 """
 
 from __future__ import annotations
 
-from ..lisp.data import Cons, Keyword, Symbol
+from ..lisp.data import Cons, Keyword, Symbol, list_from
 from ..lisp.packages import keyword
 from ..prolog.compiler import compile_clauses
-from ..prolog.database import Predicate, changed, functor_entry
-from ..prolog.terms import deref
-from ..utilities.patterns import variable
+from ..prolog.database import Clause, Predicate, changed, functor_entry, traced
+from ..prolog.machine import fail
+from ..prolog.source import proper
+from ..prolog.terms import Var, deref
+from ..utilities.patterns import ANONYMOUS, variable
 from .classes import Designator
 from .symbols import sym
 
@@ -48,79 +55,91 @@ class ClauseIndex:
 
     def __init__(self, predicate, clauses, check):
         self.predicate, self.clauses, self.check = predicate, clauses, check
-        self.demands = [_demands(clause) for clause in clauses]
-        self.of_shape = {}  # type and keys of a designator -> call function
-        self.of_clauses = {}  # numbers of clauses -> call function
-        self.everything = self._code(range(len(clauses)))
+        self.code, _ = compile_clauses(predicate, clauses) if clauses else (_failing, None)
+        self.rules = [_Rule(clause) for clause in clauses]
+        self.of_shape = {}  # (type, key...) -> the keys whose values are arguments, and the call function
         self.properties = functor_entry(DESIG_PROP)
 
     def call(self, m, step):
         """The call function of the predicate."""
         if self.check is not None:
             self.check(m, step)
-        designator = deref(step[2])
-        if not isinstance(designator, Designator) or self.properties.clauses:
-            return self.everything(m, step)
-        shape = []
-        type_ = None
+        designator = step[2]
+        if designator.__class__ is Var:
+            designator = deref(designator)
+        if not isinstance(designator, Designator) or self.properties.clauses or DESIG_PROP in traced:
+            return self.code(m, step)
+        values = {}
         cell = designator.description
         while cell.__class__ is Cons:
             entry = cell.car
             if entry.__class__ is Cons:
-                key = entry.car
-                if key is TYPE:
-                    if type_ is not None:  # of two types: either could be meant
-                        return self.everything(m, step)
-                    type_ = entry.cdr.car if entry.cdr.__class__ is Cons else None
-                    if type_.__class__ is not Keyword:
-                        return self.everything(m, step)
-                elif key.__class__ is Keyword:
-                    shape.append(key)
+                rest, key = entry.cdr, entry.car
+                if rest.__class__ is Cons and rest.cdr is None and key.__class__ is Keyword:
+                    if key in values:
+                        return self.code(m, step)
+                    values[key] = rest.car
             cell = cell.cdr
-        shape.append(type_)
-        shape = tuple(shape)
-        code = self.of_shape.get(shape)
-        if code is None:
-            code = self._for_shape(type_, shape[:-1])
-            if len(self.of_shape) < _SHAPES:
-                self.of_shape[shape] = code
-        return code(m, step)
-
-    def _for_shape(self, type_, keys):
-        present = {*keys, TYPE} if type_ is not None else set(keys)
-        return self._code([number for number, demands in enumerate(self.demands)
-                           if all(key in present and (key is not TYPE or value is None or value is type_) for key, value in demands)])
-
-    def _code(self, numbers):
-        numbers = tuple(numbers)
-        found = self.of_clauses.get(numbers)
+        type_ = values.get(TYPE)
+        shape = (type_ if type_.__class__ is Keyword else None, *values)
+        found = self.of_shape.get(shape)
         if found is None:
-            # The name is one that no goal has: a goal of the predicate itself in a body is to come back to the index.
-            part = Predicate(Symbol(self.predicate.functor.name), self.predicate.arity)
-            part.call, part.relation = compile_clauses(part, [self.clauses[number] for number in numbers])
-            found = self.of_clauses[numbers] = part.call
-        return found
+            found = self._for_shape(shape)
+            if len(self.of_shape) < _SHAPES:
+                self.of_shape[shape] = found
+        keys, code = found
+        return code(m, (code, step[1], designator, *step[3:], *[values[key] for key in keys]))
+
+    def _for_shape(self, shape):
+        type_, keys = shape[0], shape[1:]
+        rules = [rule for rule in self.rules if rule.fits(type_, keys)]
+        wanted = list(dict.fromkeys(key for rule in rules for key in rule.values))
+        if not rules:
+            return (), _failing
+        if not all(proper(rule.clause.head) for rule in rules):  # the end of a dotted head would take the values for itself
+            return (), self.code
+        # The name is one that no goal has: a goal of the predicate itself in a body is to come back to the index.
+        part = Predicate(Symbol(self.predicate.functor.name), self.predicate.arity + len(wanted))
+        part.call, part.relation = compile_clauses(part, [rule.with_arguments(wanted) for rule in rules])
+        return tuple(wanted), part.call
 
 
-def _demands(clause):
-    """The properties without which ``clause`` fails at once: pairs of a key and, for the type, the value, or ``None`` for any."""
-    first = clause.head.cdr.car if isinstance(clause.head.cdr, Cons) else None
-    if not variable(first):
-        return []
-    found = []
-    for goal in clause.goals or ():
-        asked = _property_of(first, goal)
-        if asked is None:
-            break
-        key, value = asked
-        found.append((key, value if key is TYPE and isinstance(value, Keyword) else None))
-    return found
+def _failing(m, step):
+    return fail(m)
 
 
-def _property_of(first, goal):
-    """(key, value) if ``goal`` is ``(desig-prop first (key value))`` with a keyword as key, else ``None``."""
-    if isinstance(goal, Cons) and goal.car is DESIG_PROP and len(goal) == 3:
-        _, designator, pair = goal
-        if designator is first and isinstance(pair, Cons) and len(pair) == 2 and pair.cdr.cdr is None and isinstance(pair.car, Keyword):
+class _Rule:
+    """A clause, and what it asks of its designator before anything else: ``values``, the patterns by their keys."""
+
+    def __init__(self, clause):
+        self.clause, self.values = clause, {}
+        self.goals = list(clause.goals or ())
+        designator = clause.head.cdr.car if isinstance(clause.head.cdr, Cons) else None
+        if variable(designator) and designator is not ANONYMOUS and proper(clause.head):
+            while self.goals:
+                key, value = _property_of(designator, self.goals[0])
+                if key is None or key in self.values:
+                    break
+                self.values[key] = value
+                del self.goals[0]
+
+    def fits(self, type_, keys):
+        """Whether a designator of that type, with these keys, can satisfy it."""
+        if not all(key in keys for key in self.values):
+            return False
+        wanted = self.values.get(TYPE)
+        return not isinstance(wanted, Keyword) or wanted is type_
+
+    def with_arguments(self, keys):
+        """The clause with the values of ``keys`` as further arguments, in the place of the goals that ask for them."""
+        head = list_from([*self.clause.head, *(self.values.get(key, ANONYMOUS) for key in keys)])
+        return Clause(head, self.goals or None, self.clause.group)
+
+
+def _property_of(designator, goal):
+    """(key, value) if ``goal`` is ``(desig-prop designator (key value))`` with a keyword as key, else two ``None``."""
+    if isinstance(goal, Cons) and goal.car is DESIG_PROP and proper(goal) and len(goal) == 3:
+        _, of, pair = goal
+        if of is designator and isinstance(pair, Cons) and proper(pair) and len(pair) == 2 and isinstance(pair.car, Keyword):
             return pair.car, pair.cdr.car
-    return None
+    return None, None
