@@ -16,7 +16,7 @@ from ..lisp.condition_types import SimpleError, SimpleWarning
 from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
 from ..lisp.objects.classes import find_class_or_error
-from ..lisp.objects.generic import generic
+from ..lisp.objects.generic import GenericFunction, generic, when_methods_change
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.objects.instances import make_instance, plan_for
 from ..lisp.packages import is_symbol, keyword, near_names
@@ -30,6 +30,7 @@ _object_ids = itertools.count(1)
 _live = weakref.WeakSet()
 _classes = {}  # type keyword -> class, or the symbol that is to name it
 _types = {}  # class -> the first keyword registered for it
+_quick = {}  # type keyword -> class, for the kinds whose instances are made by their constructor alone
 
 
 class DesignatorError(SimpleError):
@@ -162,6 +163,7 @@ def register_designator_class(type_, cls):
     ``cls`` may be a symbol that will name a class by the time that one is made.
     """
     _classes[type_] = cls
+    _quick.pop(type_, None)
     _types.clear()
     for known, registered in _classes.items():
         _types.setdefault(registered, known)
@@ -206,6 +208,30 @@ def _make_designator(class_, description, parent=None):
     if parent is not None:
         equate(parent, designator)
     return designator
+
+
+@when_methods_change
+def _methods_changed(generic_function):
+    _quick.clear()
+
+
+class QuickMaking(GenericFunction):
+    """``make-designator`` while nobody has added methods."""
+
+    def __call__(self, *arguments):
+        cls = None
+        if len(arguments) == 2 and arguments[0].__class__ is Keyword:
+            cls = _quick.get(arguments[0])
+        if cls is not None:
+            return cls(arguments[1])
+        made = self.lookup(arguments)(*arguments)
+        cls = made.__class__
+        if cls in STANDARD and _classes.get(arguments[0]) is cls and not plan_for(cls).custom:
+            _quick[arguments[0]] = cls
+        return made
+
+
+make_designator.take_shortcut(QuickMaking)
 
 
 def _undefined_type(type_):

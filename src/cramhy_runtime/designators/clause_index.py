@@ -24,10 +24,13 @@ everything is proved as it is written; so it is when users have given ``desig-pr
 
 from __future__ import annotations
 
+from operator import itemgetter
+
 from ..lisp.data import Cons, Keyword, Symbol, list_from
 from ..lisp.packages import keyword
 from ..prolog.compiler import compile_clauses
 from ..prolog.database import Clause, Predicate, changed, functor_entry, traced
+from ..prolog.lisp_calls import BREAK_ON_LISP_ERRORS
 from ..prolog.machine import fail
 from ..prolog.source import proper
 from ..prolog.terms import Var, deref
@@ -44,7 +47,7 @@ _SHAPES = 1000
 def index_by_properties(functor, check=None):
     """Let the clauses of ``functor`` be looked up by the designator that is the first argument of its goals.
 
-    ``check(machine, step)`` is called before each goal.
+    ``check(machine, step)`` is called before each goal while ``*break-on-lisp-errors*`` is true.
     """
     functor_entry(functor).compiler = lambda predicate, clauses: (ClauseIndex(predicate, clauses, check).call, None)
     changed(functor)
@@ -62,24 +65,28 @@ class ClauseIndex:
 
     def call(self, m, step):
         """The call function of the predicate."""
-        if self.check is not None:
+        if self.check is not None and BREAK_ON_LISP_ERRORS.value is not None:
             self.check(m, step)
         designator = step[2]
         if designator.__class__ is Var:
             designator = deref(designator)
-        if not isinstance(designator, Designator) or self.properties.clauses or DESIG_PROP in traced:
+        if not isinstance(designator, Designator) or self.properties.clauses or (traced and DESIG_PROP in traced):
             return self.code(m, step)
-        values = {}
+        values, count = {}, 0
         cell = designator.description
-        while cell.__class__ is Cons:
-            entry = cell.car
-            if entry.__class__ is Cons:
-                rest, key = entry.cdr, entry.car
-                if rest.__class__ is Cons and rest.cdr is None and key.__class__ is Keyword:
-                    if key in values:
-                        return self.code(m, step)
-                    values[key] = rest.car
-            cell = cell.cdr
+        try:
+            while cell is not None:
+                entry = cell.car
+                rest = entry.cdr
+                if rest.cdr is not None:
+                    break
+                values[entry.car] = rest.car
+                count += 1
+                cell = cell.cdr
+        except (AttributeError, TypeError):  # no list of pairs, or a key that is no symbol
+            cell = True
+        if cell is not None or len(values) != count:
+            return self.code(m, step)
         type_ = values.get(TYPE)
         shape = (type_ if type_.__class__ is Keyword else None, *values)
         found = self.of_shape.get(shape)
@@ -87,21 +94,29 @@ class ClauseIndex:
             found = self._for_shape(shape)
             if len(self.of_shape) < _SHAPES:
                 self.of_shape[shape] = found
-        keys, code = found
-        return code(m, (code, step[1], designator, *step[3:], *[values[key] for key in keys]))
+        pick, code = found
+        return code(m, (code, step[1], designator, *step[3:], *pick(values)))
 
     def _for_shape(self, shape):
+        """(the function that takes the arguments out of the values by their keys, the call function)"""
         type_, keys = shape[0], shape[1:]
         rules = [rule for rule in self.rules if rule.fits(type_, keys)]
-        wanted = list(dict.fromkeys(key for rule in rules for key in rule.values))
         if not rules:
-            return (), _failing
+            return _nothing, _failing
         if not all(proper(rule.clause.head) for rule in rules):  # the end of a dotted head would take the values for itself
-            return (), self.code
+            return _nothing, self.code
+        wanted = list(dict.fromkeys(key for rule in rules for key, value in rule.values.items()
+                                    if key is not TYPE or not isinstance(value, Keyword)))
         # The name is one that no goal has: a goal of the predicate itself in a body is to come back to the index.
         part = Predicate(Symbol(self.predicate.functor.name), self.predicate.arity + len(wanted))
         part.call, part.relation = compile_clauses(part, [rule.with_arguments(wanted) for rule in rules])
-        return tuple(wanted), part.call
+        pick = (_nothing if not wanted else itemgetter(*wanted) if len(wanted) > 1 else
+                lambda values, key=wanted[0]: (values[key],))
+        return pick, part.call
+
+
+def _nothing(values):
+    return ()
 
 
 def _failing(m, step):

@@ -13,7 +13,7 @@ from __future__ import annotations
 from ..lisp.conditions import error
 from ..lisp.data import Cons, Keyword, Symbol
 from ..prolog.facts import built_in_group
-from ..prolog.lisp_calls import BREAK_ON_LISP_ERRORS, call_lisp
+from ..prolog.lisp_calls import call_lisp
 from ..prolog.machine import fail, retry_iterator
 from ..prolog.natives import deref, predicate, resolve, step_predicate, test
 from ..prolog.terms import Var, ground, unify
@@ -254,10 +254,9 @@ def _grounding(group, functor, cls):
     built_in_group(sym(f"DESIG::{group}"), functor)
 
     def check(m, step):
-        if BREAK_ON_LISP_ERRORS.value is not None and len(step) == 4:
-            asked = resolve(step[2], m.names)
-            if not isinstance(asked, cls):
-                error("[~a]: ~a had to be of type ~a", f"default {functor.name.lower()}", asked, sym(cls.lisp_name))
+        asked = resolve(step[2], m.names)
+        if not isinstance(asked, cls) and len(step) == 4:
+            error("[~a]: ~a had to be of type ~a", f"default {functor.name.lower()}", asked, sym(cls.lisp_name))
 
     index_by_properties(functor, check)
 

@@ -42,8 +42,8 @@ from .protocol import designator_solutions_equal, equate, next_solution, referen
 from .symbols import sym
 
 DEFAULT_ROLE = special(sym("DESIG::*DEFAULT-ROLE*"))
-ACTION_GROUNDING = sym("DESIG::ACTION-GROUNDING")
-MOTION_GROUNDING = sym("DESIG::MOTION-GROUNDING")
+ACTION_GROUNDING = find_predicate(sym("DESIG::ACTION-GROUNDING"), 2)
+MOTION_GROUNDING = find_predicate(sym("DESIG::MOTION-GROUNDING"), 2)
 
 resolve_designator = generic("DESIG::RESOLVE-DESIGNATOR", "(desig role)", documentation="""
 Find what the designator stands for; called by reference. Methods on ``(eql role)`` resolve in their own way.""")
@@ -62,9 +62,10 @@ def unresolved(designator, control, told=None):
 
 @reference.method(Designator)
 def _reference(designator, role=UNSUPPLIED):
-    found = known(designator)
-    if found is not None:
-        return found
+    if designator.effective:
+        known = designator.current_solution if isinstance(designator, LocationDesignator) else designator.data
+        if known is not None:
+            return known
     me = kernel.current()
     while designator.resolver is not None:
         _wait_for_resolver(designator, me)
@@ -82,25 +83,19 @@ def _reference(designator, role=UNSUPPLIED):
             line.serve_all()
 
 
-def known(designator):
-    """What the designator was found to stand for; ``None`` if that is not known."""
-    if designator.effective:
-        return designator.current_solution if isinstance(designator, LocationDesignator) else designator.data
-    return None
-
-
 class QuickReference(GenericFunction):
     """``reference`` while nobody has added methods: a designator that is resolved already gives its value without any dispatch."""
 
     def __call__(self, desig=UNSUPPLIED, role=UNSUPPLIED, *more):
         cls = desig.__class__
-        if more or desig is UNSUPPLIED:
-            return wrong_argument_count(len(more) + 2 if more else 0)
-        if cls is MotionDesignator or cls is ActionDesignator or cls is ObjectDesignator:
+        if (cls is MotionDesignator or cls is ActionDesignator or cls is ObjectDesignator) and not more:
             if desig.effective and desig.data is not None:
                 return desig.data
-            return _reference(desig, role)
-        return _reference(desig, role) if isinstance(desig, Designator) else no_applicable_method(self, (desig,))
+        elif more or desig is UNSUPPLIED:
+            return wrong_argument_count(len(more) + 2 if more else 0)
+        elif not isinstance(desig, Designator):
+            return no_applicable_method(self, (desig,))
+        return _reference(desig, role)
 
 
 reference.take_shortcut(QuickReference)
@@ -151,9 +146,9 @@ class Groundings(Machine):
     __slots__ = ("value",)
 
     def __init__(self, predicate, designator):
-        super().__init__()
+        Machine.__init__(self)
         self.value = Var()
-        self.start = find_predicate(predicate, 2).call, SOLVED, designator, self.value
+        self.start = predicate.call, SOLVED, designator, self.value
 
     def rest(self):
         """The values to come, the first one computed now. A variable is none."""
@@ -168,13 +163,14 @@ class Groundings(Machine):
 @resolve_designator.method(MotionDesignator, None)
 def _resolve_by_prolog(designator, role=None):
     # An action or motion without solution stays without, even when facts are added later: a new designator is tried afresh.
-    action = isinstance(designator, ActionDesignator)
-    if designator.solutions is UNBOUND:
-        designator.solutions = Groundings(ACTION_GROUNDING if action else MOTION_GROUNDING, designator).rest()
     solutions = designator.solutions
+    if solutions is UNBOUND:
+        predicate = MOTION_GROUNDING if isinstance(designator, MotionDesignator) else ACTION_GROUNDING
+        solutions = designator.solutions = Groundings(predicate, designator).rest()
     value = solutions.car if solutions is not None else None
     if value is None:
-        return unresolved(designator, f"Cannot resolve {'action' if action else 'motion'} designator ~a.")
+        kind = "motion" if isinstance(designator, MotionDesignator) else "action"
+        return unresolved(designator, f"Cannot resolve {kind} designator ~a.")
     designator.data = value
     return value
 
@@ -200,6 +196,20 @@ def _resolve_object(designator, role=None):
 def _resolve_human(designator, role=None):
     return designator.data if designator.data is not None else unresolved(
         designator, "Designator `~a' does not reference an human.")
+
+
+class QuickResolution(GenericFunction):
+    """``resolve-designator`` while nobody has added methods, for the kinds that rules ground."""
+
+    def __call__(self, *arguments):
+        if len(arguments) == 2:
+            cls = arguments[0].__class__
+            if cls is MotionDesignator or cls is ActionDesignator:
+                return _resolve_by_prolog(*arguments)
+        return self.lookup(arguments)(*arguments)
+
+
+resolve_designator.take_shortcut(QuickResolution)
 
 
 @next_solution.method(LocationDesignator)
