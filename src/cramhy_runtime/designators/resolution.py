@@ -60,12 +60,19 @@ def unresolved(designator, control, told=None):
     return error(problem)
 
 
+def known(designator):
+    """What the designator was found to stand for; ``None`` if that is not known."""
+    if designator.effective:
+        return designator.current_solution if isinstance(designator, LocationDesignator) else designator.data
+    return None
+
+
 @reference.method(Designator)
 def _reference(designator, role=UNSUPPLIED):
     if designator.effective:
-        known = designator.current_solution if isinstance(designator, LocationDesignator) else designator.data
-        if known is not None:
-            return known
+        found = known(designator)
+        if found is not None:
+            return found
     me = kernel.current()
     while designator.resolver is not None:
         _wait_for_resolver(designator, me)
