@@ -109,7 +109,7 @@ class ClauseIndex:
                                     if key is not TYPE or not isinstance(value, Keyword)))
         # The name is one that no goal has: a goal of the predicate itself in a body is to come back to the index.
         part = Predicate(Symbol(self.predicate.functor.name), self.predicate.arity + len(wanted))
-        part.call, part.relation = compile_clauses(part, [rule.with_arguments(wanted) for rule in rules])
+        part.call, _ = compile_clauses(part, [rule.with_arguments(wanted) for rule in rules])
         pick = (_nothing if not wanted else itemgetter(*wanted) if len(wanted) > 1 else
                 lambda values, key=wanted[0]: (values[key],))
         return pick, part.call
