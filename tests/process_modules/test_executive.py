@@ -8,6 +8,7 @@ from cramhy_runtime import process_modules as pm
 from cramhy_runtime.designators.classes import DesignatorError
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import MultipleValues, UndefinedFunction
+from cramhy_runtime.lisp.tools.advice import hint_for
 from cramhy_runtime.process_modules.executive import DesignatorReferenceFailure
 
 from .test_modules import NAVIGATION, define, with_modules
@@ -92,3 +93,41 @@ def test_an_object_cannot_be_performed():
     with pytest.raises(Error) as problem:
         cpl.top_level(lambda: pm.perform(make("object")))
     assert "no applicable method" in problem.value.report() and lisp([]) is None and NAVIGATION is not None
+
+
+# --------------------------------------------------------------------------------------------------- why there is no module
+
+
+def advice(body):
+    """What the failure of ``body`` tells the user, without the prefixes of packages."""
+    text = hint_for(failure_of(body))
+    for package in ("cram-user::", "cram-designators:", "cram-process-modules:"):
+        text = text.replace(package, "")
+    return text
+
+
+def test_a_module_that_matches_but_does_not_run_is_named(navigation):
+    assert advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":speed", 3])))) == (
+        "test-navigation would do it, but does not run: write (with-process-modules-running (test-navigation) ...) around the plan.")
+
+
+def test_without_a_module_that_matches_the_nearest_clause_is_told():
+    with facts("MATCHING", ["cpm::matching-process-module"], [["cpm::matching-process-module", "?d", "test-navigation"],
+                                                              ["desig::desig-prop", "?d", [":type", ":driving"]]]):
+        assert advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":type", ":drivng"])))) == """\
+There is one clause, clause 1 of matching:
+  (matching-process-module ?d test-navigation)
+  FAILS  (desig-prop ?d (:type :driving))
+           :type is :drivng, not :driving; is that misspelled?
+  with ?d = #<a motion (type drivng)>
+(prolog:explain) tries it again and tells all of it."""
+
+
+def test_a_module_that_is_not_available_is_told():
+    with facts("MATCHING", ["cpm::matching-process-module", "cpm::available-process-module"],
+               [["cpm::matching-process-module", "?d", "test-navigation"]],
+               [["cpm::available-process-module", "other"]]):
+        assert advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":type", ":driving"])))) == """\
+test-navigation would match, but there is no solution of (available-process-module test-navigation).
+The only clause of available-process-module does not match: in clause 1 of matching, argument 1 is other, not test-navigation.
+(prolog:explain) tries it again and tells all of it."""

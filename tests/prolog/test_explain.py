@@ -125,7 +125,7 @@ with ?x = homer, ?y = bart, ?a = 10"""
     ("(parnet homer ?x)", "Nobody defines parnet; did you mean parent?"),
     ("(xyzzy)", "Nobody defines xyzzy."),
     ("(cl-user::parent homer ?x)",
-     "Nobody defines common-lisp-user::parent; there is prolog-tests-here:parent, another symbol of that name."),
+     "Nobody defines common-lisp-user::parent; there is prolog-tests-here:parent, another symbol of that name: write it so, or import it."),
     ("(?goal 1)", "?goal is no functor; (call ?goal) proves a goal that is the value of a variable."),
     ("(not (parent abe homer))", "(parent abe homer) holds."),
     ("(== (a b (c d)) (a b (c e)))", "Element 3: of it element 2: d is not e."),

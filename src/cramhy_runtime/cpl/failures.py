@@ -36,7 +36,14 @@ def fail(*arguments):
 
     Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.``
     """
+    return fail_with_advice(None, *arguments)
+
+
+def fail_with_advice(advice, *arguments):
+    """`fail`, with a hint for whoever looks at the failure: a text, or a function that finds one out then."""
     condition = _designated(*arguments) if arguments else SimplePlanFailure("Plan failure.")
+    if advice is not None:
+        condition.hint = advice
     if active_tags:
         log("FAIL", "~s: ~_~a", condition, condition)
     if on_fail:

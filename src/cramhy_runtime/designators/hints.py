@@ -10,7 +10,6 @@ from __future__ import annotations
 from ..lisp.condition_types import Warning_
 from ..lisp.conditions import handler_bind, muffle_warning
 from ..lisp.data import Cons, Symbol, lisp_list
-from ..lisp.evaluation.evaluator import PACKAGE
 from ..prolog import explanations
 from ..prolog.reasons import declare_harmless, explains, spelled_like
 from ..prolog.showing import show
@@ -27,7 +26,6 @@ from .classes import (
 )
 from .symbols import sym
 
-EXPLAIN = sym("CRAM-PROLOG::EXPLAIN")
 _SOLUTION = Symbol("?SOLUTION")
 _MOST_GOALS = 2000
 _BY_PERCEPTION = "{} designator stands for something only after perception has found {} and set its data."
@@ -48,16 +46,10 @@ def hint(designator):
         return (f"There is no clause of {show(predicate).rpartition(':')[2]} that could resolve it. Define one in a fact group that lists "
                 f"desig:{show(predicate).rpartition(':')[2]}, and load the file.")
     if told.outcome == "given up":
-        explanations.to_explain[:] = [designator]
-        return f"{told}\n{_explain_form()} goes on longer."
+        return f"{told}\n{explanations.offer(designator)} goes on longer."
     if told.holds:
         return "There is a solution now. This designator was tried before there was, and keeps to that: make a new one."
-    explanations.to_explain[:] = [designator]
-    return f"{told.hint()}\n{_explain_form()} tries it again and tells all of it."
-
-
-def _explain_form():
-    return "(explain)" if PACKAGE.value.lookup("EXPLAIN")[0] is EXPLAIN else "(prolog:explain)"
+    return f"{told.hint()}\n{explanations.offer(designator)} tries it again and tells all of it."
 
 
 def _predicate(designator):
@@ -68,6 +60,7 @@ def _predicate(designator):
 for _class in (ActionDesignator, MotionDesignator, LocationDesignator):
     explanations.explained_by(_class, lambda designator: lisp_list(_predicate(designator), designator, _SOLUTION))
 
+explanations.explained_by((ObjectDesignator, HumanDesignator), hint)
 DesignatorError.explain = staticmethod(hint)
 
 

@@ -8,8 +8,8 @@
     pm.with_process_modules_running([NAVIGATION], lambda: cpl.top_level(lambda: pm.pm_execute(NAVIGATION, motion)))
 
 ``modules`` the module, its queue and main loop · ``executing`` a plan's requests · ``asynchronous`` modules that return at once ·
-``registry`` names · ``running`` starting them around a body · ``matching`` the right one for a designator · ``executive`` perform ·
-``package`` the Lisp faces.
+``registry`` names · ``running`` starting them around a body · ``matching`` the right one for a designator, ``hints`` why there is
+none · ``executive`` perform · ``package`` the Lisp faces.
 Reference: process-modules.md.
 """
 

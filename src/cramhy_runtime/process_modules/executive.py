@@ -7,7 +7,7 @@ A motion goes to a matching process module; an action is resolved to a plan func
 from __future__ import annotations
 
 from ..cpl.failure_types import SimplePlanFailure
-from ..cpl.failures import fail
+from ..cpl.failures import fail, fail_with_advice
 from ..cpl.plans import GOAL, bodies_of, call_goal, define_goal
 from ..cpl.tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
@@ -20,6 +20,7 @@ from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.generic import generic
 from ..lisp.packages import find_package, keyword
 from ..prolog.query import holds
+from .hints import why_none_runs
 from .matching import execute_by, running_matches
 from .registry import in_one_line
 from .symbols import sym
@@ -103,7 +104,7 @@ try_reference_designator.__lisp_lambda_list__ = lisp_list(sym("DESIG::DESIGNATOR
 def _perform_motion(designator):
     modules = running_matches(designator)
     if not modules:
-        return fail("No matching process module found for ~a", designator)
+        return fail_with_advice(lambda: why_none_runs(designator), "No matching process module found for ~a", designator)
     try_reference_designator(designator, "Cannot perform motion.")
     return execute_by(modules, designator)
 

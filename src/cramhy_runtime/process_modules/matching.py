@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from ..cpl.failures import attempt, fail, signal_failure
+from ..cpl.failures import attempt, fail_with_advice, signal_failure
 from ..lisp.data import list_from, one, truth
 from ..lisp.hooks import Hook
 from ..prolog.facts import built_in_group
 from ..prolog.query import ask_all
 from ..prolog.terms import Var
 from .executing import pm_execute
+from .hints import AVAILABLE, MATCHING, why_none_runs
 from .registry import running
 from .symbols import sym
 
-MATCHING, AVAILABLE = sym("CPM::MATCHING-PROCESS-MODULE"), sym("CPM::AVAILABLE-PROCESS-MODULE")
 on_preparing_performing = Hook("CPL::ON-PREPARING-PERFORMING-ACTION-DESIGNATOR", "(designator matching-process-modules)")
 on_finishing_performing = Hook("CPL::ON-FINISHING-PERFORMING-ACTION-DESIGNATOR", "(id success)")
 
@@ -40,7 +40,8 @@ def matching_available_process_modules(action_designator, *, fail_if_none=None):
     """Those of them that are running; none is a plan failure with ``fail_if_none``."""
     names = running_matches(action_designator)
     if not names and truth(fail_if_none):
-        return fail("No process modules found for executing designator ~a", action_designator)
+        return fail_with_advice(lambda: why_none_runs(action_designator), "No process modules found for executing designator ~a",
+                                action_designator)
     return list_from(names)
 
 
@@ -51,7 +52,8 @@ def pm_execute_matching(action_designator):
     """
     names = running_matches(action_designator)
     if not names:
-        return fail("No process modules found for executing designator ~a", action_designator)
+        return fail_with_advice(lambda: why_none_runs(action_designator), "No process modules found for executing designator ~a",
+                                action_designator)
     return execute_by(names, action_designator)
 
 

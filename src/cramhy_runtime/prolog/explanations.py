@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import Error, error, handler_case
 from cramhy_runtime.lisp.data import UNSUPPLIED, Cons, MultipleValues, Symbol
+from cramhy_runtime.lisp.evaluation.evaluator import PACKAGE
 from cramhy_runtime.lisp.evaluation.places_in_source import describe
 from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, output_stream
 
@@ -25,7 +26,7 @@ from .terms import resolve
 LIMIT = 10_000
 """So many goals are proved before a proof is taken for endless."""
 _MOST_OTHERS, _MOST_DEPTH, _MOST_VALUES, _MOST_LINES, _ENDS = 8, 6, 6, 40, 4
-_NOT = sym("NOT")
+_NOT, EXPLAIN = sym("NOT"), sym("CRAM-PROLOG::EXPLAIN")
 _FIRST_WORDS = "there it none nobody the one what no element".split()
 
 _goal_makers = []
@@ -41,10 +42,12 @@ class Explanation:
     at the bottom of the failure and why it fails; ``problem`` the condition that ended the proof.
     """
 
-    def __init__(self, record, outcome, bindings=None, problem=None):
-        self.outcome, self.bindings, self.problem = outcome, bindings, problem
-        self.root, self.count = record.root, record.count
-        self.clause = self.goal = self.reason = None
+    def __init__(self, record, outcome, bindings=None, problem=None, text=None):
+        self.outcome, self.bindings, self.problem, self.text = outcome, bindings, problem, text
+        self.root = self.clause = self.goal = self.reason = None
+        if text is not None:
+            return
+        self.root = record.root
         if outcome == "holds" and self.root.attempts:
             self.clause = self.root.attempts[-1].clause
         if outcome == "fails":
@@ -79,6 +82,8 @@ def explain(goal, limit=LIMIT, dry=False):
     limit: the number of goals after which the proof is given up. dry: whether to leave out goals that might do something.
     """
     goal = goal_for(goal)
+    if isinstance(goal, str):
+        return Explanation(None, "fails", text=goal)
     machine, variables = start(goal, limit, dry)
     record = machine.record
     problem, found = handler_case([(Error, lambda condition: (condition, False))], lambda: (None, machine.next_solution()))
@@ -107,13 +112,19 @@ def print_explanation(goal=UNSUPPLIED, *, limit=LIMIT):
     return MultipleValues(())
 
 
+def offer(thing):
+    """The form that explains ``thing``, for an error message: ``(explain)`` takes it from now on."""
+    to_explain[:] = [thing]
+    return "(explain)" if PACKAGE.value.lookup("EXPLAIN")[0] is EXPLAIN else "(prolog:explain)"
+
+
 def explained_by(cls, goal):
-    """Objects of ``cls`` are explained by ``goal(object)``, a goal that finds what they stand for."""
+    """Objects of ``cls`` are explained by ``goal(object)``, a goal that finds what they stand for, or a text if there is none."""
     _goal_makers.append((cls, goal))
 
 
 def goal_for(thing):
-    """The goal that explains ``thing``."""
+    """The goal that explains ``thing``, or a text."""
     for cls, goal in _goal_makers:
         if isinstance(thing, cls):
             return goal(thing)
@@ -174,7 +185,8 @@ def _undefined(box):
     elsewhere = [symbol for symbol in functors if symbol.name == functor.name and functors[symbol].defined]
     if elsewhere:
         package = elsewhere[0].package
-        return f"nobody defines {name}; there is {package.name.lower()}:{name.rpartition(':')[2]}, another symbol of that name"
+        return (f"nobody defines {name}; there is {package.name.lower()}:{name.rpartition(':')[2]}, another symbol of that name: "
+                "write it so, or import it")
     known = [symbol for symbol in functors if functors[symbol].defined]
     near = reasons.spelled_like(functor, known)
     return f"nobody defines {name}" + (f"; did you mean {' or '.join(show(symbol) for symbol in near)}?" if near else "")

@@ -1,7 +1,7 @@
 """What a condition is shown as, and what to try: a hint for a condition, written for a student (law 7).
 
-A condition may bring its own (``hint``). For names that mean nothing here the near ones are looked up: a variable whose stars
-were forgotten, a function of another package, a typing mistake.
+A condition may bring its own (``hint``), a text or a function that gives it. For names that mean nothing here the near ones are
+looked up: a variable whose stars were forgotten, a function of another package, a typing mistake.
 """
 
 from __future__ import annotations
@@ -102,6 +102,8 @@ def _beside(condition):
 
 def _advice(condition):
     own = getattr(condition, "hint", None)
+    if callable(own):  # what takes time is found out only when it is told
+        own = own()
     if own:
         return own
     name = getattr(condition, "name", None)

@@ -1,0 +1,50 @@
+"""Why no process module was found for a designator, in words for a student.
+
+Three things must come together: a clause of ``matching-process-module`` names the module, one of ``available-process-module`` says that
+it can be used, and it runs. The hint tells the first that is missing. It is computed when the failure is shown, by a proof that calls
+nothing; see ``designators/hints.py``.
+"""
+
+from __future__ import annotations
+
+from ..lisp.data import Symbol, lisp_list
+from ..prolog import explaining, explanations
+from ..prolog.reasons import declare_harmless
+from ..prolog.showing import show
+from ..prolog.terms import resolve
+from .symbols import sym
+
+MATCHING, AVAILABLE = sym("CPM::MATCHING-PROCESS-MODULE"), sym("CPM::AVAILABLE-PROCESS-MODULE")
+declare_harmless("CPM::MATCHING-PROCESS-MODULE", "CPM::AVAILABLE-PROCESS-MODULE")
+_MODULE = Symbol("?MODULE")
+_MOST_GOALS = 2000
+
+
+def why_none_runs(designator):
+    """The text for ``designator``, for which `running_matches` found no module."""
+    matching = _modules(lisp_list(MATCHING, designator, _MODULE))
+    if not matching:
+        return _explained(lisp_list(MATCHING, designator, _MODULE))
+    available = [name for name in matching if explanations.explain(lisp_list(AVAILABLE, name), _MOST_GOALS, dry=True).holds]
+    if not available:
+        text = _explained(lisp_list(AVAILABLE, matching[0]))
+        return f"{_names(matching)} would match, but there is no solution of {show(lisp_list(AVAILABLE, matching[0]))}.\n{text}"
+    return (f"{_names(available)} would do it, but {'does' if len(available) == 1 else 'do'} not run: write "
+            f"(with-process-modules-running ({show(available[0])}) ...) around the plan.")
+
+
+def _names(names):
+    return " and ".join(map(show, names))
+
+
+def _modules(goal):
+    proof, variables = explaining.start(goal, _MOST_GOALS, dry=True)
+    found = {}
+    while proof.next_solution():
+        found.setdefault(resolve(variables[_MODULE]))
+    return list(found)
+
+
+def _explained(goal):
+    told = explanations.explain(goal, _MOST_GOALS, dry=True)
+    return f"{told.hint()}\n{explanations.offer(goal)} tries it again and tells all of it."
