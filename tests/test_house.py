@@ -122,3 +122,10 @@ for name in sys.argv[1:]:
 def test_nothing_names_a_path_of_a_machine():
     for path in TEXTS:
         assert not re.search(r"(?<![\w.])/(home|work|Users|root)/\w", path.read_text()), path
+
+
+def test_test_modules_outside_of_packages_have_names_of_their_own():
+    # pytest imports them by their bare names, so that two alike are an error, which only a run of the whole suite shows.
+    paths = [path for path in (ROOT / "tests").rglob("*.py") if not (path.parent / "__init__.py").exists() and path.name != "conftest.py"]
+    names = [path.stem for path in paths]
+    assert not {name for name in names if names.count(name) > 1}
