@@ -20,7 +20,7 @@ import functools
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .data import MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
-from .dynamic import bind, binding
+from .dynamic import bind, binding, unbind
 from .late import late
 from .packages import CURRENT, find_package_or_error, is_symbol, sym
 from .restarts import *  # noqa: F403  they are part of this module's interface, as the classes are
@@ -133,17 +133,19 @@ def handler_bind(clauses, thunk):
     """Call ``thunk`` with ``clauses`` in force, a list of (type specifier, function); returns its values."""
     outer = _handlers.value
     cluster = (clauses, outer)
-    with binding(_handlers, cluster):
-        try:
-            return thunk()
-        except types.Condition as condition:
-            if not condition.signalled:  # Python code raised it without signalling
-                _offer(condition, clauses, outer)
-            raise
-        except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
-            if not _were_asked(exception, cluster):
-                _offer(from_python(exception), clauses, outer)
-            raise
+    bind(_handlers, cluster)
+    try:
+        return thunk()
+    except types.Condition as condition:
+        if not condition.signalled:  # Python code raised it without signalling
+            _offer(condition, clauses, outer)
+        raise
+    except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
+        if not _were_asked(exception, cluster):
+            _offer(from_python(exception), clauses, outer)
+        raise
+    finally:
+        unbind()
 
 
 class HandlerExit(BaseException):

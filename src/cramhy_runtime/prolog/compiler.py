@@ -187,6 +187,10 @@ class PredicateCode(Holes, Bodies):
                 return position
         return None
 
+    def _discriminates(self, position):
+        """Whether some clauses can match values of an argument that others cannot."""
+        return any(self._kind(n, position) is not self._kind(0, position) for n in range(len(self.fitting)))
+
     def _dispatch(self, numbers, known):
         position = self._telling(numbers, known)
         if position is None:
@@ -255,7 +259,7 @@ class PredicateCode(Holes, Bodies):
                 self._fill(True)
         if not numbers:
             self.emit("return fail(m)")
-        elif self._light(numbers) and UNBOUND not in known.values():
+        elif self._light(numbers) and not any(kind is UNBOUND and self._discriminates(position) for position, kind in known.items()):
             self._chain(numbers, known, "continue" if self.looping else None)
         else:
             self.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")
