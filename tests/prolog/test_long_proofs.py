@@ -9,7 +9,7 @@ from cramhy_runtime.lisp.data import list_from
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.prolog import facts, query
-from cramhy_runtime.prolog.depth import DEPTH_LIMIT
+from cramhy_runtime.prolog.machine import DEPTH_LIMIT
 from cramhy_runtime.prolog.terms import Var
 
 MANY = 50_000

@@ -1,41 +1,20 @@
-"""How deep a proof is, and what is said of one that never stops going deeper.
+"""What is said of a proof that goes deeper and deeper.
 
-A proof needs no stack of Python, so a left recursion would go on until memory is gone. Now and then the machine counts the goals
-that wait, which are the continuations of the step that it does, one after the other, and its choice points. Where they are more than
-``*prolog-depth-limit*`` the proof ends in an error that shows which clauses the goals at its end belong to. The count is made so
-seldom that it costs a step no more than some nanoseconds.
+A proof needs no stack of Python, so a left recursion would go on until memory is gone. The machine counts the goals that wait, now
+and then, and where they are more than ``*prolog-depth-limit*`` the proof ends in an error, which is made here. It shows the clauses
+that the innermost of these goals belong to: those of one turn of the circle, if they go round in one.
 """
 
 from __future__ import annotations
 
 from cramhy_runtime.lisp.conditions import StorageCondition, error
-from cramhy_runtime.lisp.dynamic import special
 from cramhy_runtime.lisp.evaluation.places_in_source import describe
+from . import machine
 from .showing import show
-from .symbols import PROLOG
-
-DEFAULT = 3_000_000
-"""A continuation needs 100 to 300 bytes, so this is half a gigabyte."""
-DEPTH_LIMIT = special(PROLOG.intern("*PROLOG-DEPTH-LIMIT*"), DEFAULT)
 
 _SHOWN = 1000
 """Continuations that are looked at for the clauses that come again and again."""
 _LINES = 6
-
-
-def check_depth(m, step):
-    """The number of goals that wait for ``step``, or of choice points if these are more; an error if it is beyond the limit."""
-    limit = DEPTH_LIMIT.value
-    depth, k = 0, step[1]
-    if limit is None:
-        return 1_000_000
-    while k is not None and depth <= limit:
-        k = k[1]
-        depth += 1
-    depth = max(depth, len(m.choices))
-    if depth > limit:
-        too_deep(m, step, limit)
-    return depth
 
 
 def too_deep(m, step, limit):
@@ -48,9 +27,12 @@ def too_deep(m, step, limit):
         k = k[1]
     m.choices.clear()  # there is nothing more to be had from this proof
     m.trail.clear()
-    error(StorageCondition(
+    return error(StorageCondition(
         "A proof is more than ~:d goals deep and goes on, perhaps without end.~a~%Put a goal that ends the recursion before the one that "
         "goes on, or raise CRAM-PROLOG:*PROLOG-DEPTH-LIMIT*.", limit, _told(waiting)))
+
+
+machine.too_deep = too_deep
 
 
 def _told(waiting):

@@ -20,14 +20,20 @@ from sys import getrefcount
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import budget
+from cramhy_runtime.lisp.dynamic import special
 
-from .depth import check_depth
+from .symbols import PROLOG
 from .terms import UNSET, Var, undo, unify
 
 BATCH = range(50)
 """Steps between two looks at what is left of the task's slice; the kernel counts each step as a checkpoint."""
 _TIDY = 5_000
 """Entries of a trail that are worth tidying."""
+DEFAULT_DEPTH = 3_000_000
+"""Goals that may wait for one another. A continuation needs 100 to 300 bytes, so this is half a gigabyte."""
+DEPTH_LIMIT = special(PROLOG.intern("*PROLOG-DEPTH-LIMIT*"), DEFAULT_DEPTH)
+too_deep = None
+"""``too_deep(machine, step, limit)`` signals the error of a proof that is deeper; of the module ``depth``."""
 
 
 class Machine:
@@ -99,10 +105,25 @@ class Machine:
             self._tidy()
         self.until_measured -= 1
         if self.until_measured < 0:
-            self.until_measured = 200 + 2 * check_depth(self, step) // len(BATCH)
+            self.until_measured = 200 + 2 * self._depth(step) // len(BATCH)
         budget.left -= len(BATCH)
         if budget.left < 0:
             kernel.checkpoint()
+
+    def _depth(self, step):
+        """The number of goals that wait for ``step``, or of choice points if these are more; an error if it is beyond the limit.
+
+        A goal waits as a continuation of the step. They are counted so seldom that it costs a step some nanoseconds.
+        """
+        limit = DEPTH_LIMIT.value
+        if limit is None:
+            return 1_000_000
+        depth, k = 0, step[1]
+        while k is not None and depth <= limit:
+            k = k[1]
+            depth += 1
+        depth = max(depth, len(self.choices))
+        return depth if depth <= limit else too_deep(self, step, limit)
 
     def _tidy(self):
         """Forget trail entries, above the newest choice point, for variables that only the trail knows."""

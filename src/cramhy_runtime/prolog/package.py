@@ -19,8 +19,8 @@ from . import (
     query,
     rete,
 )
-from .depth import DEFAULT, DEPTH_LIMIT
 from .lisp_calls import BREAK_ON_LISP_ERRORS
+from .machine import DEFAULT_DEPTH, DEPTH_LIMIT
 
 generic("CRAM-PROLOG::PROLOG", "(query &optional binds)", documentation=query.prolog.__doc__).method(object)(query.prolog)
 
@@ -34,7 +34,7 @@ PROLOG = define_face(
             remove-production-handler""",
         "explain": explanations.print_explanation,
     },
-    variables={BREAK_ON_LISP_ERRORS.name: None, DEPTH_LIMIT.name: DEFAULT},
+    variables={BREAK_ON_LISP_ERRORS.name: None, DEPTH_LIMIT.name: DEFAULT_DEPTH},
     export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof
         every forall member take generate-values == equal length append sort reduce max string-concat format warn error
         slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=

@@ -23,6 +23,7 @@ from . import (
     builtins,  # noqa: F401  the predicates that every query may use
     compiler,  # noqa: F401  the clauses that they find
     control,
+    depth,  # noqa: F401  the error of a proof without end
 )
 from .database import find_predicate
 from cramhy_runtime.utilities.lazy_lists import tail
