@@ -16,7 +16,8 @@ from collections import deque
 from ..cpl.current import current_task
 from ..cpl.fluent_operators import fl_funcall, fl_or, fl_pulsed
 from ..cpl.fluents import Fluent
-from ..cpl.operators import par
+from ..cpl.operators import pursue
+from ..cpl.pausing import pause
 from ..cpl.waiting import wait_for, whenever
 from ..lisp.conditions import error
 from ..lisp.data import Cons
@@ -72,9 +73,14 @@ class AsynchronousProcessModule(AbstractProcessModule):
         self.input_lock = Lock(f"for the input of {self.name.name}")
 
     def run(self, name):
-        """Take inputs, under ``name``, until the task is evaporated or ``on-input`` or ``on-run`` fails."""
-        self.online(name, lambda: par(lambda: on_run(self), self._take_inputs, self._process,
-                                      lambda: whenever(self.cancel, self._cancel_all)))
+        """Take inputs, under ``name``, until the task, or a branch of it, is evaporated or ``on-input`` or ``on-run`` fails."""
+        self.online(name, lambda: pursue(self._work_beside, self._take_inputs, self._process,
+                                         lambda: whenever(self.cancel, self._cancel_all)))
+
+    def _work_beside(self):
+        on_run(self)
+        while True:
+            pause(lambda: f"the end of process module {self.name.name}")
 
     def ended(self):
         self.queue.clear()

@@ -20,7 +20,7 @@ from ..lisp.condition_types import Condition
 from ..lisp.conditions import error
 from ..lisp.data import Cons
 from .modules import pm_run
-from .registry import ProcessModuleNotRunning, UnknownProcessModule, running
+from .registry import ProcessModuleNotRunning, UnknownProcessModule, not_running, running
 
 
 def with_process_modules_running(modules, body):
@@ -88,9 +88,12 @@ class _Group:
         failure = self.failure()
         if failure is not None:
             error(failure)
+        for name in self.names:
+            if name not in registry.modules:  # somebody has evaporated it already
+                error(not_running(name))
 
     def _over(self):
-        return self.root.status in DEAD or any(task.status is FAILED for task in self.tasks)
+        return self.root.status in DEAD or any(task.status in DEAD for task in self.tasks)
 
     def end(self):
         self.root.ended = None

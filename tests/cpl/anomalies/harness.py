@@ -14,7 +14,7 @@ from itertools import count
 from cramhy_runtime.testing import faults, runs
 from cramhy_runtime.testing.plans import plan_of, with_lisp
 
-from . import guards
+from . import acting_plans, guards
 
 TIME_LIMIT = 100.0
 _ready = False
@@ -28,6 +28,7 @@ def function_of(plan):
         _ready = True
         with_lisp(guards.define)
         plan_of(guards.MACROS)
+        plan_of(acting_plans.HELPERS)
     if plan.name not in _functions:
         with redirect_stderr(io.StringIO()):
             _functions[plan.name] = plan_of(plan.text)

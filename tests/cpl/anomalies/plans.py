@@ -309,7 +309,7 @@ PLANS = [
                 (par (exe:perform (desig:a motion (type anomaly-drawing) (shape house)))
                      (guarded beside (sleep 0.1)) (guarded-slowly besides 0.1 (sleep 0.1)))))))
         """, ":HOUSE",
-         evaporated=(':FAILED', 'no values'),
+         evaporated=(':FAILED', 'no values', 'ProcessModuleNotRunning*'),
          failed=(':FAILED',)),
     Plan("everything-at-once", """
         (def-cram-function anomaly-reach (goal)

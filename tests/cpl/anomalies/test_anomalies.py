@@ -16,6 +16,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.testing import faults
 
+from .acting_plans import ACTING_PLANS
 from .harness import check_run, faults_of
 from .plans import PLANS
 from .python_plans import PYTHON_PLANS
@@ -35,7 +36,7 @@ def unheard(monkeypatch):
 
 
 def every_plan(test):
-    return pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)(test)
+    return pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)(test)
 
 
 @every_plan

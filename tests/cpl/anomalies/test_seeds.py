@@ -11,6 +11,7 @@ import pytest
 
 from cramhy_runtime.testing import Schedule
 
+from .acting_plans import ACTING_PLANS
 from .harness import check_run
 from .plans import PLANS
 from .python_plans import PYTHON_PLANS
@@ -18,7 +19,7 @@ from .python_plans import PYTHON_PLANS
 SEEDS = 1000 if os.environ.get("CRAMHY_SOAK") else 20
 
 
-@pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
+@pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
 def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
     different = set()
     for seed in range(1, SEEDS + 1):
@@ -29,7 +30,7 @@ def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
     record_property("schedules", len(different))
 
 
-@pytest.mark.parametrize("plan", [*PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
+@pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
 def test_both_back_ends_take_the_same_way_with_a_seed(plan):
     ways = []
     for backend in ("threads", "greenlet"):
