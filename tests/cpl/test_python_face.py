@@ -525,3 +525,20 @@ def test_a_policy_guards_a_block():
     assert events[-1] == "plain"
     with cpl.plan(), pytest.raises(cpl.PolicyInitFailed), cpl.policy(cpl.make_policy("never", init=lambda store: None)):
         pass
+
+
+@pytest.mark.parametrize("problem", [cpl.SimplePlanFailure("stuck"), ValueError("no signal")])
+def test_run_raises_what_the_plan_failed_with_where_no_kernel_is_left(problem):
+    def fail():
+        raise problem
+
+    with kernel.aside(), pytest.raises(type(problem)) as raised:
+        cpl.run(fail)
+    assert raised.value is problem
+
+
+def test_a_form_outside_of_any_plan_says_so_where_there_is_no_kernel():
+    with kernel.aside(), pytest.raises(Error) as problem:
+        cpl.par(lambda: 1)
+    assert str(problem.value) == "'PAR' form not inside a plan."
+    assert problem.value.__notes__ == ["From Python, run the plan with cpl.run(main), or write it below `with cpl.plan():`."]

@@ -9,6 +9,7 @@ from cramhy_runtime.designators.classes import DesignatorError
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import MultipleValues, UndefinedFunction
 from cramhy_runtime.lisp.tools.advice import hint_for
+from cramhy_runtime.process_modules import executive
 from cramhy_runtime.process_modules.executive import DesignatorReferenceFailure
 
 from .test_modules import NAVIGATION, define, with_modules
@@ -85,7 +86,7 @@ def test_a_goal_that_is_no_list_cannot_be_parsed(drawing):
 def test_perform_is_a_node_of_the_task_tree_and_needs_a_plan(navigation):
     assert with_modules(lambda: cpl.par(lambda: pm.perform(make("motion", [":speed", 1])))) == ["DRIVE", 1]
     with pytest.raises(Error) as problem:
-        pm.perform(make("motion"))
+        executive.perform(make("motion"))
     assert "TASK-TREE-NODE" in problem.value.report()
 
 

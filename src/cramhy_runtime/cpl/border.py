@@ -49,7 +49,8 @@ def raise_in_python(condition: BaseException) -> NoReturn:
     try:
         raise problem
     finally:
-        if kernel.current().delivered is None:  # else the kernel looks at the contexts for what ends the task
+        active = kernel.active()
+        if active is None or active.current.delivered is None:  # else the kernel looks at the contexts for what ends the task
             problem.__context__ = context  # not what Python finds in the air when this is called in an __exit__ method
         del problem, condition
 

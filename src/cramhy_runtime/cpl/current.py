@@ -23,5 +23,7 @@ def inside_plan(form):
         outside = types.SimpleError("'~a' form not inside a plan.", form)
         outside.hint = f"Plan forms run inside of a plan: write (top-level ({str(form).lower()} ...))."
         outside.add_note("From Python, run the plan with cpl.run(main), or write it below `with cpl.plan():`.")
+        if active is None:
+            raise outside  # there are no handlers without a kernel
         return error(outside)
     return task

@@ -34,7 +34,7 @@ from ..lisp.printer.printer import define_printer, print_unreadable
 from ..prolog import natives
 from ..prolog.python_ground import reasoning
 from ..prolog.python_rules import fact_group, remove_fact_group
-from ..prolog.python_terms import USER, Goal, Name, V, import_predicates, kw, lisp_name, to_lisp, to_python
+from ..prolog.python_terms import USER, Goal, Name, P, V, import_predicates, kw, lisp_name, to_lisp, to_python
 from ..prolog.reasons import explains
 from ..prolog.terms import deref, import_term
 from ..utilities.lazy_lists import from_iterator
@@ -45,7 +45,6 @@ from .python_kinds import TYPE, Kind, type_name
 
 F = TypeVar("F", bound=Callable[..., Any])
 PYTHON_GROUNDING = sym("CRAMHY::PYTHON-GROUNDING")
-DESIG_PROP, ONCE = sym("DESIG::DESIG-PROP"), sym("CRAM-PROLOG::ONCE")
 REJECT = kw.reject
 VERDICTS = (ACCEPT, UNKNOWN, MAYBE_REJECT, REJECT)
 _forgetting: dict[Callable[..., Any], Callable[[], None]] = {}
@@ -196,13 +195,17 @@ def _decorated(given: Any, cls: type, define: Callable[[Any, Kind | None], None]
 def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> None:
     grounding = Grounding(function, f"{what} grounding")
     name, head = Name(_symbol(function)), sym(f"DESIG::{what.upper()}-GROUNDING")
-    goals = [Goal(to_lisp([Name(DESIG_PROP), V.designator, [TYPE, kind.type_]]))] if kind is not None and kind.type_ is not None else []
-    if kind is not None:
-        goals += [Goal(to_lisp([Name(ONCE), [Name(DESIG_PROP), V.designator, [kw[lisp_name(field)], V._]]])) for field in kind.required]
+    goals = kind_goals(kind) if kind is not None else []
     with fact_group(name, extends=[head]) as group:
         group.rule(Goal(to_lisp([Name(head), V.designator, V.solution])), *goals,
                    Goal(to_lisp([Name(PYTHON_GROUNDING), grounding, V.designator, V.solution])))
     _forgetting[function] = lambda: remove_fact_group(name)
+
+
+def kind_goals(kind: Kind) -> list[Goal]:
+    """The goals that hold for a designator in ``V.designator`` that is a ``kind``: it has the type, and all that is required."""
+    goals = [P.desig_prop(V.designator, [TYPE, kind.type_])] if kind.type_ is not None else []
+    return goals + [P.once(P.desig_prop(V.designator, [kw[lisp_name(field)], V._])) for field in kind.required]
 
 
 def _symbol(function: Callable[..., Any]) -> Symbol:

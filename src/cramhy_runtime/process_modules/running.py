@@ -7,6 +7,8 @@ alone; the others go on, requests to it are told why, and the form fails with it
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from cramhy_runtime import kernel
 
 from ..cpl.branches import Branches, nobody_lives
@@ -25,21 +27,28 @@ from .registry import ProcessModuleNotRunning, UnknownProcessModule, not_running
 
 def with_process_modules_running(modules, body):
     """Values of ``body()`` while ``modules`` run: class names, or pairs (alias, class name). The caller may be outside of plans."""
-    started = [_names(module) for module in modules]
-    if not started:
+    if not modules:
         return body()
-    group = _Group(started)
+    with modules_running(modules):
+        return body()
+
+
+@contextmanager
+def modules_running(modules):
+    """``with modules_running([...]):`` the same for the block."""
+    group = _Group([_names(module) for module in modules])
     group.start()
     try:
         group.await_start()
-        result = body()
+        yield
     except BaseException as problem:
         group.end()
         group.tell(problem)
         raise
     group.end()
     failure = group.failure()
-    return result if failure is None else error(failure)
+    if failure is not None:
+        error(failure)
 
 
 def _names(module):
