@@ -44,7 +44,8 @@ from .classes import (
 TYPE = kw.type
 _OWN = frozenset(name for cls in Designator.__mro__ for name in vars(cls) if not name.startswith("_"))
 """The attributes that every designator has, whatever its properties are."""
-_declared: dict[tuple[type, Keyword], Kind] = {}
+_declared: dict[tuple[type, Keyword], list[Kind]] = {}
+"""(class of designators, type) → the classes that declare it, the newest first."""
 
 
 @dataclass_transform(kw_only_default=True)
@@ -72,7 +73,8 @@ class Kind(type):
         made.defaults = {**parent.defaults, **{field: body[field] for field in own if field in body}}
         for field in own:
             _check_name(field, name)
-        _declared[made.designators, made.type_] = made
+        known = _declared.setdefault((made.designators, made.type_), [])
+        known[:] = [made, *(other for other in known if (other.__module__, other.__qualname__) != (made.__module__, made.__qualname__))]
         return made
 
     def __init__(cls, name: str, bases: tuple[type, ...], body: dict[str, Any], **options: Any):
@@ -247,19 +249,18 @@ def _value(designator: Designator, entry: Cons) -> Any:
     value = entry.cdr.car if isinstance(entry.cdr, Cons) else None
     if value is not None:
         return to_python(value)
-    kind = declaration(designator)
-    annotation = kind.fields.get(python_name(entry.car.name)) if kind is not None else None
-    return to_python(None, nil_as(annotation, None) if annotation is not None else None)
+    name = python_name(entry.car.name)
+    kind = declaration(designator, name)
+    return to_python(None, nil_as(kind.fields[name], None) if kind is not None else None)
 
 
-def declaration(designator: Designator) -> Kind | None:
-    """The class that declares the type of ``designator``, if one does."""
-    if not _declared:
-        return None
-    for cls in designator.__class__.__mro__:
-        found = _declared.get((cls, value_of(designator, TYPE)))
-        if found is not None:
-            return found
+def declaration(designator: Designator, name: str) -> Kind | None:
+    """The class that declares the property ``name`` for the type of ``designator``, if one does."""
+    if _declared:
+        for cls in designator.__class__.__mro__:
+            for kind in _declared.get((cls, value_of(designator, TYPE)), ()):
+                if name in kind.fields:
+                    return kind
     return None
 
 
@@ -268,7 +269,7 @@ def _attribute(self: Designator, name: str) -> Any:
         found = _entry(self, lisp_name(name))
         if found is not None:
             return _value(self, found)
-        kind = declaration(self)
+        kind = declaration(self, name)
         if kind is not None and name in kind.defaults:
             return to_python(to_lisp(kind.defaults[name]), nil_as(kind.fields[name], None))
     raise AttributeError(_no_property(self, name), name=name, obj=self)

@@ -127,10 +127,11 @@ class _Group:
         failures = [failure for failure in self.failures() if failure is not problem]
         if not failures:
             return
+        failure = self.failure()  # the cause of one that Python raised is the exception, and stays it
         if isinstance(problem, (ProcessModuleNotRunning, UnknownProcessModule)):
-            raise self.failure() from problem
+            raise failure from failure.__cause__ or problem
         if isinstance(problem, kernel.Cancelled):
-            raise self.failure() from None
+            raise failure from failure.__cause__
         if isinstance(problem, Condition):
             _add_beside(problem, failures)
 
