@@ -63,6 +63,15 @@ def test_a_branch_sees_the_whole_plan_with_what_each_task_waits_for_and_where(li
     assert lisp.numberless(lisp("(get-output-stream-string *out*)")[0]) == RUNNING
 
 
+def test_goals_are_shown_as_they_were_called(lisp):
+    lisp("(declare-goal at-place (?place ?how))")
+    lisp("(def-goal (at-place (:table ?side) ?how) (sleep 1))")
+    lisp("(defvar *goals* nil)")
+    lisp("(top-level (par (let ((side :left)) (at-place (list :table side) :fast))"
+         " (progn (sleep 0.5) (setf *goals* (with-output-to-string (*standard-output*) (describe-task-tree))))))")
+    assert "[GOAL-AT-PLACE] (GOAL (AT-PLACE (:TABLE :LEFT) :FAST))  running for 0.5 s" in lisp("*goals*")[0]
+
+
 def test_a_thread_that_a_task_spawned_stands_below_it(lisp):
     lisp("""(defvar *seen*)
 (top-level

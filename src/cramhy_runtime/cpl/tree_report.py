@@ -224,13 +224,15 @@ def _name(task):
 
 
 def _part(task):
-    """The part of the path that the task adds to its parent's; for a plan function with the arguments of the call."""
+    """The part of the path that the task adds to its parent's; for a plan function and a goal with the arguments of the call."""
     part = list(task.path.car) if isinstance(task.path.car, Cons) else [task.path.car]
     times = f", call {part.pop()}" if len(part) > 2 and part[-2] is CALL else ""
     if times:
         part.pop()
     parameters = task.code.parameters if task.code is not None and len(part) == 1 else None
     home = next((symbol.package for symbol in _symbols(part) if symbol.package not in (CPL_IMPL, None)), PACKAGE.value)
+    if task.code is not None and task.code.called_with is not None:
+        part[1] = Cons(part[1].car, task.code.called_with)
     with binding(PACKAGE, home):
         return short(list_from([*part, *(parameters or ())])) + times
 

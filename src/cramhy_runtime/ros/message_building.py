@@ -123,7 +123,11 @@ def msg_slot_value(message, slot):
         return getattr(message, attribute)
     home = message.lisp_symbol.package if isinstance(message, RosMessage) else COMMON_LISP
     name = symbol_name(slot) if isinstance(slot, Symbol) or slot is None else str(slot)
-    return conditions.error(MissingSlot(home.intern(name.upper()), message))
+    problem = MissingSlot(home.intern(name.upper()), message)
+    if message is None:
+        problem.hint = ("No message is there yet: a fluent is NIL until the first one comes. Has its topic been subscribed to, and does "
+                        "somebody publish on it?")
+    return conditions.error(problem)
 
 
 # ----------------------------------------------------------------------------------------------------- list form, constants

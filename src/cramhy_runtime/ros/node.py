@@ -61,7 +61,9 @@ def require_node():
     """The node of the Lisp program. Without one: the continuable error that offers to start a dummy."""
     here = graph.active().lisp_node
     while here is None:
-        conditions.cerror("Start a dummy node", SimpleError("Node status is SHUTDOWN"))
+        problem = SimpleError("Node status is SHUTDOWN")
+        problem.hint = 'No ROS node runs here. (start-ros-node "name") starts one.'
+        conditions.cerror("Start a dummy node", problem)
         start_ros_node("dummy")
         here = graph.active().lisp_node
     return here

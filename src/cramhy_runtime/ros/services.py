@@ -219,7 +219,8 @@ def call_service(service, *rest_args):
     if isinstance(service, ServiceClient):
         name, service_type, arguments = service.name, service.type, rest_args
     elif not isinstance(service, (str, LispString)):
-        return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args)
+        return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args, advice='A service is named by a string, such as '
+                                    '"/clear". Has the variable been set that holds it?')
     elif not rest_args:
         return conditions.error(
             SimpleError(

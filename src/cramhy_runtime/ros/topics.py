@@ -232,7 +232,9 @@ def publish(pub, message):
     publication = pub
     if publication.__class__ is not Publication:
         if not isinstance(pub, (str, LispString)):
-            return no_primary_method("ROSLISP:PUBLISH", 3, pub, message)
+            advice = ("What (advertise topic type) returns is published on, or the name of an advertised topic. Has the function been "
+                      "called that advertises?")
+            return no_primary_method("ROSLISP:PUBLISH", 3, pub, message, advice=advice)
         from . import node
 
         here = node.require_node()

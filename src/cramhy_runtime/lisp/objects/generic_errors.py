@@ -44,13 +44,17 @@ class NoNextMethodError(NoMethodError):
 
 
 def no_applicable_method_error(generic_function, arguments):
-    problem = NoApplicableMethodError(generic_function, list_from(arguments))
-    problem.hint = getattr(generic_function, "advice", None)
-    return error(problem)
+    return _no_method(NoApplicableMethodError, generic_function, arguments)
 
 
 def no_primary_method_error(generic_function, arguments):
-    return error(NoPrimaryMethodError(generic_function, list_from(arguments)))
+    return _no_method(NoPrimaryMethodError, generic_function, arguments)
+
+
+def _no_method(kind, generic_function, arguments):
+    problem = kind(generic_function, list_from(arguments))
+    problem.hint = getattr(generic_function, "advice", None)
+    return error(problem)
 
 
 def no_next_method_error(generic_function, method, arguments):
@@ -58,23 +62,23 @@ def no_next_method_error(generic_function, method, arguments):
 
 
 class ShownAsGeneric:
-    """What errors show for a function that is generic in the original and a plain one here: its name, and how
-    many methods it has (``None``: nobody knows)."""
+    """What errors show for a function that is generic in the original and a plain one here: its name, how many
+    methods it has (``None``: nobody knows), and what to try."""
 
-    __slots__ = ("name", "methods")
+    __slots__ = ("name", "methods", "advice")
 
-    def __init__(self, name, methods):
-        self.name, self.methods = name, methods
+    def __init__(self, name, methods, advice=None):
+        self.name, self.methods, self.advice = name, methods, advice
 
 
-def no_applicable_method(name, methods, *arguments):
+def no_applicable_method(name, methods, *arguments, advice=None):
     """Signal what the generic function ``name`` (as printed) of the original, with ``methods`` methods, signals for ``arguments``."""
-    return no_applicable_method_error(ShownAsGeneric(name, methods), arguments)
+    return no_applicable_method_error(ShownAsGeneric(name, methods, advice), arguments)
 
 
-def no_primary_method(name, methods, *arguments):
+def no_primary_method(name, methods, *arguments, advice=None):
     """The same for a function whose only methods for ``arguments`` are auxiliary ones."""
-    return no_primary_method_error(ShownAsGeneric(name, methods), arguments)
+    return no_primary_method_error(ShownAsGeneric(name, methods, advice), arguments)
 
 
 def incongruent(generic_function, method):
