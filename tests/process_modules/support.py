@@ -49,4 +49,4 @@ class Text:
             self.session.evaluate_text(text, "<repl>")
         written = io.StringIO()
         report(condition_of(problem.value), file=written)
-        return re.sub(r"\{[0-9A-F]+\}", "{}", written.getvalue().replace(self.session.package.name + "::", ""))
+        return re.sub(r"PM-TEXT-\d+::", "", re.sub(r"\{[0-9A-F]+\}", "{}", written.getvalue()))

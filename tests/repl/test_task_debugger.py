@@ -70,3 +70,25 @@ def test_a_script_never_stops(cramhy, tmp_path):
                                         f"(print {PLAN})\n(top-level (par (error \"the end\")))")
     done = cramhy("run", "plan.lisp", "--time", "virtual", "--no-turtlesim")
     assert done.returncode == 1 and ":HANDLED" in done.stdout and "the end" in done.stderr
+
+
+MODULE = """
+(in-package :cram-user)
+(setf *debug-on-lisp-errors* t)
+(cpm:def-process-module debugged (motion) (+ 1 (desig:desig-prop-value motion :speed)))
+(cpm:with-process-modules-running (debugged)
+  (top-level
+    (flet ((drive (speed)
+             (handler-case (cpm:pm-execute 'debugged (desig:make-designator :motion `((:speed ,speed)))) (error (e) (type-of e)))))
+      (list (drive :fast) (sleep 1) (if (cpm:get-running-process-module 'debugged) (drive 2) :gone)))))"""
+
+
+@pytest.mark.parametrize("answer, result", [("0", "(TYPE-ERROR NIL 3)"), ("1", "(TYPE-ERROR NIL :GONE)"),
+                                            (":continue-pm", "(TYPE-ERROR NIL 3)"), (":terminate-pm", "(TYPE-ERROR NIL :GONE)")])
+def test_an_error_in_a_process_module_offers_to_let_the_module_go_on_or_end(type_in, backend, answer, result):
+    """Both let the caller have the error."""
+    looking = "(desig:desig-prop-value (cpl:value (cpm:input (cpm:get-running-process-module 'debugged))) :speed)"
+    shown = type_in(f"{MODULE}\n{looking}\n{answer}", backend=backend)
+    assert "  0: [CONTINUE-PM ] Ignore error and restart process module main loop.\n" in shown
+    assert "  1: [TERMINATE-PM] Terminate process module\n" in shown
+    assert ":FAST\n" in shown and shown.endswith(f"{result}\n")
