@@ -276,14 +276,14 @@ def merge_desig_descriptions(designator, new_description):
     return merged
 
 
-def copy_designator(old, *, new_description=None):
+def copy_designator(old_designator, *, new_description=None):
     """A new, unequated designator of the same type with the merged description."""
-    return make_designator(type_keyword(old), merge_desig_descriptions(old, new_description))
+    return make_designator(type_keyword(old_designator), merge_desig_descriptions(old_designator, new_description))
 
 
-def extend_designator_properties(designator, extension):
-    """A new, unequated designator of the same class, ``extension`` appended to the description."""
-    return new(designator.__class__, list_from(list(pairs_of(designator)), extension))
+def extend_designator_properties(designator, property_extension):
+    """A new, unequated designator of the same class, ``property_extension`` appended to the description."""
+    return new(designator.__class__, list_from(list(pairs_of(designator)), property_extension))
 
 
 def update_designator_properties(new_properties, old_properties):
@@ -337,18 +337,18 @@ def value_of(pair):
     return None if rest is None else type_error(rest, "LIST")
 
 
-def desig_prop_value(designator, key):
-    """The value of the first pair with ``key``; nil if there is none, or no designator."""
-    if key.__class__ is not Keyword:
-        check_key(key)
-    if designator is not None:
-        for pair in pairs_of(designator):
-            if pair.car is key:
+def desig_prop_value(desig, prop_name):
+    """The value of the first pair with the key ``prop_name``; nil if there is none, or no designator."""
+    if prop_name.__class__ is not Keyword:
+        check_key(prop_name)
+    if desig is not None:
+        for pair in pairs_of(desig):
+            if pair.car is prop_name:
                 return value_of(pair)
     return None
 
 
-def desig_prop_values(designator, key):
-    """The values of all pairs with ``key``, in order."""
-    check_key(key)
-    return list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is key])
+def desig_prop_values(designator, property_name):
+    """The values of all pairs with the key ``property_name``, in order."""
+    check_key(property_name)
+    return list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is property_name])

@@ -93,25 +93,25 @@ def _no_designator(designator):
     return None
 
 
-def newest_effective_designator(designator):
+def newest_effective_designator(desig):
     """The youngest effective member of its chain, or nil."""
-    member = current_desig(designator)
+    member = current_desig(desig)
     while member is not None and member.effective is None:
         member = member.parent
     return member
 
 
-def get_equal_designators(designator):
+def get_equal_designators(d):
     """The others of its chain: ancestors oldest first, then successors youngest first."""
-    members = chain(designator)
-    here = members.index(designator)
+    members = chain(d)
+    here = members.index(d)
     return list_from(members[:here] + members[:here:-1])
 
 
-def designator_solutions(designator, from_root=None):
+def designator_solutions(desig, from_root=None):
     """The lazy list of its reference (or that of the oldest) and those of the solutions after it; empty if it has none."""
     def solutions():
-        member = oldest(designator) if from_root is not None else designator
+        member = oldest(desig) if from_root is not None else desig
         while member is not None:
             value = handler_case([(DesignatorError, lambda problem: _END)], lambda: reference(member))
             if value is _END or value is None:

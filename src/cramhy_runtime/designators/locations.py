@@ -94,28 +94,28 @@ def list_location_validation_functions():
     return validators.all()
 
 
-def delete_location_generator_function(name):
-    generators.delete(name)
+def delete_location_generator_function(function_name):
+    generators.delete(function_name)
 
 
-def delete_location_validation_function(name):
-    validators.delete(name)
+def delete_location_validation_function(function_name):
+    validators.delete(function_name)
 
 
-def disable_location_generator_function(name):
-    generators.disabled.add(name)
+def disable_location_generator_function(function_name):
+    generators.disabled.add(function_name)
 
 
-def enable_location_generator_function(name):
-    generators.disabled.discard(name)
+def enable_location_generator_function(function_name):
+    generators.disabled.discard(function_name)
 
 
-def disable_location_validation_function(name):
-    validators.disabled.add(name)
+def disable_location_validation_function(function_name):
+    validators.disabled.add(function_name)
 
 
-def enable_location_validation_function(name):
-    validators.disabled.discard(name)
+def enable_location_validation_function(function_name):
+    validators.disabled.discard(function_name)
 
 
 def location_solutions(designator):
@@ -304,9 +304,9 @@ def with_designator_solution_filter(predicate, body):
         return body()
 
 
-def next_filtered_designator_solution(designator, predicate):
-    """`next_solution` with the filter ``predicate``."""
-    return with_designator_solution_filter(predicate, lambda: next_solution(designator))
+def next_filtered_designator_solution(designator, filter):
+    """`next_solution` with the filter ``filter``."""
+    return with_designator_solution_filter(filter, lambda: next_solution(designator))
 
 
 def register_defaults():

@@ -35,7 +35,7 @@ EXPORTED = """designator-id-mixin equate-notification-mixin object-designator ac
     with-equate-callback register-location-generator register-location-validation-function with-designator-solution-filter
     action-grounding motion-grounding location-grounding desig-reference designator-groundings current-designator loc-desig?
     obj-desig? action-desig? motion-desig? desig-prop desig-class desig-timestamp desig-description effective-designator desig-value
-    desig-location-prop desig-loc equated-desigs *default-role* *designator-pprint-description*
+    desig-location-prop equated-desigs *default-role* *designator-pprint-description*
     *location-generator-max-retries* data desig action object location human accept-solution reject-solution
     register-object-desig-resolver resolve-object-desig assert-desig-binding retract-desig-binding"""
 

@@ -274,8 +274,8 @@ def _distance_if_effective(next_method, first, second):
     return next_method() if first.effective is not None and second.effective is not None else None
 
 
-def loc_desig_location(designator):
+def loc_desig_location(loc_desig):
     """The reference of the current designator; nil if it is no location designator."""
-    return reference(youngest(designator)) if isinstance(designator, LocationDesignator) else None
+    return reference(youngest(loc_desig)) if isinstance(loc_desig, LocationDesignator) else None
 
 
