@@ -13,10 +13,12 @@ from ..lisp.data import UNBOUND, Character, Cons, DoubleFloat, LispString, all_v
 from ..lisp.dynamic import special
 from ..lisp.objects.classes import class_name, class_of
 from ..lisp.packages import is_symbol, symbol_name
-from ..lisp.printer.print_controls import PRINT_ESCAPE
+from ..lisp.printer.pprint_dispatch import PRINT_PPRINT_DISPATCH
+from ..lisp.printer.print_controls import PRINT_BASE, PRINT_CASE, PRINT_CIRCLE, PRINT_ESCAPE
 from ..lisp.printer.print_names import in_print_case, token
-from ..lisp.printer.printer import define_printer, princ_to_string, print_unreadable, write
+from ..lisp.printer.printer import atom_text, define_printer, princ_to_string, print_unreadable, write
 from ..lisp.streams.streams import BroadcastStream
+from ..lisp.reader.readtables import READTABLE
 from ..lisp.tools.describing import describe_facts, describe_object
 from .classes import Designator, type_keyword
 from .symbols import sym
@@ -33,28 +35,61 @@ def _print_description(designator, stream):
     if PRINT_DESCRIPTION.value is None:
         return
     escape = PRINT_ESCAPE.value is not None
-    put = stream.write
-    put(f"{_bare(designator.quantifier, escape)} {_bare(type_keyword(designator), escape)}")
+    bare = _Bare.table(escape)
+    plain = PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries
+    written = [bare[designator.quantifier], " ", bare[type_keyword(designator)]]  # text that the stream has not got yet
+
+    def put(thing):
+        if is_symbol(thing):
+            written.append(bare[thing])
+            return
+        text = plain and atom_text(thing.__class__)
+        if text:
+            written.append(text(thing, escape))
+        else:
+            stream.write("".join(written))
+            written.clear()
+            _print_part(thing, stream, escape)
+
     description = designator.description
     if description is not None and not isinstance(description, Cons):
         type_error(description, "LIST")
     for entry in description or ():
         if isinstance(entry, Cons):
-            put("\n    (")
-            _print_part(entry.car, stream, escape)
-            put(" ")
+            written.append("\n    (")
+            put(entry.car)
+            written.append(" ")
             rest = entry.cdr
-            _print_part(rest.car if isinstance(rest, Cons) else rest, stream, escape)
-            put(")")
+            put(rest.car if isinstance(rest, Cons) else rest)
+            written.append(")")
         else:  # a description may be anything, such as '(:close-to :fridge)
-            put("\n    ")
-            _print_part(entry, stream, escape)
+            written.append("\n    ")
+            put(entry)
+    stream.write("".join(written))
 
 
-def _bare(symbol, escape):
-    """The text of a symbol without package, as if it were one of the current package."""
-    name = symbol_name(symbol)
-    return token(name) if escape else in_print_case(name)
+class _Bare(dict):
+    """Symbol -> its text without package, as if it were one of the current package, under some state of the printer's variables."""
+
+    tables = {}
+
+    def __init__(self, escape):
+        super().__init__()
+        self.escape = escape
+
+    @classmethod
+    def table(cls, escape):
+        """The table for the printer's variables as they are."""
+        controls = escape, PRINT_CASE.value, READTABLE.value.case, PRINT_BASE.value
+        found = cls.tables.get(controls)
+        if found is None or len(found) > 10_000:
+            found = cls.tables[controls] = cls(escape)
+        return found
+
+    def __missing__(self, symbol):
+        name = symbol_name(symbol)
+        text = self[symbol] = token(name) if self.escape else in_print_case(name)
+        return text
 
 
 _SAFE = frozenset([int, float, DoubleFloat, Fraction, str, LispString, Character])
@@ -65,10 +100,8 @@ def _safe(thing):
 
 
 def _print_part(thing, stream, escape):
-    """Print a key or a value."""
-    if is_symbol(thing):
-        stream.write(_bare(thing, escape))
-    elif _safe(thing) or (isinstance(thing, Cons) and all(map(_safe, thing))):
+    """Print a key or a value that is no symbol."""
+    if _safe(thing) or (isinstance(thing, Cons) and all(map(_safe, thing))):
         write(thing, stream, escape)
     else:  # tried first where nobody sees it, for what a failing printer leaves behind is half a list
         problem = handler_case([(Error, lambda problem: problem)], lambda: write(thing, BroadcastStream(), escape))
