@@ -18,6 +18,7 @@ from ..lisp.dynamic import binding, special
 from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.packages import is_symbol, keyword
 from ..lisp.printer.printer import prin1_to_string
+from ..prolog.database import extended
 from ..prolog.query import ask
 from ..prolog.terms import Var
 from ..utilities.lazy_lists import from_iterator, lazy_cdr, tail
@@ -248,9 +249,9 @@ def validate_location_designator_solution(designator, solution):
 
 def _judge(designator, solution):
     """(whether ``solution`` is valid, the validator that refused it, its verdict)"""
-    names = validators.active()
+    names = [name for name in validators.active() if not (name in _IDLE and _IDLE[name](name.function))]
     if not names:
-        return True, None, None
+        return _VALID
 
     def ask_all():
         verdict = UNKNOWN
@@ -296,6 +297,13 @@ def filter_solution(designator, solution):
     if filters is None:
         return UNKNOWN
     return ACCEPT if all(truth(predicate(solution)) for predicate in filters) else keyword("REJECT")
+
+
+_IDLE = {
+    sym("DESIG::FILTER-SOLUTION"): lambda function: function is filter_solution and FILTERS.value is None,
+    sym("DESIG::LOCATION-PROLOG-VALIDATOR"): lambda function: function is location_prolog_validator and not extended(LOCATION_GROUNDING),
+}
+"""Validators of CRAM -> whether the function has nothing to say now, so that it need not be asked."""
 
 
 def with_designator_solution_filter(predicate, body):

@@ -206,13 +206,15 @@ def _resolve_human(designator, role=None):
 
 
 class QuickResolution(GenericFunction):
-    """``resolve-designator`` while nobody has added methods, for the kinds that rules ground."""
+    """``resolve-designator`` while nobody has added methods."""
 
     def __call__(self, *arguments):
         if len(arguments) == 2:
             cls = arguments[0].__class__
             if cls is MotionDesignator or cls is ActionDesignator:
                 return _resolve_by_prolog(*arguments)
+            if cls is LocationDesignator:
+                return _resolve_location(*arguments)
         return self.lookup(arguments)(*arguments)
 
 
