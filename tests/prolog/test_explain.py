@@ -188,6 +188,20 @@ def test_what_holds_is_told_with_the_clauses_that_prove_it(family):
   (not (silly abe))"""
 
 
+def test_of_a_large_table_the_nearest_fact_is_told():
+    group("table", *(f"((row {number} {number * number}))" for number in range(3000)), "((rows ?x) (row ?x ?y) (row ?y ?z) (row ?z 7))")
+    assert told("(row 2000 7)") == """\
+(row 2000 7) has no solution.
+None of the 3000 clauses of row matches; in the nearest, clause 2001 of table, argument 2 is 4000000, not 7."""
+    assert told("(rows 3)").splitlines()[-2:] == [
+        "           None of the 3000 clauses of row matches; in the nearest, clause 82 of table, argument 2 is 6561, not 7.",
+        "  with ?x = 3, ?y = 9, ?z = 81"]
+    machine, _ = explaining.start(read("(rows 3)"), 1000)
+    assert not machine.next_solution() and len(machine.record.root.attempts) == 1
+    last = machine.record.root.attempts[0].boxes[2][0]
+    assert last.tried == 3000 and len(last.attempts) < 600, "it remembers no more than it needs"
+
+
 def test_long_values_are_cut_short():
     group("long", "((long ?l ?n) (length ?l ?n))")
     numbers = " ".join(map(str, range(100)))
@@ -245,6 +259,15 @@ def unify_without_cycles(a, b, trail):
     return unify(a, b, trail)
 
 
+def explained_solutions(goal):
+    """What the explainer finds, and the variables of the goal; `textbook.Cyclic` where a variable would become part of its value."""
+    proof, variables = explaining.start(goal, 100_000)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(machine, "unify", unify_without_cycles)
+        patch.setattr(explaining, "unify", unify_without_cycles)
+        return solutions(proof, list(variables), variables), variables
+
+
 def with_cut(goals):
     """Goals in which some conjunctions and conditions cut, and solutions are collected."""
     cut = list_from([read("cut")])
@@ -268,12 +291,8 @@ def test_an_explained_proof_finds_the_solutions_of_the_engine(program, goal, cut
     name = read("random-program")
     facts.remove_fact_group(name)
     facts.define_fact_group(name, None, clauses)
-    proof, variables = explaining.start(goal, 100_000)
     try:
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(machine, "unify", unify_without_cycles)
-            patch.setattr(explaining, "unify", unify_without_cycles)
-            explained = solutions(proof, list(variables), variables)
+        explained, variables = explained_solutions(goal)
         proof = query.Proof(goal)
         assert explained == solutions(proof, list(variables), dict(proof.variables))
         assert explain(goal, 100_000).outcome == ("holds" if explained else "fails")

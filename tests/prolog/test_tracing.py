@@ -1,18 +1,27 @@
 """``(trace-prolog functor...)``: the four ports of goals on ``*trace-output*``, and no trace of it when nothing is traced."""
 
+import itertools
+
 import pytest
+import textbook
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from prolog_text import HERE, ask, first, group, read, show
+from test_against_reference import canonical, goals_over, programs
+from test_explain import explained_solutions
 
 from cramhy_runtime import image, kernel
 from cramhy_runtime.lisp.conditions import Error, handler_case
+from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.lisp.streams.basic_streams import StringOutputStream as StringOutput
 from cramhy_runtime.lisp.streams.stream_functions import get_output_stream_string as written
 from cramhy_runtime.lisp.streams.streams import TRACE_OUTPUT
-from cramhy_runtime.prolog import database, query, tracing
+from cramhy_runtime.prolog import database, facts, query, tracing
 from cramhy_runtime.prolog.machine import Machine
-from cramhy_runtime.utilities.lazy_lists import force_ll, lazy_cdr
+from cramhy_runtime.utilities import patterns
+from cramhy_runtime.utilities.lazy_lists import elements, force_ll, lazy_cdr
 
 image.boot()
 PACKAGE = sym("*PACKAGE*")
@@ -295,6 +304,35 @@ def test_what_is_traced_answers_as_ever(goal):
             assert all_answers() == expected
             tracing.untrace_prolog()
     assert "CALL" in written(output) and all_answers() == expected
+
+
+@given(programs, goals_over(["P1", "P2", "P3"]), st.lists(st.integers(0, 20), max_size=4))
+@settings(max_examples=100, deadline=None)
+def test_random_programs_answer_as_ever_when_they_are_traced(program, goal, cuts):
+    kernel.start(clock="virtual")
+    clauses = [clause for part in program for clause in part]
+    for number in cuts:  # some clauses begin with a cut
+        at = number % len(clauses)
+        clauses[at] = Cons(clauses[at].car, Cons(list_from([read("cut")]), clauses[at].cdr))
+    name = read("random-program")
+    facts.remove_fact_group(name)
+    facts.define_fact_group(name, None, clauses)
+    variables = patterns.variables_of(goal)
+
+    def some_answers():
+        answers = itertools.islice(elements(query.prolog(goal)), 40)
+        return [canonical([patterns.var_value(symbol, table) for symbol in variables]) for table in answers]
+
+    try:
+        explained_solutions(goal)
+        expected = some_answers()
+        with binding(TRACE_OUTPUT, StringOutput()), tracing.tracing(), tracing.tracing(*map(read, ("and", "or", "not", "->", "cut"))):
+            assert some_answers() == expected
+        assert some_answers() == expected
+    except textbook.Cyclic:
+        pass
+    finally:
+        facts.remove_fact_group(name)
 
 
 # ------------------------------------------------------------------------------------------------------------------- on and off

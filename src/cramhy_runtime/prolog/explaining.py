@@ -10,7 +10,7 @@ And a *dry* proof calls nothing that might do something in the world: such a goa
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import Cons, list_from
+from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, list_from
 from cramhy_runtime.lisp.packages import is_symbol
 
 from . import (
@@ -24,10 +24,14 @@ from .database import arguments_of, extended, functors, handled, valid_functor
 from .machine import SOLVED, Machine, fail
 from .showing import Names, readable
 from .symbols import sym
+from cramhy_runtime.utilities.patterns import variable
 from .terms import Var, deref, import_term, undo, unify, unset_variables
 
 AND = sym("AND")
 IF, SOFT_IF, FORALL, FAIL = (sym("CRAM-PROLOG::" + name) for name in ("->", "*->", "FORALL", "FAIL"))
+
+_MOST_UNLIKE = 500
+"""So many clauses whose heads do not match are remembered of a goal."""
 
 
 class Attempt:
@@ -68,18 +72,25 @@ class Goal(ports.Box):
     """A goal that was called, its box, and all that was tried for it.
 
     ``shown`` is the goal as it was called, to be printed, and ``values`` the variables of its clause that had values then, as pairs;
-    ``attempts`` the clauses tried; ``inner`` the boxes inside of a control
-    construct; ``exits`` how often it succeeded; ``state`` one of called, exited, failed. ``reason`` says why a built-in failed, and
-    ``near`` from 0 to 1 how nearly it did not. ``trouble`` is ``undefined``, ``empty`` when a predicate has no clauses, or ``dry``
-    for a goal that was not run.
+    ``attempts`` the clauses tried; ``inner`` the boxes inside of a control construct; ``exits`` how often it succeeded; ``state`` one of
+    called, exited, failed. ``reason`` says why a built-in failed, and ``near`` from 0 to 1 how nearly it did not. ``trouble`` is
+    ``undefined``, ``empty`` when a predicate has no clauses, or ``dry`` for a goal that was not run. ``unlike`` counts the clauses whose
+    heads do not match; of very many only those are kept that agree in more arguments, ``furthest`` being the first other one.
     """
 
-    __slots__ = ("term", "shown", "parent", "attempts", "inner", "exits", "state", "reason", "near", "trouble", "best", "values")
+    __slots__ = ("term", "shown", "parent", "attempts", "inner", "exits", "state", "reason", "near", "trouble", "best", "values", "unlike",
+                 "furthest")
 
     def __init__(self, term, parent):
         self.term, self.parent, self.shown = term, parent, readable(term, Names())
         self.attempts, self.inner, self.exits, self.state = [], [], 0, "called"
         self.reason, self.near, self.trouble, self.best, self.values = None, 0, None, None, ()
+        self.unlike = self.furthest = 0
+
+    @property
+    def tried(self):
+        """How many clauses were tried."""
+        return self.unlike + sum(attempt.mismatch is None for attempt in self.attempts)
 
     @property
     def functor(self):
@@ -258,15 +269,23 @@ def _clauses(m, step):
     while i < len(clauses):
         attempt = Attempt(clauses[i])
         i += 1
-        box.attempts.append(attempt)
         height, table = len(m.trail), {}
-        attempt.mismatch = _match(import_term(attempt.clause.head.cdr, table), arguments, m.trail)
+        attempt.mismatch = _other_constant(attempt.clause.head.cdr, arguments)
+        if attempt.mismatch is None:
+            attempt.mismatch = _match(import_term(attempt.clause.head.cdr, table), arguments, m.trail)
         if attempt.mismatch is not None:
             undo(m.trail, height)
+            box.unlike += 1
+            if not box.unlike % 100:
+                m.record.count += 1  # a table of facts takes its time, too
+            if box.unlike <= _MOST_UNLIKE or attempt.mismatch[0] > box.furthest:
+                box.furthest = max(box.furthest, attempt.mismatch[0])
+                box.attempts.append(attempt)
             continue
+        box.attempts.append(attempt)
         attempt.goals = [import_term(goal, table) for goal in flat(attempt.clause.goals)]
-        for symbol, variable in table.items():
-            variable.written, variable.name = symbol, None
+        for symbol, var in table.items():
+            var.written, var.name = symbol, None
         attempt.variables = table
         if i < len(clauses):
             m.choices.append((_more_clauses, k, height, box, clauses, i, arguments))
@@ -277,6 +296,28 @@ def _clauses(m, step):
 def _more_clauses(m, step):
     m.choices.pop()
     return _clauses(m, (_clauses, step[1], *step[3:]))
+
+
+_ATOMS = frozenset([Symbol, Keyword, int, str])
+
+
+def _other_constant(patterns, arguments):
+    """The mismatch of a head and a goal with different constants at the first place, which is seen without unifying."""
+    if patterns.__class__ is not Cons or not arguments:
+        return None
+    wanted, given = patterns.car, deref(arguments[0])
+    if wanted.__class__ in _ATOMS and given.__class__ in _ATOMS and wanted != given and not variable(wanted) \
+            and _proper_length(patterns) == len(arguments):
+        return (1, wanted, given)
+    return None
+
+
+def _proper_length(cell):
+    """The length of a proper list; -1 for a dotted one."""
+    count = 0
+    while cell.__class__ is Cons:
+        cell, count = cell.cdr, count + 1
+    return count if cell is None else -1
 
 
 def _match(patterns, arguments, trail):

@@ -199,7 +199,7 @@ def _mismatches(box):
     if best.mismatch[0] == 0:
         counts = {attempt.mismatch[1] for attempt in attempts if attempt.mismatch[0] == 0}
         return reasons.other_count(box.functor, best.mismatch[2], counts)
-    which = f"none of the {len(attempts)} clauses of {functor} matches; in the nearest, " if len(attempts) > 1 else \
+    which = f"none of the {box.tried} clauses of {functor} matches; in the nearest, " if box.tried > 1 else \
         f"the only clause of {functor} does not match: in "
     return which + f"{clause_name(best.clause)}, {_mismatch(best)}"
 
@@ -253,7 +253,7 @@ def _sentence(text):
 
 
 def _tell_clauses(box, best, depth):
-    count = len(box.attempts)
+    count = box.tried
     lines = [f"Of {count} clauses this one came furthest, {clause_name(best.clause)}:" if count > 1 else
              f"There is one clause, {clause_name(best.clause)}:"]
     lines += ["  " + line for line in [show(best.clause.head), *_tell_body(best, depth)]]
