@@ -1,15 +1,20 @@
 """Process modules and the executive: how a plan moves a robot. Usable from Python:
 
     from cramhy_runtime import cpl
-    from cramhy_runtime.designators import Motion
+    from cramhy_runtime.designators import Motion, motion_grounding, reference
     from cramhy_runtime.process_modules import perform, process_module, process_modules
 
     class Driving(Motion):
         speed: float
 
+    @motion_grounding(Driving)
+    def drive_command(motion):
+        return ["drive", motion.speed]
+
     @process_module(Driving)
     def navigation(motion):
-        cpl.sleep(10 / motion.speed)
+        command, speed = reference(motion)
+        cpl.sleep(10 / speed)
         return "there"
 
     def main():

@@ -2,7 +2,7 @@
 
     @process_module(Driving)                    # for motions of that type
     def navigation(motion):
-        drive(motion.speed)
+        drive(*reference(motion))
         return "there"
 
     def main():
@@ -11,11 +11,12 @@
 
     cpl.run(main)
 
-A module is a function that is called with one designator after the other, each call a task of its own that ends with who asked for it. An
-asynchronous one is a class derived from `AsynchronousModule`. Both have a name that Lisp can use, in the package PYTHON-USER or as
-``name=`` says. What is said about which designators a module is for is a fact group of its own, which ``(matching-process-module ...)``
-and ``(available-process-module ...)`` find; `perform` asks for them in order of definition. Failures of a module are raised where it was
-asked, the very exception. Source: process-modules.md 2 to 8.
+A motion that is performed must stand for something: see `motion_grounding`. A module is a function that is called with one designator
+after the other, each call a task of its own that ends with who asked for it. An asynchronous one is a class derived from
+`AsynchronousModule`. Both have a name that Lisp can use, in the package PYTHON-USER or as ``name=`` says. What is said about which
+designators a module is for is a fact group of its own, which ``(matching-process-module ...)`` and ``(available-process-module ...)``
+find; `perform` asks for them in order of definition. Failures of a module are raised where it was asked, the very exception. Source:
+process-modules.md 2 to 8.
 """
 
 from __future__ import annotations
