@@ -106,6 +106,13 @@ As far came:
 (explain) tries it again and tells all of it."""
 
 
+def test_the_hint_says_that_a_property_has_one_value(driving):
+    assert hint_of(make("motion", [":type", ":moving"], [":goal", 5, 5, 0])).splitlines()[4:5] == [
+        "           :goal has 3 values, and a property has one: (:goal (5 5 0))."]
+    assert hint_of(make("motion", [":type", ":moving"], [":goal"])).splitlines()[4:5] == [
+        "           :goal is without a value."]
+
+
 def test_the_hint_calls_nothing_a_second_time():
     calls = []
     user("SPEED-OF").function = lambda name: calls.append(name)

@@ -8,6 +8,9 @@ from cramhy_runtime import process_modules as pm
 from cramhy_runtime.designators.classes import DesignatorError
 from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import MultipleValues, UndefinedFunction
+from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp.printer.print_controls import PACKAGE
 from cramhy_runtime.lisp.tools.advice import hint_for
 from cramhy_runtime.process_modules import executive
 from cramhy_runtime.process_modules.executive import DesignatorReferenceFailure
@@ -101,7 +104,8 @@ def test_an_object_cannot_be_performed():
 
 def advice(body):
     """What the failure of ``body`` tells the user, without the prefixes of packages."""
-    text = hint_for(failure_of(body))
+    with binding(PACKAGE, COMMON_LISP_USER):
+        text = hint_for(failure_of(body))
     for package in ("cram-user::", "cram-designators:", "cram-process-modules:"):
         text = text.replace(package, "")
     return text

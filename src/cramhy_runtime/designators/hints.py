@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ..lisp.condition_types import Warning_
 from ..lisp.conditions import handler_bind, muffle_warning
-from ..lisp.data import Cons, Symbol, lisp_list
+from ..lisp.data import Cons, Symbol, lisp_list, python_list
 from ..prolog import explanations
 from ..prolog.reasons import declare_harmless, explains, spelled_like
 from ..prolog.showing import show
@@ -97,10 +97,15 @@ def _property_missing(m, desig, pair, *time):
         if near:
             return f"there is no property {show(key)}, but {show(near[0])}; is that misspelled?", 0.9
         return f"there is no property {show(key)}"
+    values = [entry.cdr.car for entry in same if isinstance(entry.cdr, Cons) and entry.cdr.cdr is None]
+    if not values:  # the entries have another shape, and fit nothing
+        given = same[0].cdr
+        if given is None:
+            return f"{show(key)} is without a value"
+        return f"{show(key)} has {len(python_list(given))} values, and a property has one: {show(lisp_list(key, given))}"
     wanted = deref(pair.cdr)
     wanted = deref(wanted.car) if wanted.__class__ is Cons else wanted
-    values = [entry.cdr.car for entry in same if isinstance(entry.cdr, Cons)]
-    text = f"{show(key)} is {' and '.join(map(show, values)) or 'without a value'}, not {show(wanted)}"
+    text = f"{show(key)} is {' and '.join(map(show, values))}, not {show(wanted)}"
     if isinstance(wanted, Symbol) and any(isinstance(value, Symbol) and value and spelled_like(value, [wanted]) for value in values):
         return f"{text}; is that misspelled?", 0.8
     return text
