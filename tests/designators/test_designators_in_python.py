@@ -321,6 +321,11 @@ def test_a_grounding_may_wait_in_a_plan():
      'Give it as a pair, Bad(("parent", value)), and read designator["parent"].'),
     (lambda: type(Motion)("Bad", (Motion,), {}, type=3), TypeError,
      'The type of Bad is to be a keyword or its name, not 3: class Bad(Motion, type="driving").'),
+    (lambda: type(Motion)("Bad", (Motion,), {"stop": lambda self: 1}), TypeError,
+     "Bad.stop would be a method, but what Bad(...) makes is a plain designator, which has properties only. "
+     "Write a function: def stop(designator): ..."),
+    (lambda: type(Motion)("Bad", (Motion,), {"angle": 0.0}), TypeError,
+     "Bad.angle has a value, but no type, and would be no property: angle: float = 0.0."),
     (lambda: Motion(3), TypeError, '3 is no property. In front of the keyword arguments stand pairs: ("goal", value).'),
     (lambda: reference("driving"), TypeError, "'driving' is no designator. Make one: Motion(type=kw.driving), Driving(speed=1.0)."),
     (lambda: list(Motion()), TypeError, "'MotionDesignator' object is not iterable"),

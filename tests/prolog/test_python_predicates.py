@@ -9,6 +9,7 @@ from test_python_rules import text_of
 from cramhy_runtime import cpl
 from cramhy_runtime.prolog import P, UnboundVariable, V, fact_group, findall, first, function, holds, kw, names, predicate, solve
 from cramhy_runtime.prolog import test as check
+from cramhy_runtime.prolog.python_terms import import_predicates
 
 EDGES = {"kitchen": [("hall", 3.0), ("balcony", 1.5)], "hall": [("door", 2.0)]}
 
@@ -245,3 +246,24 @@ def test_names_that_cannot_be():
         def findall(x):
             yield x
     assert text_of(problem) == ("findall is a name of cramhy's package CRAM-PROLOG. Choose another one: predicate(name=P.a_name).")
+
+
+def test_two_modules_that_give_a_predicate_one_name_are_told():
+    def clash():
+        return True
+
+    check(name=P.clash)(clash)
+    check(name=P.clash)(clash)  # the same module: a cell that is run again
+    clash.__module__ = "another"
+    with pytest.warns(RuntimeWarning) as warned:
+        check(name=P.clash)(clash)
+    assert str(warned[0].message) == (f"The test clash of the module another replaces that of {__name__}: names are global in Prolog. "
+                                      "Give one of them another: name=P.another_name.")
+    assert (warned[0].filename, warned[0].lineno) == (__file__, clash.__code__.co_firstlineno)
+
+
+def test_a_name_that_was_used_before_its_predicate_was_imported_is_told():
+    P.early_bird  # noqa: B018
+    with pytest.warns(UserWarning, match="^P.early_bird was used before the module that has the predicate :early-bird") as warned:
+        import_predicates(kw.early_bird)
+    assert warned and repr(P.early_bird) == "early-bird"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
+import pickle
 from collections import namedtuple
 
 import pytest
@@ -37,6 +39,11 @@ def test_answers_come_in_order_with_the_variables_as_attributes_and_items(family
     assert [answer.who for answer in answers] == ["bob", "ann", "pat"]
     assert answers[0] == {"who": "bob"} and answers[0]["who"] == answers[0][V.who] == "bob"
     assert repr(list(solve(P.parent(V.one, V.other)))[1]) == "Answer(one='bob', other='ann')"
+
+
+def test_an_answer_can_be_copied_and_pickled(family):
+    answer = first(P.parent("tom", V.who))
+    assert copy.deepcopy(answer) == pickle.loads(pickle.dumps(answer)) == {"who": "bob"}
 
 
 def test_goals_of_a_query_are_proved_together_and_may_be_joined_by_operators(family):

@@ -22,6 +22,7 @@ Designators are equal by identity, and shown as Lisp prints them. Source: design
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, dataclass_transform
 
 from ..lisp.data import Cons, Keyword, Symbol, lisp_list, list_from
@@ -73,6 +74,8 @@ class Kind(type):
         made.defaults = {**parent.defaults, **{field: body[field] for field in own if field in body}}
         for field in own:
             _check_name(field, name)
+        for field, value in body.items():
+            _check_body(field, value, own, name)
         known = _declared.setdefault((made.designators, made.type_), [])
         known[:] = [made, *(other for other in known if (other.__module__, other.__qualname__) != (made.__module__, made.__qualname__))]
         return made
@@ -141,6 +144,15 @@ def _check_name(name: str, of: str) -> None:
     if name in _OWN:
         raise TypeError(f"A property of {of} cannot be called {name!r}: designators have an attribute of that name. "
                         f"Give it as a pair, {of}((\"{name}\", value)), and read designator[\"{name}\"].")
+
+
+def _check_body(field: str, value: Any, annotations: dict[str, Any], of: str) -> None:
+    if field.startswith("__") or field in annotations or isinstance(value, type):
+        return
+    if isinstance(value, (FunctionType, property, classmethod, staticmethod)):
+        raise TypeError(f"{of}.{field} would be a method, but what {of}(...) makes is a plain designator, which has properties only. "
+                        f"Write a function: def {field}(designator): ...")
+    raise TypeError(f"{of}.{field} has a value, but no type, and would be no property: {field}: {type(value).__name__} = {value!r}.")
 
 
 def _pair(pair: Any) -> Cons:

@@ -39,7 +39,7 @@ from ..lisp.objects.classes import register_class
 from ..lisp.packages import sym
 from ..prolog.python_ground import reasoning
 from ..prolog.python_rules import fact_group
-from ..prolog.python_terms import USER, Goal, Name, P, V, import_predicates, lisp_name, to_lisp, to_python
+from ..prolog.python_terms import USER, Goal, Name, P, V, claim, import_predicates, lisp_name, to_lisp, to_python
 from . import asynchronous, executing, executive, modules
 from . import package as _package  # noqa: F401  the predicates and conditions have names of its packages
 from .matching import AVAILABLE, MATCHING
@@ -79,6 +79,7 @@ def process_module(*given: Any, matches: Body | None = None, name: Any = None) -
 
     def define(body: Body) -> Module:
         module = Module(to_lisp(name) if name is not None else _symbol(body.__name__), body)
+        claim(module.symbol, body, "process module")
         with reasoning():
             modules.define_process_module(module.symbol, body)
         _say_what_it_is_for(module.symbol, () if plain else given, matches)

@@ -27,7 +27,7 @@ from typing import Any, overload
 
 from ..lisp.data import Cons, Symbol, list_from
 from . import natives
-from .python_terms import P, Name, python_arguments, show, to_lisp, what_nil_means
+from .python_terms import P, Name, claim, python_arguments, show, to_lisp, what_nil_means
 from .symbols import sym
 from .terms import Var, deref, import_term, resolve
 
@@ -204,6 +204,7 @@ def _define(function: Python, kind: str, name: Any) -> Predicate:
     symbol = to_lisp(name) if name is not None else getattr(P, own).symbol
     if symbol.package is not None and symbol.package.built_in:
         raise TypeError(f"{show(symbol)} is a name of cramhy's package {symbol.package.name}. Choose another one: {kind}(name=P.a_name).")
+    claim(symbol, function, kind)
     made = Predicate(symbol, function, kind)
     group = f"CRAMHY::{symbol.package.name if symbol.package else ''} {symbol.name} IN PYTHON"
     if kind == "predicate":

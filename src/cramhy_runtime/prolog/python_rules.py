@@ -19,6 +19,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import Any, Self
 
+from .. import kernel
+from ..lisp import package as lisp_package
 from ..lisp.condition_types import SimpleError, StyleWarning
 from ..lisp.conditions import handler_bind
 from ..lisp.data import Cons, Symbol, list_from
@@ -114,6 +116,8 @@ class Answer(Mapping[str, Any]):
         self._values = {_variable_name(symbol): value for symbol, value in values.items()}
 
     def __getattr__(self, name: str) -> Any:
+        if name == "_values":  # one that is being unpickled
+            raise AttributeError(name)
         if name in self._values:
             return self[name]
         near = near_names(name, self._values)
@@ -152,8 +156,12 @@ def solve(*goals: Goal) -> Iterator[Answer]:
 
 def _answers(question: Cons) -> Iterator[Answer]:
     solutions = query.solve(question)
+    lisp_package.fill()
     while True:
-        with reasoning():
+        if kernel.active() is None:
+            with reasoning():
+                found = next(solutions, None)
+        else:
             found = next(solutions, None)
         if found is None:
             return

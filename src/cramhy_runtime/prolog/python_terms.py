@@ -17,6 +17,7 @@ the same object, and ``and``, ``or``, ``not`` are refused. Python sees lists of 
 from __future__ import annotations
 
 import functools
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import BuiltinFunctionType, FunctionType, MethodType
@@ -24,7 +25,7 @@ from typing import Any, NoReturn
 
 from ..lisp.data import Character, Cons, Keyword, LispString, Symbol, list_from
 from ..lisp.faces import attribute_symbols
-from ..lisp.packages import KEYWORD, Package, ensure_package, find_package_or_error
+from ..lisp.packages import KEYWORD, Package, ensure_package, find_package_or_error, printed
 from ..lisp.printer import print_controls
 from ..utilities.lazy_lists import force_ll, lazy_list_p
 from ..utilities.patterns import ANONYMOUS
@@ -236,11 +237,31 @@ def names(package: str) -> Names:
 
 
 def import_predicates(*symbols: Any) -> None:
-    """Let ``P`` have these symbols under their names, where Python code has not used a name for its own."""
+    """Let ``P`` have these symbols under their names. Where Python code has used such a name for its own, it keeps it, with a warning."""
     for symbol in symbols:
-        if not USER.present(symbol.name):
+        known = USER.external.get(symbol.name)
+        if known is None:
             USER.import_symbol(symbol)
             USER.export(symbol)
+        elif known is not symbol:
+            warnings.warn(f"P.{python_name(symbol.name)} was used before the module that has the predicate {printed(symbol).lower()} was "
+                          "imported, and stays another name. Import cramhy_runtime.designators and cramhy_runtime.process_modules first.",
+                          stacklevel=2)
+
+
+_owners: dict[Symbol, str] = {}
+
+
+def claim(symbol: Symbol, function: Any, kind: str) -> None:
+    """Note that ``function`` defines ``symbol``, a ``kind``; that a function of another module has done so is a warning at its place."""
+    module = getattr(function, "__module__", "")
+    before = _owners.get(symbol, module)
+    _owners[symbol] = module
+    code = getattr(function, "__code__", None)
+    if before != module and code is not None:
+        warnings.warn_explicit(f"The {kind} {python_name(symbol.name)} of the module {module} replaces that of {before}: names are global "
+                               "in Prolog. Give one of them another: name=P.another_name.", RuntimeWarning, code.co_filename,
+                               code.co_firstlineno)
 
 
 def lisp_name(name: str) -> str:
