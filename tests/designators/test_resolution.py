@@ -10,7 +10,9 @@ from cramhy_runtime.lisp.conditions import Error, handler_bind, invoke_restart
 from cramhy_runtime.lisp.data import lisp_list, list_from
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
-from cramhy_runtime.prolog import explanations, query
+from cramhy_runtime.lisp.streams.basic_streams import StringOutputStream
+from cramhy_runtime.lisp.streams.streams import TRACE_OUTPUT
+from cramhy_runtime.prolog import explanations, query, tracing
 from cramhy_runtime.utilities.lazy_lists import from_iterator
 
 from .support import facts, lisp, make, python, user
@@ -141,6 +143,22 @@ def test_the_hint_says_when_there_is_a_solution_by_now():
     problem = error_of(designator)
     with facts("drawing", ["desig::action-grounding"], [["desig::action-grounding", "?desig", ["draw"]]]):
         assert problem.hint == "There is a solution now. This designator was tried before there was, and keeps to that: make a new one."
+
+
+def test_the_groundings_of_a_designator_can_be_traced(driving):
+    output = StringOutputStream()
+    with binding(TRACE_OUTPUT, output, sym("*PACKAGE*"), HERE), tracing.tracing("DESIG::MOTION-GROUNDING", "DESIG::DESIG-PROP"):
+        desig.reference(make("motion", [":type", ":moving"], [":goal", 2]))
+    assert output.take().replace("CRAM-USER::", "") == """\
+  0: CALL (MOTION-GROUNDING #<A MOTION (TYPE MOVING) (GOAL 2)> ?_)
+    1: CALL (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:TYPE :DRIVING))
+    1: FAIL (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:TYPE :DRIVING))   :type is :moving, not :driving
+    1: CALL (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:TYPE :MOVING))
+    1: EXIT (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:TYPE :MOVING))
+    1: CALL (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:GOAL ?GOAL))
+    1: EXIT (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:GOAL 2))
+  0: EXIT (MOTION-GROUNDING #<A MOTION (TYPE MOVING) (GOAL 2)> (MOVE 2))   by clause 2 of DRIVING
+"""
 
 
 def test_explain_without_a_goal_takes_the_designator_of_the_last_error(driving):

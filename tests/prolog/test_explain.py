@@ -8,6 +8,7 @@ from prolog_text import HERE, group, read
 from test_against_reference import canonical, goals_over, programs
 
 from cramhy_runtime import image, kernel
+from cramhy_runtime.lisp.conditions import Error
 from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.dynamic import binding
 from cramhy_runtime.lisp.packages import sym
@@ -237,6 +238,18 @@ def test_a_proof_that_only_takes_long_says_how_to_go_on():
     group("count", "((down 0))", "((down ?n) (> ?n 0) (lisp-fun 1- ?n ?m) (down ?m))")
     assert told("(down 1000)", limit=50).splitlines()[-1] == "If it only takes long, allow it more goals: (explain goal :limit 500)."
     assert told("(down 1000)").startswith("(down 1000) holds.")
+
+
+def test_a_limit_that_is_none_is_refused():
+    with pytest.raises(Error) as problem:
+        explain(read("(loop)"), limit=0)
+    assert str(problem.value) == "The :LIMIT of EXPLAIN is the number of goals after which a proof is given up, 1 or more: 0 is none."
+
+
+def test_what_is_no_goal_is_refused():
+    with pytest.raises(Error) as problem:
+        explain(3)
+    assert str(problem.value) == "EXPLAIN takes a goal, quoted as for PROLOG, or a designator: 3 is neither."
 
 
 def test_an_endless_proof_inside_of_a_findall_is_given_up_too():

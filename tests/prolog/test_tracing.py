@@ -253,17 +253,17 @@ def test_several_tasks_have_goals_of_their_own(backend):
 
     assert traced("waiting parent", None, work) == """
   0: CALL (WAITING HOMER)
-[abe]   0: CALL (WAITING ABE)
-[bart]   0: CALL (WAITING BART)
+abe:   0: CALL (WAITING ABE)
+bart:   0: CALL (WAITING BART)
     1: CALL (PARENT HOMER ?Y)
     1: EXIT (PARENT HOMER BART)   by clause 2 of FAMILY
   0: EXIT (WAITING HOMER)   by clause 1 of WAITING
-[abe]     1: CALL (PARENT ABE ?Y)
-[abe]     1: EXIT (PARENT ABE HOMER)   by clause 1 of FAMILY
-[abe]   0: EXIT (WAITING ABE)   by clause 1 of WAITING
-[bart]     1: CALL (PARENT BART ?Y)
-[bart]     1: FAIL (PARENT BART ?Y)
-[bart]   0: FAIL (WAITING BART)
+abe:     1: CALL (PARENT ABE ?Y)
+abe:     1: EXIT (PARENT ABE HOMER)   by clause 1 of FAMILY
+abe:   0: EXIT (WAITING ABE)   by clause 1 of WAITING
+bart:     1: CALL (PARENT BART ?Y)
+bart:     1: FAIL (PARENT BART ?Y)
+bart:   0: FAIL (WAITING BART)
 """
 
 
@@ -278,7 +278,7 @@ def test_a_task_that_is_ended_leaves_its_goals():
         kernel.sleep(1)
 
     assert traced("waiting", None, work).splitlines()[1:] == [
-        "[waiter]   0: CALL (WAITING ABE)", "[waiter]   0: LEFT (WAITING ABE)   its task was ended"]
+        "waiter:   0: CALL (WAITING ABE)", "waiter:   0: LEFT (WAITING ABE)   its task was ended"]
 
 
 # -------------------------------------------------------------------------------------------------------------- the same answers

@@ -82,6 +82,8 @@ def explain(goal, limit=LIMIT, dry=False):
     limit: the number of goals after which the proof is given up. dry: whether to leave out goals that might do something.
     """
     goal = goal_for(goal)
+    if limit.__class__ is not int or limit < 1:
+        error("The :LIMIT of EXPLAIN is the number of goals after which a proof is given up, 1 or more: ~S is none.", limit)
     if isinstance(goal, str):
         return Explanation(None, "fails", text=goal)
     machine, variables = start(goal, limit, dry)

@@ -84,7 +84,7 @@ class TracedGoal(ports.Box):
         try:
             text = line(readable(Cons(self.functor, list_from(self.terms)), Names()))
             task = kernel.current()
-            name = "" if task is kernel.active().main else f"[{task.name}] "
+            name = "" if task is kernel.active().main else f"{task.name}: "
             stream = output_stream(TRACE_OUTPUT.value)
             stream.fresh_line()
             stream.write(f"{name}{'  ' * (self.depth % 20)}  {self.depth}: {port} {text}{f'   {more}' if more else ''}\n")
