@@ -11,7 +11,7 @@ from prolog_text import HERE, read
 from cramhy_runtime.lisp.data import Cons, list_from
 
 VARIABLES = [read(f"?{letter}") for letter in "uvwxyz"]
-ATOMS = [read(text) for text in ("a", "b", "c", "nil", "0", "1", "2", "3", "5", "-1", '"s"', ":k", "1.5")]
+ATOMS = [read(text) for text in "a a a b b nil 1 1 2 2 3".split()] + [read(text) for text in ("0", "-1", '"s"', ":k", "1.5")]
 OPERATORS = [read(text) for text in "+ - *".split()]
 COMPARISONS = [read(text) for text in "< > <= >=".split()]
 
@@ -33,31 +33,37 @@ def form(name, *parts):
 
 
 class Program:
-    """``clauses``: (head goal...) lists; ``query``: a goal."""
+    """``clauses``: (head goal...) lists; ``queries``: goals."""
 
     def __init__(self, seed):
         self.rng = random.Random(seed)
         self.predicates = {}
         self.clauses = []
-        for name in self.rng.sample(sorted(RECURSIVE), 3):
+        for name in self.rng.sample(sorted(RECURSIVE), 2):
             for needed in ("pick", name) if name == "perm" else (name,):
                 if needed not in self.predicates:
                     self.predicates[needed] = ARITIES[needed]
                     self.clauses += map(read, RECURSIVE[needed])
-        for level in range(self.rng.randint(2, 4)):
+        for level in range(self.rng.randint(2, 3)):
             self.define(f"p{level}")
-        self.query = self.conjunction(self.rng.randint(1, 3), 2)
+        self.queries = [self.conjunction(self.rng.randint(1, 3), 2)]
+        self.queries += [self.asking(name) for name in self.predicates if name.startswith("p")]
 
     def define(self, name):
         arity = self.rng.randint(1, 3)
         facts_only = self.rng.random() < 0.3
         for _ in range(self.rng.randint(1, 5)):
             head = Cons(HERE.intern(name.upper()), list_from([self.term(1, 0.2 if facts_only else 0.6) for _ in range(arity)]))
-            goals = [] if facts_only or self.rng.random() < 0.4 else [self.goal(2) for _ in range(self.rng.randint(1, 3))]
-            if goals and self.rng.random() < 0.2:
+            goals = [] if facts_only or self.rng.random() < 0.4 else [self.goal(2) for _ in range(self.rng.choice((1, 1, 2, 2, 3)))]
+            if goals and self.rng.random() < 0.15:
                 goals.insert(self.rng.randint(0, len(goals)), form("cut"))
             self.clauses.append(Cons(head, list_from(goals)))
         self.predicates[name] = arity
+
+    def asking(self, name):
+        """A query for what holds of a predicate, and perhaps more."""
+        call = Cons(HERE.intern(name.upper()), list_from([self.term(1, 0.8) for _ in range(self.predicates[name])]))
+        return call if self.rng.random() < 0.4 else form("and", call, self.goal(1))
 
     def term(self, depth, variables=0.5):
         chance = self.rng.random()
@@ -87,8 +93,8 @@ class Program:
     def goal(self, depth):
         """A goal; control constructs nest ``depth`` deep."""
         rng = self.rng
-        simple = [self.call, self.call, self.call, self.call, self.unification, self.member, self.arithmetic, self.comparison, self.of_lists,
-                  self.test]
+        simple = [self.call, self.call, self.call, self.call, self.unification, self.member, self.arithmetic, self.comparison,
+                  self.of_lists, self.test]
         if depth == 0:
             return rng.choice(simple)()
         return rng.choice([*simple, *simple, lambda: form("not", self.conjunction(1, depth - 1)), lambda: self.disjunction(depth - 1),
@@ -130,8 +136,8 @@ class Program:
 
     def collection(self, depth):
         result = self.rng.choice([self.rng.choice(VARIABLES), self.list(1, 0.7)])
-        return form(self.rng.choice(["findall", "findall", "bagof", "setof"]), self.term(1, 0.8), self.conjunction(self.rng.randint(1, 2), depth),
-                    result)
+        goal = self.conjunction(self.rng.randint(1, 2), depth)
+        return form(self.rng.choice(["findall", "findall", "bagof", "setof"]), self.term(1, 0.8), goal, result)
 
     def committed(self, depth):
         return self.rng.choice([

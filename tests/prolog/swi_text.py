@@ -1,8 +1,8 @@
 """Programs as SWI-Prolog reads them, with what differs between the dialects spelled out, and a way to run many of them at once.
 
-An ``or`` stops a cut, so it is called. Arithmetic and comparison of what is no number fail. What ``findall``, ``bagof`` and ``setof`` find is
-of known value only: where variables are left in it the dialects differ, and the program is given up, as are endless terms and long
-proofs. ``setof`` does not sort.
+An ``or`` stops a cut, so it is called. Arithmetic and comparison of what is no number fail. ``setof`` does not sort. What ``findall``,
+``bagof`` and ``setof`` find must be of known value: where variables are left in it the dialects differ, and the query is given up, as
+are those with endless terms and long proofs.
 """
 
 import subprocess
@@ -46,8 +46,8 @@ answers(N, Limit) :-
 numbervars_in_order(Vs) :- term_variables(Vs, Free), name_all(Free, 0).
 name_all([], _).
 name_all([V|Vs], N) :- format(atom(A), '_~d', [N]), V = '$named'(A), M is N + 1, name_all(Vs, M).
-run(N, Limit) :- format('program ~d~n', [N]),
-    catch(call_with_time_limit(2, call_with_inference_limit(answers(N, Limit), 50000, R)), E, true),
+run(N, Limit) :- format('query ~d~n', [N]),
+    catch(call_with_time_limit(0.5, call_with_inference_limit(answers(N, Limit), 8000, R)), E, true),
     ( nonvar(E) -> format('given up~n')
     ; R == inference_limit_exceeded -> format('given up~n') ; true ).
 """
@@ -110,32 +110,39 @@ def goal(data, number):
     return f"{functor}({', '.join(map(term, parts))})"
 
 
-def program_text(program, number, variables):
+def program_text(program, number, queries):
+    """``queries``: (number, goal, variables)."""
     lines = []
     for clause in program.clauses:
         body = ", ".join(goal(part, number) for part in clause.cdr or ())
         lines.append(goal(clause.car, number) + (f" :- {body}." if body else "."))
-    lines.append(f"query({number}, [{', '.join(map(term, variables))}]) :- {goal(program.query, number)}.")
+    for each, query, variables in queries:
+        lines.append(f"query({each}, [{', '.join(map(term, variables))}]) :- {goal(query, number)}.")
     return "\n".join(lines)
 
 
 def run(programs, limit, folder):
-    """The first ``limit`` answers to each program's query, as lines of text; ``None`` for a program that was given up.
+    """For each program the answers to each of its queries: at most ``limit`` lines of text; ``None`` for a query that was given up.
 
-    ``programs``: pairs of a program and the variables of its query.
+    ``programs``: pairs of a program and the list of (query, its variables).
     """
     path = folder / "programs.pl"
-    path.write_text(LIBRARY + "\n".join(program_text(program, number, variables) for number, (program, variables) in enumerate(programs)))
+    text, count = LIBRARY, 0
+    for number, (program, queries) in enumerate(programs):
+        text += program_text(program, number, [(count + index, *query) for index, query in enumerate(queries)]) + "\n"
+        count += len(queries)
+    path.write_text(text)
     done = subprocess.run(
-        ["swipl", "-q", "-f", str(path), "-g", f"forall(between(0, {len(programs) - 1}, N), run(N, {limit}))", "-t", "halt"],
+        ["swipl", "-q", "-f", str(path), "-g", f"forall(between(0, {count - 1}, N), run(N, {limit}))", "-t", "halt"],
         capture_output=True, text=True, timeout=600)
     assert not done.stderr.strip(), done.stderr[:2000]
     found = []
     for line in done.stdout.splitlines():
-        if line.startswith("program "):
+        if line.startswith("query "):
             found.append([])
         elif line.startswith("given up"):
             found[-1] = None
         else:
             found[-1].append(line)
-    return found
+    answers = iter(found)
+    return [[next(answers) for _ in queries] for _, queries in programs]
