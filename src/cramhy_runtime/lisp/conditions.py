@@ -410,9 +410,11 @@ def program_error(control, *arguments):
     return error(types.SimpleProgramError(control, *arguments))
 
 
-def wrong_argument_count(given):
-    """Signal the program-error of a call with ``given`` arguments, SBCL's text."""
-    return error(types.SimpleProgramError("invalid number of arguments: ~S", given))
+def wrong_argument_count(given, hint=None):
+    """Signal the program-error of a call with ``given`` arguments, SBCL's text; ``hint`` may say how many there are to be."""
+    condition = types.SimpleProgramError("invalid number of arguments: ~S", given)
+    condition.hint = hint
+    return error(condition)
 
 
 def signal_exception(exception):

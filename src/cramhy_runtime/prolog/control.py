@@ -11,12 +11,13 @@ a cut inside ``not``, ``once``, ``call``, ``findall`` and the like destroys the 
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import type_error, wrong_argument_count
+from cramhy_runtime.lisp.conditions import type_error
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from
 
 from . import database
-from .database import arguments_of, find_predicate, handled, undefined_step, valid_functor, warn_undefined
+from .database import arguments_of, find_predicate, handled, undefined_step, valid_functor
 from .machine import FAIL, SOLVED, Machine, call_again, fail, proceed, settle
+from .natives import refuse_count
 from .symbols import sym
 from .terms import Restore, TermTail, Var, copy_term, deref, raw, undo, unify, unset_variables
 
@@ -34,7 +35,7 @@ def _control(name, least=0, most=None):
         def call(m, terms, k, b):
             arguments = arguments_of(Cons(None, terms))
             if len(arguments) < least or (most is not None and len(arguments) > most):
-                return wrong_argument_count(len(arguments))
+                return refuse_count(name, len(arguments), least, most)
             return function(m, k, b, *arguments)
 
         symbol = sym(name)
@@ -77,8 +78,7 @@ def solve(m, goal, k, b):
     if goal.__class__ is not Cons:
         goal = deref(goal)
         if goal is None:
-            warn_undefined(m, None)
-            return fail(m)
+            return undefined_step(m, None)
         if goal.__class__ is not Cons:
             return type_error(raw(goal, m.names), "LIST")
     functor = goal.car

@@ -6,24 +6,26 @@ cannot unify, code is kept per functor and number of arguments, and made when a 
 stands for the clauses of a built-in fact group and is followed by those that users add.
 
 The compiler of clauses and the constructs of control stand above this module. They enter here what it needs of them:
-`compile_clauses`, the functors that are compiled `in_place`, and who wants to know of changes, `watchers`.
+`compile_clauses`, `warn_undefined`, the functors that are compiled `in_place`, and who wants to know of changes, `watchers`.
 """
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import warn
 from cramhy_runtime.lisp.data import Cons, list_from
 from cramhy_runtime.lisp.packages import is_symbol
 
+from . import origins
 from .machine import call_again, fail, settle
 from cramhy_runtime.utilities.patterns import variable
-from .terms import deref, raw
+from .terms import deref
 
 
 compile_clauses = None
 """``compile_clauses(predicate, clauses)``: a call function and the `Relation`, or ``None``; of the module ``compiler``."""
 in_place: set = set()
 """Functors whose goals are compiled in place: when users give one clauses, all code is made anew."""
+warn_undefined = None
+"""``warn_undefined(machine, goal)`` warns of a goal whose functor nobody has defined; of the module ``undefined``."""
 watchers: list = []
 """Functions that are called with the name of a functor and its entry, or ``None``, after its clauses have changed."""
 
@@ -93,12 +95,20 @@ class Predicate:
 
 
 class Clause:
-    """A fact or rule: Lisp data of the ``head`` and of the list of ``goals``, and the group that it belongs to."""
+    """A fact or rule: Lisp data of the ``head`` and of the list of ``goals``, and the group that it belongs to.
 
-    __slots__ = ("head", "goals", "group")
+    ``origin``: the user's code that made it, see ``origins.py``.
+    """
 
-    def __init__(self, head, goals, group):
-        self.head, self.goals, self.group = head, goals, group
+    __slots__ = ("head", "goals", "group", "origin")
+
+    def __init__(self, head, goals, group, origin=None):
+        self.head, self.goals, self.group, self.origin = head, goals, group, origin
+
+    @property
+    def position(self):
+        """(file, line, column) of the form that made it, or ``None``."""
+        return origins.position_of_origin(self.origin)
 
 
 class Functor:
@@ -215,12 +225,6 @@ def arguments_of(goal):
         arguments.append(cell.car)
         cell = deref(cell.cdr)
     return arguments
-
-
-def warn_undefined(m, goal):
-    """The warning for a goal whose functor nobody has defined."""
-    warn("Trying to prove goal ~a with undefined functor ~s.", raw(goal, m.names),
-         None if goal is None else raw(goal.car, m.names))
 
 
 def _undefined(functor):

@@ -17,11 +17,11 @@ from cramhy_runtime.lisp.evaluation.places_in_source import describe
 from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, output_stream
 
 from . import explaining, reasons
-from .database import functors
 from .explaining import start
 from .showing import Names, clause_name, clause_number, show
 from .symbols import sym
 from .terms import resolve
+from .undefined import advice
 
 LIMIT = 10_000
 """So many goals are proved before a proof is taken for endless."""
@@ -179,19 +179,7 @@ def _reason(box):
 
 
 def _undefined(box):
-    functor = box.functor
-    if not isinstance(functor, Symbol) or functor is None:
-        return f"{show(functor)} is no functor; (call ?goal) proves a goal that is the value of a variable" \
-            if box.term.__class__ is Cons else "nil is no goal"
-    name = show(functor)
-    elsewhere = [symbol for symbol in functors if symbol.name == functor.name and functors[symbol].defined]
-    if elsewhere:
-        package = elsewhere[0].package
-        return (f"nobody defines {name}; there is {package.name.lower()}:{name.rpartition(':')[2]}, another symbol of that name: "
-                "write it so, or import it")
-    known = [symbol for symbol in functors if functors[symbol].defined]
-    near = reasons.spelled_like(functor, known)
-    return f"nobody defines {name}" + (f"; did you mean {' or '.join(show(symbol) for symbol in near)}?" if near else "")
+    return advice(box.functor if box.term.__class__ is Cons else None) or f"nobody defines {show(box.functor)}"
 
 
 def _mismatches(box):

@@ -8,6 +8,8 @@ Source: prolog.md section 6.
 
 from __future__ import annotations
 
+from itertools import zip_longest
+
 from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn, type_error
 from cramhy_runtime.lisp.data import Cons, list_from, python_list
 
@@ -17,34 +19,34 @@ from cramhy_runtime.utilities.patterns import rename_vars
 _groups: dict = {}
 
 
-def define_fact_group(name, extendable, facts):
+def define_fact_group(name, extendable, facts, origins=()):
     """Define the group ``name`` with ``facts``, a list of (head goal...); returns a list of (functor fact...).
 
-    Warns when the group exists and replaces it. Errors: an invalid functor, or one that another group has and ``extendable``
-    does not list; then nothing of the new group is stored, but the old one is gone.
+    ``origins``: for each fact which code made it, see ``origins.py``. Warns when the group exists, and replaces it. Errors: an invalid
+    functor, or one that another group has and ``extendable`` does not list; then everything stays as it was, the old group too.
     """
     if name in _groups:
         style_warn("Redefining prolog fact-group ~a.", name)
-        remove_fact_group(name)
     extendable = python_list(extendable) if extendable is None or isinstance(extendable, Cons) else list(extendable)
     for functor in extendable:
         if not valid_functor(functor):
             return error(SimpleError("Extendible predicates in the definition of fact group ~a~%            "
                                      "contained an invalid functor ~a.", name, functor))
     clauses = {}
-    for fact in facts or ():
+    for fact, origin in zip_longest(facts or (), origins):
         head = fact.car
         if not isinstance(head, Cons):
             return type_error(head, "LIST")
         functor = head.car
         if not valid_functor(functor):
             return error(SimpleError("Functor ~a of fact head ~a is not valid.", functor, head))
-        others = functors[functor].groups() if functor in functors else None
+        others = [group for group in functors[functor].groups() if group is not name] if functor in functors else None
         if others and functor not in extendable:
             return error(SimpleError("Functor ~a is being redefined in fact-group ~a.~%                "
                                      "Other definitions were in fact-groups ~a.", functor, name, list_from(others)))
         fact = rename_vars(fact, gensym_var_names=None)
-        clauses.setdefault(functor, []).append((fact, Clause(fact.car, python_list(fact.cdr) or None, name)))
+        clauses.setdefault(functor, []).append((fact, Clause(fact.car, python_list(fact.cdr) or None, name, origin)))
+    remove_fact_group(name)
     _groups[name] = list(clauses)
     for functor, new in clauses.items():
         functor_entry(functor).clauses += [clause for _, clause in new]
@@ -60,8 +62,33 @@ def remove_fact_group(name):
             continue
         entry.clauses = [clause for clause in entry.clauses if clause.group is not name]
         if entry.native_group is name:
+            _came_with_us.setdefault(name, {})[functor] = entry.native
             entry.native = entry.native_group = None
         changed(functor)
+
+
+_came_with_us: dict = {}
+"""Built-in group → functor → the native facts that came with it."""
+
+
+def restore_fact_group(name):
+    """Give a built-in group that users have redefined back what it came with; ``nil`` when it is as it was.
+
+    Clauses that users added for its predicates in groups of their own stay.
+    """
+    if name not in _came_with_us:
+        if any(entry.native_group is name for entry in functors.values()):
+            return None
+        return error("~S is no fact group that came with CRAM-PROLOG.", name)
+    if all(functors[functor].native is native for functor, native in _came_with_us[name].items()):
+        return None
+    remove_fact_group(name)
+    _groups[name] = list(_came_with_us[name])
+    for functor, native in _came_with_us[name].items():
+        entry = functor_entry(functor)
+        entry.native, entry.native_group = native, name
+        changed(functor)
+    return True
 
 
 def built_in_group(name, functor):

@@ -12,6 +12,7 @@ from cramhy_runtime.lisp.conditions import (
     Condition,
     Error,
     HandlerExit,
+    SimpleWarning,
     StorageCondition,
     caught,
     enter_case,
@@ -24,6 +25,7 @@ from cramhy_runtime.lisp.data import Cons, Keyword, MultipleValues, Symbol, Unde
 from cramhy_runtime.lisp.dynamic import special, unbind
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
+from .failing_calls import note_place
 from .symbols import CUT, PROLOG, sym
 from .terms import TermTail, Var, import_term, raw, resolve, undo, unify
 
@@ -57,10 +59,10 @@ def argument(m, term):
     return resolve(term, m.names) if term.__class__ is Var else raw(term, m.names) if term.__class__ is Cons else term
 
 
-def call_lisp(function, arguments, kind, written):
+def call_lisp(function, arguments, kind, written, m=None):
     """(True, value) of a call, or (False, condition) after the warning about the error in it.
 
-    ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it.
+    ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it, ``m`` the proof that the goal is of.
     """
     if truth(BREAK_ON_LISP_ERRORS.value):
         return True, _apply(function, arguments)
@@ -76,7 +78,10 @@ def call_lisp(function, arguments, kind, written):
         problem = caught(left, case)
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
-    warn(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
+    warning = SimpleWarning(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
+    if m is not None:
+        note_place(warning, m, kind, written, arguments, problem)
+    warn(warning)
     return False, problem
 
 
@@ -113,7 +118,7 @@ def _whole(item):
 
 def lisp_value(m, function, arguments):
     """The term of the first value of a call of ``function``; ``NotImplemented`` after the warning about an error in it."""
-    done, value = call_lisp(function, arguments, "function", function)
+    done, value = call_lisp(function, arguments, "function", function, m)
     if not done:
         return NotImplemented
     kind = value.__class__
@@ -137,7 +142,7 @@ def lisp_fun(m, function, arguments, result):
 
 def lisp_pred(m, predicate, arguments):
     """Whether ``predicate`` is true of the arguments. The predicate is taken as it is written, never a variable's value."""
-    done, value = call_lisp(predicate, arguments, "predicate", predicate)
+    done, value = call_lisp(predicate, arguments, "predicate", predicate, m)
     return done and truth(value)
 
 

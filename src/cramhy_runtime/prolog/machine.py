@@ -39,7 +39,7 @@ too_deep = None
 class Machine:
     """A proof. ``names`` maps symbols to the variables that they stand for in Lisp data."""
 
-    __slots__ = ("trail", "choices", "names", "found", "start", "collect", "until_measured", "until_tidy")
+    __slots__ = ("trail", "choices", "names", "found", "start", "collect", "until_measured", "until_tidy", "warned")
 
     def __init__(self, names=None):
         self.trail = []
@@ -49,6 +49,7 @@ class Machine:
         self.start = self.collect = None
         self.until_measured = 200  # batches
         self.until_tidy = _TIDY  # length of the trail
+        self.warned = None
 
     def prove(self, step):
         """Prepare to prove what ``step`` does; its continuation must be `SOLVED`."""
@@ -57,7 +58,15 @@ class Machine:
 
     def nested(self, names):
         """A machine for a proof inside of this one, whose solutions are collected."""
-        return Machine(names)
+        machine = Machine(names)
+        machine.warned = self.warned_of()
+        return machine
+
+    def warned_of(self):
+        """A set of what was warned of in this proof and those inside of it: a warning that is repeated tells nothing."""
+        if self.warned is None:
+            self.warned = set()
+        return self.warned
 
     def unify(self, *sides):
         """Make terms the same, two by two: ``unify(a, b, c, d)`` unifies a with b and c with d. All or nothing."""

@@ -6,13 +6,14 @@ from cramhy_runtime.lisp.data import python_list
 from cramhy_runtime.lisp.faces import define_face
 
 from . import facts, natives, productions, rete, tracing
+from .origins import origin
 
 
 class FactCollector:
     """The facts of a group while its definition is evaluated: ``<-`` forms may stand in loops and macros."""
 
     def __init__(self):
-        self.facts = []
+        self.facts, self.origins = [], []
 
 
 def fact_collector():
@@ -22,11 +23,12 @@ def fact_collector():
 def collect_fact(collector, fact):
     """``(<- head goal...)`` inside a fact group: ``fact`` is (head goal...)."""
     collector.facts.append(fact)
+    collector.origins.append(origin())
     return fact
 
 
 def finish_fact_group(name, extendable, collector):
-    return facts.define_fact_group(name, extendable, collector.facts)
+    return facts.define_fact_group(name, extendable, collector.facts, collector.origins)
 
 
 def fact_outside_group(fact):

@@ -25,6 +25,7 @@ from .database import changed, functor_entry
 from .facts import built_in_group
 from cramhy_runtime.utilities.lazy_lists import elements as lazy_elements
 from .machine import fail, retry_iterator
+from .showing import show
 from .symbols import sym
 from .terms import UNSET, Var, deref, import_term, raw, resolve, undo, unify
 
@@ -60,10 +61,18 @@ def _declare(name, function, wrap, group):
     def checked(m, step):
         given = len(step) - 2
         if given < least or (most is not None and given > most):
-            return wrong_argument_count(given)
+            return refuse_count(name, given, least, most)
         return call(m, step)
 
     _install(name, checked, None, None)
+
+
+def refuse_count(name, given, least, most):
+    """The program-error for a handler that is called with ``given`` arguments, with a hint at how many it takes."""
+    symbol = sym(name) if isinstance(name, str) else name
+    count = f"at least {least}" if most is None else f"{least} to {most}" if most != least else f"{least or 'no'}"
+    plural = "" if count.split()[-1] == "1" else "s"
+    return wrong_argument_count(given, f"A goal with the functor {show(symbol)} has {count} argument{plural}.")
 
 
 def test(name, group=None):

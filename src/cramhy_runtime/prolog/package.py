@@ -14,6 +14,7 @@ from cramhy_runtime.utilities import patterns
 
 from . import (
     builtins,  # noqa: F401  the built-in predicates come along
+    facts,
     explanations,
     productions,
     query,
@@ -30,11 +31,13 @@ PROLOG = define_face(
         query: "query-var filter-bindings",
         patterns: "unify unify-p",
         rete: "rete-assert rete-retract rete-holds rete-prove clear-alpha-network alpha-network-size",
+        facts: "restore-fact-group",
         productions: """register-production clear-productions remove-production register-production-handler
             remove-production-handler""",
         "explain": explanations.print_explanation,
     },
     variables={BREAK_ON_LISP_ERRORS.name: None, DEPTH_LIMIT.name: DEFAULT_DEPTH},
+    internal="restore-fact-group",
     export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof
         every forall member take generate-values == equal length append sort reduce max string-concat format warn error
         slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=

@@ -24,6 +24,7 @@ from . import (
     compiler,  # noqa: F401  the clauses that they find
     control,
     depth,  # noqa: F401  the error of a proof without end
+    undefined,  # noqa: F401  which warns of those that nobody has defined
 )
 from .database import find_predicate
 from cramhy_runtime.utilities.lazy_lists import tail
@@ -44,11 +45,11 @@ on_finish_prolog_prove = Hook("CUT::ON-FINISH-PROLOG-PROVE", "(log-id success)")
 class Proof(Machine):
     """The proof of a goal that is given as Lisp data."""
 
-    __slots__ = ("variables", "binds")
+    __slots__ = ("variables", "binds", "goal")
 
     def __init__(self, goal, binds=None):
         super().__init__(_Names(binds) if binds is not None else {})
-        self.binds = binds
+        self.binds, self.goal = binds, goal
         self.start = _start, SOLVED, import_term(goal, self.names)
         self.variables = [*self.names.items()][::-1]
         if binds is not None:

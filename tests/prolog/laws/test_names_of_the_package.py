@@ -23,7 +23,7 @@ FUNCTIONS = {
 GENERIC = {"prolog": "(QUERY &OPTIONAL BINDS)", "object-id": "(OBJ)"}
 MACROS = "def-fact-group <- def-prolog-handler with-facts-asserted def-production with-productions with-production-handlers"
 OTHERS = "?_ *break-on-lisp-errors*"
-OURS = "explain trace-prolog untrace-prolog"
+OURS = "*prolog-depth-limit* explain trace-prolog untrace-prolog"
 """More than the original has: watching proofs."""
 GROUPS = {
     "misc-utils": "== equal", "list-utils": "member length append sort reduce", "math-utils": "max < > <= >=",

@@ -24,9 +24,12 @@ def is_user_file(filename):
 
 def frame_position(frame, lasti=None):
     """(file, line, column) of what ``frame`` is executing; the column may be ``None``."""
-    code = frame.f_code
-    lasti = frame.f_lasti if lasti is None else lasti
-    line, column = frame.f_lineno, None
+    return code_position(frame.f_code, frame.f_lasti if lasti is None else lasti, frame.f_lineno)
+
+
+def code_position(code, lasti, line=None):
+    """(file, line, column) of the instruction ``lasti`` of a code object; ``line`` if the code does not tell."""
+    column = None
     for index, position in enumerate(code.co_positions()):
         if index == lasti // 2:
             line, _, column, _ = position

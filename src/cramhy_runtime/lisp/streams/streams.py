@@ -360,11 +360,16 @@ def input_stream(designator):
 
 
 def warning_line(condition):
-    """Print ``condition`` to ``*error-output*`` as ``warn`` does: ``WARNING: `` and its report on a line of its own."""
+    """Print ``condition`` to ``*error-output*`` as ``warn`` does: ``WARNING: `` and its report on a line of its own.
 
+    Below that stand its ``where`` and its ``hint``, if somebody noted what more there is to say.
+    """
     badness = "STYLE-WARNING" if isinstance(condition, late.StyleWarning) else "WARNING"
     late.format_(ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
-    output_stream(ERROR_OUTPUT.value).flush()
+    stream = output_stream(ERROR_OUTPUT.value)
+    for line in filter(None, (getattr(condition, "where", None), getattr(condition, "hint", None))):
+        stream.write("".join(f"  {part}\n" for part in line.splitlines()))
+    stream.flush()
 
 
 def ask_for_form(prompt):
