@@ -14,8 +14,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "cramhy_runtime"
-FLOORS = [["kernel"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"], ["designators", "turtlesim"], ["process_modules"],
-          ["projection"], ["view", "repl", "testing"],
+FLOORS = [["kernel"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"], ["designators", "turtlesim", "episodes"],
+          ["process_modules"], ["projection"], ["view", "repl", "testing"],
           ["cli", "image", "pytest_plugin", "__init__"]]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 ALLOWED_UPWARDS = {("repl", "image"), ("testing", "image"), ("pytest_plugin", "image"), ("cli", "image")}
@@ -60,7 +60,7 @@ def test_a_room_imports_only_from_floors_below_its_own(path):
         assert FLOOR[other] < FLOOR[room] or (room, other) in ALLOWED_UPWARDS, f"{room} imports {other}"
 
 
-@pytest.mark.parametrize("room", ["kernel", "lisp", "utilities", "transforms", "cpl", "prolog", "designators", "turtlesim",
+@pytest.mark.parametrize("room", ["kernel", "lisp", "utilities", "transforms", "cpl", "prolog", "designators", "turtlesim", "episodes",
                                   "process_modules", "projection", "repl", "testing"])
 def test_the_modules_of_a_room_import_each_other_without_circles(room):
     """Not even within functions: what a lower module needs of a higher one goes through one seam, as ``lisp/late.py``."""

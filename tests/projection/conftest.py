@@ -7,7 +7,8 @@ import re
 import pytest
 
 from cramhy_runtime import image
-from cramhy_runtime.cpl import task_variables
+from cramhy_runtime.cpl import past_plans, task_variables
+from cramhy_runtime.episodes import auto_tracing, backends, tracing
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 from cramhy_runtime.lisp.printer.print_controls import PACKAGE
 from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
@@ -69,10 +70,17 @@ def lisp(request, monkeypatch, tmp_path):
     monkeypatch.setattr(task_variables, "_declared", dict(task_variables._declared))
     monkeypatch.setattr(environments, "_environments", {})
     monkeypatch.setattr(environments, "_special_variables", {})
+    monkeypatch.setattr(auto_tracing, "_directory", None)
+    monkeypatch.setattr(backends, "_stores", {})
+    monkeypatch.setattr(backends, "_restores", {})
+    past_plans.forget()
     groups = set(facts.fact_group_names())
     yield Lisp(request.param)
     for name in facts.fact_group_names():
         if name not in groups:
             facts.remove_fact_group(name)
     rete.clear_alpha_network()
+    auto_tracing.disable_auto_tracing()
+    tracing.disable_fluent_tracing()
+    past_plans.forget()
     PACKAGE.value = COMMON_LISP_USER

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import itertools
 from typing import TYPE_CHECKING, Any, NoReturn
-from weakref import ref
+from weakref import WeakKeyDictionary, ref
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.tasks import shield
@@ -410,8 +410,14 @@ ALLOW_TRACING, MAX_TRACING_FREQ = keyword("ALLOW-TRACING"), keyword("MAX-TRACING
 _OF_VALUE_FLUENTS = {NAME, VALUE, TEST}
 
 
+tracing_options = WeakKeyDictionary()
+"""Fluent → what ``:allow-tracing`` and ``:max-tracing-freq`` said of it, for those that were made with such an option."""
+
+
 def announce(fluent, allow_tracing=True, max_tracing_freq=None):
     """Run the hook for a new fluent; returns the fluent."""
+    if max_tracing_freq is not None or allow_tracing is not True:
+        tracing_options[fluent] = (allow_tracing, max_tracing_freq)
     if on_make_fluent_hook:
         on_make_fluent_hook(fluent, allow_tracing, max_tracing_freq)
     return fluent

@@ -20,6 +20,7 @@ from ..lisp import condition_types as types
 from ..lisp.conditions import error, type_error
 from ..lisp.data import Cons, list_from, one, truth
 from ..lisp.dynamic import binding
+from . import past_plans
 from .branches import branch_tasks, run, run_forms, run_one
 from .failure_types import CompositeFailure, opened
 from .failures import attempt, composite_failure, observed
@@ -37,7 +38,7 @@ from .ending import close_plan
 from .statuses import DEAD, DONE, FAILED
 from .orderings import apply_orderings
 from .tasks import Task, ToplevelTask, evaporate
-from .tree import TaskTreeNode, clear_tasks, get_top_level_task_tree
+from .tree import TaskTreeNode, cleared, get_top_level_task_tree
 from .tree_report import note_stopped
 from .watching import watch
 
@@ -75,13 +76,22 @@ def named_top_level(body, name=None):
         error(twice)
     _running[name] = me
     try:
-        return _observed_top_level(body, name, clear_tasks(get_top_level_task_tree(name)))
+        return _observed_top_level(body, name, _cleared_tree(name))
     finally:
         _running.pop(name, None)
 
 
 _running = {}
 """Name of a top-level → the kernel's task that waits for it, while it runs."""
+
+
+def _cleared_tree(name):
+    """The tree for a new run of ``name``; its last run keeps what it did in it."""
+    tree, before = get_top_level_task_tree(name), past_plans.by_name.get(name)
+    if getattr(before, "tree", None) is tree:
+        before.codes = {}
+        return cleared(tree, before.codes)
+    return cleared(tree)
 
 
 def _observed_top_level(body, name, tree):
@@ -105,6 +115,7 @@ def _run_top_level(body, name, tree):
     task.tree = tree
     me = kernel.current()
     task.ended = lambda task: me.kernel.unpark(me)
+    past_plans.begins(task, name)
     task.execute()
     try:
         while task.status not in DEAD:
@@ -118,6 +129,7 @@ def _run_top_level(body, name, tree):
         raise
     finally:
         me.why = ""  # it holds the plan with its whole tree
+        past_plans.ended(task, name)
     if task.status is FAILED:
         failure = opened(task.result)
         if isinstance(failure, KeyboardInterrupt | SystemExit | kernel.Interrupted):

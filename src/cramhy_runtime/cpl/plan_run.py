@@ -19,6 +19,7 @@ from cramhy_runtime import kernel
 
 from ..lisp.conditions import error
 from ..lisp.data import NO_VALUES
+from . import past_plans
 from .border import for_python, raise_in_python
 from .current import current_task
 from .ending import close_plan
@@ -48,6 +49,8 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
         task.kernel_task = me
         task.change_status(RUNNING)
         me.owner = task
+        task.started_at = kernel.now()
+        past_plans.begins(task, None)
         status, result = SUCCEEDED, NO_VALUES
         problem: BaseException | None = None
         try:
@@ -61,6 +64,7 @@ def plan(*, clock: Any = None, backend: Any = None, seed: Any = None, time_limit
             task._die(status, result)
             me.owner = None
             me.spare()
+            past_plans.ended(task, None)
         if status is FAILED and problem is not None:
             raise_in_python(problem)
 

@@ -18,6 +18,7 @@ from ..lisp.evaluation.functions import function_of
 from ..lisp.packages import find_package
 
 _inherited = set()  # the language's own: inherited when bound
+_within_plans = set()  # those of them that a new top-level does not inherit
 _declared = {}  # the user's: symbol -> init function or None; bound in every task
 
 
@@ -48,9 +49,11 @@ def define_task_state(package, name, getter, setter=None):
     return symbol
 
 
-def inherit(symbol, initial):
-    """Declare one of the language's own task variables, with its global value."""
+def inherit(symbol, initial, within_plans=False):
+    """Declare one of the language's own task variables, with its global value; ``within_plans``: no top-level inherits its value."""
     _inherited.add(special(symbol, initial))
+    if within_plans:
+        _within_plans.add(symbol)
     return symbol
 
 
@@ -73,7 +76,7 @@ def inherited_bindings(here, task, parent):
     stack = []
     if current is not None:
         for symbol in dict.fromkeys(entry[0] for entry in current.stack):
-            if symbol in _inherited:
+            if symbol in _inherited and (parent is not None or symbol not in _within_plans):
                 stack.append([symbol, symbol.value])
     for symbol, init_function in _declared.items():
         stack.append([symbol, symbol.value if init_function is None else init_function(task, parent, symbol.value)])

@@ -409,7 +409,8 @@ class ToplevelTask(AbstractTask):
     def _find_parent(self):
         self.processor_time = time.process_time()
         if truth(RECORD.value):
-            self.record = [self]
+            self.record = [] if self.record is None else self.record
+            self.record.append(self)
             recorded.append(self)
 
 

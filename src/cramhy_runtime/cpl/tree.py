@@ -7,9 +7,12 @@ and a step can be replaced for the next run. Repetition of a part goes to siblin
 
 from __future__ import annotations
 
+import copy
+
 from ..lisp.conditions import error, type_error
 from ..lisp.data import Cons, lisp_list, list_from, python_list, truth
 from ..lisp.packages import keyword
+from . import past_plans
 from .branches import run_one
 from .hooks import on_finishing_task_execution, on_preparing_task_execution
 from .symbols import sym
@@ -172,7 +175,10 @@ def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None
     path = path or current_path()
     if not parts_of(path):
         error("There is no task at the root of the task tree: a path has one part at least.")
-    return _task_of(_next_free(path.car, ensure_node(path.cdr, _tree_or_error())), name, sexp, function, parameters)
+    task = _task_of(_next_free(path.car, ensure_node(path.cdr, _tree_or_error())), name, sexp, function, parameters)
+    if past_plans.observer is not None:
+        past_plans.observer.made(task)
+    return task
 
 
 def _task_of(node, name=None, sexp=None, function=None, parameters=None, called_with=None):
@@ -282,13 +288,20 @@ def remove_top_level_task_tree(name):
 @of(TaskTreeNode)
 def clear_tasks(node):
     """Forget what ran: code, tasks and parameters. Structure and replacements stay."""
+    return cleared(node)
+
+
+def cleared(node, kept=None):
+    """As `clear_tasks`; ``kept``: a dict that gets node → code that ran there."""
     node.calls = 1
+    if kept is not None and _taken(node):
+        kept[node] = node.effective_code if not node.replacements else copy.copy(node.effective_code)
     if node.code is not None:
         node.code = Code()
     for replacement in node.replacements:
         replacement.task = replacement.parameters = None
     for child in node.children.values():
-        clear_tasks(child)
+        cleared(child, kept)
     return node
 
 

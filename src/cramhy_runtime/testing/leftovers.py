@@ -10,6 +10,7 @@ import gc
 from fnmatch import fnmatchcase
 
 from .. import kernel
+from ..cpl import past_plans
 from ..cpl.fluents import ValueFluent
 from ..cpl.tree import flatten_task_tree
 from .labels import label, plain_name
@@ -17,6 +18,7 @@ from .labels import label, plain_name
 
 def leftovers(watched):
     """What is left on a kernel of `virtual_time`, as texts; an empty list when nothing is."""
+    past_plans.forget()  # the task tree of the last plan is kept on purpose, for whoever asks for its episode
     found = [f"task {label(task)} is alive ({task.state}, waits for {task.describe_why() or 'nothing'})"
              for task in watched.tasks if task is not watched.main and (task.carrier is not None or not task.cancelled)]
     alive = len(found)

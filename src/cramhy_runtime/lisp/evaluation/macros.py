@@ -20,7 +20,7 @@ from ..reader.backquote import QUOTE, Comma
 from .functions import function_of
 from .macro_shapes import SHAPES
 
-FILES = ("cl", "clos", "cut", "prolog", "cpl", "plans", "desig", "cpm", "proj", "roslisp", "python")
+FILES = ("cl", "clos", "cut", "prolog", "cpl", "plans", "desig", "cet", "cpm", "proj", "roslisp", "python")
 """The modules of ``hy_src/cramhy`` that define operators, in order."""
 
 HOOK, FUNCALL = sym("*MACROEXPAND-HOOK*"), sym("FUNCALL")

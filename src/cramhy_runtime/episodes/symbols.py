@@ -1,0 +1,9 @@
+"""The Lisp package of this room, made before anything interns a symbol in it; its contents are in ``package.py``."""
+
+from ..cpl.symbols import CPL_IMPL
+from ..lisp.packages import COMMON_LISP, ensure_package, sym
+from ..utilities.symbols import CUT
+
+CET = ensure_package("CRAM-EXECUTION-TRACE", "CET", use=[COMMON_LISP, CUT, CPL_IMPL])
+
+__all__ = ["CET", "sym"]

@@ -1,0 +1,254 @@
+"""Tracing: recording what fluents were, and when, while a plan runs.
+
+It is a switch for all, off at first, and costs nothing while it is off. While it is on, each pulse of a fluent during an episode is
+recorded, and its value at the beginning: that is the beginning of the episode for the fluents that there are, the *global* ones, and
+the moment of its making for one that the plan makes; so the statuses of the plan's tasks are recorded, too. ``make-fluent`` may keep a
+fluent out, ``:allow-tracing nil``, or have at most so many changes a second recorded, ``:max-tracing-freq``. Nets, which
+are computed from what is traced, are not traced themselves. A fluent is known by its name; the records of equally named ones are merged.
+
+Times are rounded to the millisecond. What changes twice in one gets times between, so that the records of a name are in order, one
+moment for one value. Source: projection-and-events.md C2.
+
+Where the global fluents are: nobody keeps a list while tracing is off. When it is switched on the garbage collector is asked for
+all living fluents, from then on `on_make_fluent_hook` tells of new ones.
+
+Repaired: the last change that a limit of frequency held back is recorded when the episode ends.
+"""
+
+from __future__ import annotations
+
+import gc
+import math
+from weakref import WeakSet, ref
+
+from cramhy_runtime import kernel
+
+from ..cpl import past_plans
+from ..cpl.current import current_task
+from ..cpl.fluents import Fluent, Net, ValueFluent, tracing_options
+from ..cpl.hooks import on_make_fluent_hook
+from ..cpl.tasks import RECORD, AbstractTask
+from ..lisp.conditions import Condition, warn
+from ..lisp.data import Cons, DoubleFloat, Symbol, list_from, one, truth
+from ..lisp.objects.generic import generic
+from ..utilities.small_functions import current_timestamp
+from . import symbols  # noqa: F401  the package must exist
+from .knowledge import episode_of
+
+MILLISECOND, STEP = 0.001, 0.0001
+
+durable_copy = generic("CET::DURABLE-COPY", "(obj)", documentation="""
+A snapshot of ``obj`` for the trace: a list is copied one level deep, anything else is itself. Add methods for what is changed in place.""")
+
+
+@durable_copy.method(object)
+def _itself(obj):
+    return obj
+
+
+@durable_copy.method(Cons)
+def _copied(obj):
+    cars = []
+    while isinstance(obj, Cons):
+        cars.append(obj.car)
+        obj = obj.cdr
+    return list_from(cars, obj)
+
+
+class TracedFluent:
+    """One record: the fluent called ``name`` got the value ``traced_value`` at ``timestamp`` (seconds)."""
+
+    __slots__ = ("name", "traced_value", "timestamp")
+    lisp_name = "CRAM-EXECUTION-TRACE::TRACED-FLUENT"
+    initargs = {"NAME": "name", "TRACED-VALUE": "traced_value", "TIMESTAMP": "timestamp"}
+
+    def __init__(self, name=None, traced_value=None, timestamp=None):
+        self.name, self.traced_value, self.timestamp = name, traced_value, timestamp
+
+
+def distinct(time, last):
+    """The time to be recorded for something at ``time`` when there is a record of ``last`` already: later, and within its millisecond."""
+    time = round(time, 3)
+    if time > last:
+        return DoubleFloat(time)
+    end = math.floor(last / MILLISECOND + 1 + 1e-6) * MILLISECOND
+    later = last + min(STEP, (end - last) / 10)
+    return DoubleFloat(later if later > last else math.nextafter(last, math.inf))
+
+
+class Recorder:
+    """Records what happens to fluents during one episode. It holds no fluent alive."""
+
+    def __init__(self, episode):
+        self.episode = episode
+        self.watched = []  # (weak reference to a fluent, name of the callback)
+        self.held_back = {}  # name → (value, time) that came too early for the limit of its fluent
+
+    def watch(self, fluent):
+        """Record what ``fluent`` is now, and each of its pulses from now on, unless it was made not to be traced."""
+        allowed, frequency = tracing_options.get(fluent, (True, None))
+        if not truth(allowed):
+            return
+        name, interval = fluent.name, None if frequency is None else 1 / float(frequency)
+        try:
+            self.record(name, fluent.peek())
+        except (Condition, Exception) as problem:  # a fluent of the user's, whose value cannot be computed yet
+            warn("The fluent ~a has no value that could be traced yet: ~a", name, problem)
+        key = Symbol("TRACE")
+        if fluent.callbacks is None:
+            fluent.callbacks = {}
+        fluent.callbacks[key] = (lambda value: self.record(name, value)) if interval is None else (
+            lambda value: self.record_seldom(name, value, interval))
+        self.watched.append((ref(fluent), key))
+
+    def record(self, name, value, time=None):
+        records = self.episode.traces.setdefault(name, [])
+        time = current_timestamp() if time is None else time
+        records.append(TracedFluent(name, one(durable_copy(value)),
+                                    distinct(time, records[-1].timestamp if records else -math.inf)))
+
+    def record_seldom(self, name, value, interval):
+        records, now = self.episode.traces.get(name), current_timestamp()
+        if records and now - records[-1].timestamp < interval - 1e-9:
+            self.held_back[name] = (one(durable_copy(value)), now)
+        else:
+            self.held_back.pop(name, None)
+            self.record(name, value)
+
+    def stop(self):
+        """Record no more."""
+        for reference, key in self.watched:
+            fluent = reference()
+            if fluent is not None and fluent.callbacks:
+                fluent.callbacks.pop(key, None)
+        for name, (value, time) in self.held_back.items():
+            self.record(name, value, time)
+        self.watched, self.held_back = [], {}
+        self.episode.recorder = None
+
+
+class TracedTasks(list):
+    """What a plan's ``record`` is while it is traced: each task that starts makes its status fluent, which is traced then."""
+
+    def append(self, task):
+        task.status_fluent  # noqa: B018  asking makes it
+        if self.keep:
+            super().append(task)
+
+    keep = False
+
+
+class Tracing:
+    """The switch, and what is to be done while it is on. An observer of plans (``past_plans``)."""
+
+    def __init__(self):
+        self.on = False
+        self.globals = WeakSet()
+        self.recorders = []
+        self.saving = None  # called with each episode that ended (auto_tracing)
+
+    # -------------------------------------------------------------------------------------------------------- the switch
+
+    def enable(self):
+        if self.on:
+            return
+        self.on = True
+        self.globals.update(_living_fluents())
+        on_make_fluent_hook.add(lambda *arguments: self.new_fluent(arguments[0]), "EPISODE-KNOWLEDGE")
+        self.observe()
+        root = _root_of_current_plan()
+        if root is not None:
+            self.begins(root, None)
+
+    def disable(self):
+        self.on = False
+        on_make_fluent_hook.remove("EPISODE-KNOWLEDGE")
+        for recorder in list(self.recorders):
+            self.finish(recorder)
+        self.globals.clear()
+        self.observe()
+
+    def observe(self):
+        past_plans.observer = self if self.on or self.saving is not None else None
+
+    # ----------------------------------------------------------------------------------------------------------- fluents
+
+    def new_fluent(self, fluent):
+        """A fluent was made by ``make-fluent``: by a plan that is traced, or for all."""
+        root = _root_of_current_plan()
+        recorder = None if root is None else episode_of(root).recorder
+        if recorder is not None:
+            recorder.watch(fluent)
+            return
+        self.globals.add(fluent)
+        for recorder in self.recorders:
+            recorder.watch(fluent)
+
+    # ------------------------------------------------------------------------------------------------------------- plans
+
+    def begins(self, task, name):
+        if not self.on:
+            return
+        if not isinstance(task.record, TracedTasks):
+            tasks = TracedTasks(task.record or ())  # it may be in the middle of its run
+            tasks.keep = truth(RECORD.value)
+            task.record = tasks
+        episode = episode_of(task)
+        recorder = episode.recorder = Recorder(episode)
+        self.recorders.append(recorder)
+        for fluent in sorted(self.globals, key=lambda fluent: fluent.number):
+            recorder.watch(fluent)
+
+    def made(self, task):
+        if self.on:
+            task.status_fluent  # noqa: B018  asking makes it
+
+    def ended(self, task, name):
+        recorder = task.__dict__["episode"].recorder if "episode" in task.__dict__ else None
+        if recorder is not None:
+            self.finish(recorder)
+        if self.saving is not None:
+            self.saving(episode_of(task))
+
+    def finish(self, recorder):
+        recorder.stop()
+        if recorder in self.recorders:
+            self.recorders.remove(recorder)
+
+
+tracing = Tracing()
+
+
+def _root_of_current_plan():
+    task = current_task() if kernel.active() is not None else None
+    while task is not None and task.parent is not None:
+        task = task.parent
+    return task
+
+
+def _living_fluents():
+    """All fluents that are no nets and no task's status, in the order in which they were made."""
+    fluents, statuses = [], set()
+    for thing in gc.get_objects():
+        kind = type(thing)
+        if issubclass(kind, Fluent):
+            if kind is ValueFluent or not issubclass(kind, Net):
+                fluents.append(thing)
+        elif issubclass(kind, AbstractTask):
+            statuses.add(thing._status_fluent)
+    return [fluent for fluent in fluents if fluent not in statuses]
+
+
+def enable_fluent_tracing():
+    """Trace fluents from now on; returns t."""
+    tracing.enable()
+    return True
+
+
+def disable_fluent_tracing():
+    """Trace no fluents any more; what was recorded stays. Returns nil."""
+    tracing.disable()
+
+
+def fluent_tracing_enabled():
+    return True if tracing.on else None
