@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import importlib
 
-ROOMS = ("transforms", "prolog", "cpl", "ros", "turtlesim", "designators", "episodes", "process_modules", "projection")
+ROOMS = ("transforms", "prolog", "cpl", "ros", "turtlesim", "designators", "episodes", "occasions", "process_modules",
+         "projection")
 """The rooms with a ``package.py``, in the order of their floors."""
 
 SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
-cram-executive cram-projection cram-execution-trace cl-transforms roslisp roslisp-utilities std_msgs-msg std_srvs-srv geometry_msgs-msg
-rosgraph_msgs-msg turtlesim-msg turtlesim-srv actionlib_msgs-msg roscpp-msg roscpp-srv roscpp_tutorials-srv turtlesim asdf uiop
-trivial-features"""
+cram-executive cram-projection cram-execution-trace cram-occasions-events cl-transforms roslisp roslisp-utilities std_msgs-msg
+std_srvs-srv geometry_msgs-msg rosgraph_msgs-msg turtlesim-msg turtlesim-srv actionlib_msgs-msg roscpp-msg roscpp-srv
+roscpp_tutorials-srv turtlesim asdf uiop trivial-features"""
 """The systems of CRAM, ROS and ASDF that need no loading, because they are here."""
 
 _booted = False

@@ -12,6 +12,7 @@ from cramhy_runtime.lisp.objects.classes import find_class
 from cramhy_runtime.lisp.packages import find_package
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.lisp.types.types import is_known_type
+from cramhy_runtime.prolog.database import functors
 
 image.boot()
 ensure_loaded()
@@ -37,10 +38,21 @@ EXPORTS = {
         "variable": "*episode-knowledge* *last-episode-knowledge*",
         "term": "throughout",
     },
+    "CRAM-OCCASIONS-EVENTS": {
+        "function": "clear-belief assert-occasion retract-occasion holds-occasion holds on-event event-timestamp task task-path",
+        "macro": "top-level",
+        "class": "event fluent task",
+        "predicate": """fluent fluent-value task-path top-level task goal-task task-status-fluent task-goal task-outcome task-result
+            task-error error-type holds duration-includes task-started-at task-created-at task-ended-at subtask subtask+""",
+        "term": "occurs task-status throughout during at",
+    },
 }
-NICKNAMES = {"CRAM-PROJECTION": ["PROJ"], "CRAM-EXECUTION-TRACE": ["CET"]}
+NICKNAMES = {"CRAM-PROJECTION": ["PROJ"], "CRAM-EXECUTION-TRACE": ["CET"], "CRAM-OCCASIONS-EVENTS": ["COE", "OCCASIONS-EVENTS"]}
 LAMBDA_LISTS = {
     "proj:clock-time": "(CLOCK)", "proj:clock-wait": "(CLOCK DURATION)", "proj:partially-ordered-clock-enabled": "(CLOCK)",
+    "coe:on-event": "(EVENT)", "coe:clear-belief": "NIL", "coe:event-timestamp": "(EVENT)",
+    "coe:holds": "(OCCASION &OPTIONAL TIME-SPECIFICATION)", "coe:assert-occasion": "(OCCASION)", "coe:retract-occasion": "(OCCASION)",
+    "coe:holds-occasion": "(OCCASION)",
     "cet:get-top-level-episode-knowledge": "(NAME)", "cet:register-top-level-episode-knowledge": "(NAME)",
     **{f"cet:episode-knowledge-{name}": "(&OPTIONAL EPISODE)"
        for name in ("zero-time", "max-time", "task-tree", "task-list", "goal-task-list", "traced-fluent-names")},
@@ -53,7 +65,8 @@ LAMBDA_LISTS = {
     "cet:auto-tracing-enabled": "NIL", "cet:set-auto-tracing-directory": "(PATH &KEY ENSURE-DIRECTORY)",
     "cet:setup-auto-tracing": "(DIRECTORY &KEY ENSURE-DIRECTORY)",
 }
-GENERIC = "proj:clock-time proj:clock-wait proj:partially-ordered-clock-enabled cet:durable-copy"
+GENERIC = "proj:clock-time proj:clock-wait proj:partially-ordered-clock-enabled cet:durable-copy coe:on-event " \
+          "coe:clear-belief coe:holds coe:event-timestamp"
 
 
 def names(*packages):
@@ -76,6 +89,8 @@ def test_a_name_is_exported_and_has_its_meaning(package, kind, name):
         assert not isinstance(symbol.function, UndefinedFunction)
     elif kind == "variable":
         assert symbol.special and symbol.value is not UNBOUND
+    elif kind == "predicate":
+        assert functors[symbol].defined
     elif kind == "class":
         assert is_known_type(symbol) and find_class(symbol) is not None
 
@@ -98,7 +113,7 @@ def test_what_users_add_methods_to_is_a_generic_function(designator):
     assert exported(designator).function.methods is not None
 
 
-@pytest.mark.parametrize("system", ["cram-projection", "cram-execution-trace"])
+@pytest.mark.parametrize("system", ["cram-projection", "cram-execution-trace", "cram-occasions-events"])
 def test_the_systems_are_there_for_those_that_depend_on_them(system, tmp_path, monkeypatch):
     from cramhy_runtime.repl.session import Session
 
@@ -111,3 +126,19 @@ def test_the_systems_are_there_for_those_that_depend_on_them(system, tmp_path, m
     session = Session(time="virtual", turtlesim=False)
     session.evaluate_text('(asdf:load-system "my-robot")')
     assert find_package(system.upper()) in find_package(f"MY-ROBOT-{system}".upper()).use
+
+
+def test_the_fact_groups_have_the_names_of_the_original_and_three_of_them_extend_holds():
+    from cramhy_runtime.prolog.facts import fact_group_names
+
+    groups = {f"{group.package.name}::{group.name}" for group in fact_group_names()}
+    assert {*(f"CRAM-OCCASIONS-EVENTS::{name}" for name in ("OCCASIONS", "FLUENTS", "TASKS")), "COMMON-LISP::TIME"} <= groups
+    assert [group.name for group in functors[exported("coe:holds")].groups()][:3] == ["OCCASIONS", "FLUENTS", "TASKS"]
+
+
+def test_packages_of_users_may_use_them_together_with_the_plan_language():
+    from cramhy_runtime.repl.session import Session
+
+    session = Session(time="virtual", turtlesim=False)
+    session.evaluate_text("(defpackage together (:use :cpl :cram-projection :cram-execution-trace :cram-occasions-events :cram-executive))")
+    assert find_package("TOGETHER").lookup("HOLDS")[0] is exported("coe:holds")

@@ -14,12 +14,12 @@ from ..designators.classes import ActionDesignator, DesignatorError, MotionDesig
 from ..designators.resolution import reference
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import Error, handler_case, warn
-from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list
+from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
 from ..lisp.evaluation.expansion_support import check_shape
 from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.generic import generic
-from ..lisp.packages import find_package, keyword
-from ..prolog.query import holds
+from ..lisp.packages import keyword
+from ..occasions.occasions import holds
 from .hints import why_none_runs
 from .matching import execute_by, running_matches
 from .registry import in_one_line
@@ -143,5 +143,4 @@ def _check_goal(goal):
 
 
 def _goal_holds(goal):
-    package = find_package("CRAM-OCCASIONS-EVENTS")
-    return package is not None and holds(lisp_list(package.intern("HOLDS"), goal))
+    return truth(one(holds(goal)))

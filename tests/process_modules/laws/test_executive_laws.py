@@ -100,10 +100,9 @@ def test_a_plan_function_that_nobody_defined_is_a_plan_failure(text):
 
 
 OCCASIONS = """
-(unless (find-package :cram-occasions-events) (make-package :cram-occasions-events :use nil))
 (defvar *shapes* nil)
-(def-fact-group occasions (cram-occasions-events::holds)
-  (<- (cram-occasions-events::holds (drawn ?shape)) (prolog:lisp-fun symbol-value *shapes* ?shapes) (prolog:member ?shape ?shapes)))
+(def-fact-group occasions ()
+  (<- (drawn ?shape) (prolog:lisp-fun symbol-value *shapes* ?shapes) (prolog:member ?shape ?shapes)))
 (defun with-goal (goal) (make-designator :action `((:type :drawing) (:shape :house) (:size 3) (:goal ,goal))))
 """
 

@@ -1,0 +1,18 @@
+"""Occasions and events: what a robot believes of the world, and what changes it. Usable from Python:
+
+    from cramhy_runtime import occasions
+
+    occasions.on_event.add(lambda event: ...)            # called with each event
+    occasions.holds(lisp_list(CUP_ON_TABLE))             # the binding lists under which an occasion holds, or None
+
+``events`` events and the hooks that they reach · ``occasions`` what holds · ``time_terms`` points and stretches of time ·
+``fluent_predicates``, ``task_predicates`` what holds of fluents and tasks during an episode · ``asked_episode`` which one ·
+``symbols``, ``package`` the Lisp face. Reference: projection-and-events.md part B.
+"""
+
+from . import fluent_predicates as _fluent_predicates  # noqa: F401
+from . import task_predicates as _task_predicates  # noqa: F401
+from .events import Event, clear_belief, on_event
+from .occasions import holds
+
+__all__ = ["clear_belief", "Event", "holds", "on_event"]

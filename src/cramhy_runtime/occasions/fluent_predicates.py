@@ -1,0 +1,60 @@
+"""What fluents were during an episode, for Prolog. Fluents are known by name, and only if they were traced.
+
+``(fluent ?name)``, ``(holds (fluent-value name ?value) time)``, and ``(fluent-value fluent ?value)`` for a fluent object, now.
+Source: projection-and-events.md B4.
+"""
+
+from __future__ import annotations
+
+from ..cpl.fluents import Fluent
+from ..episodes.queries import fluent_durations
+from ..lisp.data import Symbol, lisp_list
+from ..prolog.facts import define_fact_group
+from ..prolog.natives import deref, predicate, test
+from ..prolog.terms import Var
+from .asked_episode import asked_episode
+from .occasions import HOLDS
+from .symbols import sym
+from .time_terms import included
+
+GROUP = "COE::FLUENTS"
+_NAME, _VALUE, _TIME = sym("COE::?NAME"), sym("COE::?VALUE"), sym("COE::?TIME")
+
+define_fact_group(sym(GROUP), [HOLDS], [
+    lisp_list(lisp_list(HOLDS, lisp_list(sym("COE::FLUENT-VALUE"), _NAME, _VALUE), _TIME),
+              lisp_list(sym("COE::FLUENT-VALUE-AT"), _NAME, _VALUE, _TIME))])
+
+
+@predicate("CPL-IMPL::FLUENT", group=GROUP)
+def fluent(m, name):
+    """``(fluent f)``: any symbol; the names of the traced fluents when ``f`` is unbound."""
+    known = deref(name)
+    if known.__class__ is not Var:
+        if isinstance(known, Symbol) or known is None:
+            yield
+        return
+    episode = asked_episode("CPL-IMPL::FLUENT")
+    for traced in list(episode.traces) if episode is not None else ():
+        if m.unify(known, traced):
+            yield
+
+
+@test("COE::FLUENT-VALUE", group=GROUP)
+def fluent_value(m, thing, value):
+    """``(fluent-value f v)``: the value that a fluent, an object, has now."""
+    found = deref(thing)
+    return isinstance(found, Fluent) and m.unify(value, found.peek())
+
+
+@predicate("COE::FLUENT-VALUE-AT", group=GROUP)
+def fluent_value_at(m, name, value, time):
+    """The values of the traced fluent ``name`` whose durations include ``time``."""
+    episode = asked_episode("COE::FLUENT-VALUE")
+    if episode is None:
+        return
+    known = deref(name)
+    for traced in list(episode.traces) if known.__class__ is Var else [known] if known in episode.traces else ():
+        for was, start, end in fluent_durations(traced, episode):
+            fit = included(m, start, end, time)
+            if fit is not None and m.unify(name, traced, value, was, *fit):
+                yield

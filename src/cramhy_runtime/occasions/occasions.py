@@ -1,0 +1,74 @@
+"""Occasions: what holds in the world. An occasion is a goal; any predicate can be one.
+
+``holds`` is a predicate of Prolog and a generic function. The predicate has one argument, the occasion, for what holds now, and two, the
+occasion and a time (``time_terms.py``), for what held during the episode that is asked about; other packages extend it by clauses, some
+with three arguments, the timeline first. The function asks it. Source: projection-and-events.md B2.
+
+Repaired: with a time, the function asks the clauses of two arguments, too; the original asks those of three only, of which it has none.
+"""
+
+from __future__ import annotations
+
+from ..lisp.data import lisp_list
+from ..lisp.objects.generic import generic
+from ..prolog.facts import define_fact_group
+from ..prolog.query import prolog
+from ..prolog.rete import clear_alpha_network, match_fact, rete_assert, rete_holds, rete_retract
+from ..utilities.lazy_lists import force_ll
+from ..utilities.patterns import ANONYMOUS
+from ..utilities.small_functions import deprecate
+from .events import clear_belief
+from .symbols import sym
+
+HOLDS, OCCASION = sym("COE::HOLDS"), sym("COE::?OCCASION")
+
+define_fact_group(sym("COE::OCCASIONS"), [HOLDS], [
+    lisp_list(lisp_list(HOLDS, OCCASION), lisp_list(sym("CRAM-PROLOG::CALL"), OCCASION))])
+
+holds = generic("COE::HOLDS", "(occasion &optional time-specification)", documentation="""
+The lazy list of the binding lists under which ``occasion`` holds: now, or at the time that is given as a term such as ``(at 5.0d0)``.""")
+
+
+@holds.method(object)
+def _holds(occasion, time_specification=None):
+    if time_specification is None:
+        return prolog(lisp_list(HOLDS, occasion))
+    return prolog(lisp_list(sym("OR"), lisp_list(HOLDS, occasion, time_specification),
+                            lisp_list(HOLDS, ANONYMOUS, occasion, time_specification)))
+
+
+# ------------------------------------------------------------------------------------------------------- deprecated functions
+
+_asserted = []  # the occasions that assert_occasion remembers
+
+
+def assert_occasion(occasion):
+    """Deprecated: let ``occasion`` be a fact of the rete memory."""
+    deprecate("ASSERT-OCCASION is deprecated.")
+    _asserted.append(occasion)
+    rete_assert(occasion)
+
+
+def retract_occasion(occasion):
+    """Deprecated: take back the asserted occasions that match the pattern ``occasion``."""
+    deprecate("RETRACT-OCCASION is deprecated.")
+    for fact in list(_asserted):
+        if match_fact(occasion, fact, {}) is not None:
+            _asserted.remove(fact)
+            if rete_holds(fact) is not None:  # somebody may have retracted it, or cleared the memory
+                rete_retract(fact)
+
+
+def holds_occasion(occasion):
+    """Deprecated: the list of the bindings under which ``occasion`` is a fact of the rete memory."""
+    deprecate("HOLDS-OCCASION is deprecated.")
+    return force_ll(rete_holds(occasion))
+
+
+def _forget_occasions():
+    _asserted.clear()
+    clear_alpha_network()
+
+
+clear_belief.add(_forget_occasions, "OCCASIONS")
+

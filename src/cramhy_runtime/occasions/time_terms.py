@@ -1,0 +1,72 @@
+"""Points and stretches of time, as terms: ``(at t)``, ``(throughout t1 t2)``, ``(during t1 t2)``.
+
+Times are double-floats, as `current_timestamp` gives them; a stretch includes its start, not its end. A time of another type fits
+nothing, and a warning says so. Source: projection-and-events.md B3.
+"""
+
+from __future__ import annotations
+
+from ..lisp.conditions import SimpleWarning, warn
+from ..lisp.data import Cons, DoubleFloat, lisp_list
+from ..lisp.numbers.arithmetic import is_real
+from ..prolog.natives import deref, test
+from ..prolog.terms import Var, resolve
+from .symbols import sym
+
+AT, THROUGHOUT, DURING = sym("COE::AT"), sym("CET::THROUGHOUT"), sym("COE::DURING")
+GROUP = "TIME"
+
+
+@test("COE::DURATION-INCLUDES", group=GROUP)
+def duration_includes(m, duration, time):
+    """``(duration-includes (throughout t1 t2) time)``: whether ``time`` is in that stretch; an unbound point of time becomes its start."""
+    stretch = times_of(m, duration, THROUGHOUT, 2)
+    if stretch is None or None in stretch:
+        return False
+    found = included(m, *stretch, time)
+    return found is not None and m.unify(*found)
+
+
+def included(m, start, end, time):
+    """``None`` if ``time``, a term, is not between ``start`` and ``end``; else the terms to be unified, two by two, so that it is."""
+    term = deref(time)
+    if term.__class__ is Var:
+        return term, lisp_list(AT, start)
+    if term.__class__ is not Cons:
+        return None
+    kind = deref(term.car)
+    if kind is AT:
+        found = times_of(m, term, AT, 1)
+        if found is None:
+            return None
+        point = found[0]
+        return (deref(term.cdr).car, start) if point is None else () if start <= point < end else None
+    if kind is THROUGHOUT or kind is DURING:
+        found = times_of(m, term, kind, 2)
+        if found is None or None in found:
+            return None
+        first, last = found
+        fits = start <= first < last <= end if kind is THROUGHOUT else start < last and first < last and first < end
+        return () if fits else None
+    return None
+
+
+def times_of(m, term, kind, count):
+    """The times in the term ``(kind time...)``, ``None`` for each that is unbound; ``None`` if it is no such term."""
+    term = deref(term)
+    if term.__class__ is not Cons or deref(term.car) is not kind:
+        return None
+    times, cell = [], deref(term.cdr)
+    while cell.__class__ is Cons:
+        time = deref(cell.car)
+        if time.__class__ is Var:
+            times.append(None)
+        elif time.__class__ is DoubleFloat:
+            times.append(time)
+        else:
+            if is_real(time) and not isinstance(time, bool):
+                warn(SimpleWarning("[PROLOG WARNING] The time ~s in ~s is no double-float, so it fits nothing. Write ~s.", time,
+                                   resolve(term, m.names), DoubleFloat(time)))
+            return None
+        cell = deref(cell.cdr)
+    return times if cell is None and len(times) == count else None
