@@ -15,17 +15,20 @@ import weakref
 from ..lisp.condition_types import SimpleError, SimpleWarning
 from ..lisp.conditions import error, type_error, warn
 from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
+from ..lisp.dynamic import binding, special
 from ..lisp.objects.classes import find_class_or_error
 from ..lisp.objects.generic import GenericFunction, generic, when_methods_change
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.objects.instances import make_instance, plan_for
-from ..lisp.packages import is_symbol, keyword, near_names
+from ..lisp.packages import is_symbol, keyword, near_names, symbol_name
 from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
 
 A, ALL = keyword("A"), keyword("ALL")
 DESCRIPTION = keyword("DESCRIPTION")
+IN_ERROR_TEXT = special(Symbol("*IN-ERROR-TEXT*"))
+"""Whether the text of an error is made, which must not become an error itself."""
 _object_ids = itertools.count(1)
 _live = weakref.WeakSet()
 _classes = {}  # type keyword -> class, or the symbol that is to name it
@@ -45,7 +48,10 @@ class DesignatorError(SimpleError):
     designator = None
 
     def report(self):
-        return "DESIGNATOR-ERROR" if self.format_control is UNBOUND else super().report()
+        if self.format_control is UNBOUND:
+            return "DESIGNATOR-ERROR"
+        with binding(IN_ERROR_TEXT, True):
+            return super().report()
 
     @property
     def hint(self):
@@ -237,10 +243,10 @@ make_designator.take_shortcut(QuickMaking)
 def _undefined_type(type_):
     problem = SimpleError("Designator type `~a' undefined", type_)
     known = sorted(key.name.lower() for key in _classes)
-    if is_symbol(type_) and not isinstance(type_, Keyword) and keyword(type_.name) in _classes:
-        problem.hint = f"The type is a keyword: write :{type_.name.lower()}."
+    name = symbol_name(type_).lower() if is_symbol(type_) else ""
+    if name in known and not isinstance(type_, Keyword):
+        problem.hint = f"The type is a keyword: write :{name}."
     else:
-        name = type_.name.lower() if is_symbol(type_) and type_ is not True else ""
         near = near_names(name, known)
         problem.hint = (f"Did you mean {' or '.join(near)}?" if near else
                         f"The types of designators are {', '.join(known[:-1])} and {known[-1]}.")

@@ -20,7 +20,7 @@ from ..lisp.printer.printer import atom_text, define_printer, princ_to_string, p
 from ..lisp.streams.streams import BroadcastStream
 from ..lisp.reader.readtables import READTABLE
 from ..lisp.tools.describing import describe_facts, describe_object
-from .classes import Designator, type_keyword
+from .classes import IN_ERROR_TEXT, Designator, type_keyword
 from .symbols import sym
 
 PRINT_DESCRIPTION = special(sym("DESIG::*DESIGNATOR-PPRINT-DESCRIPTION*"), True)
@@ -53,7 +53,9 @@ def _print_description(designator, stream):
 
     description = designator.description
     if description is not None and not isinstance(description, Cons):
-        type_error(description, "LIST")
+        if IN_ERROR_TEXT.value is None:
+            type_error(description, "LIST")
+        description = [description]
     for entry in description or ():
         if isinstance(entry, Cons):
             written.append("\n    (")
