@@ -37,6 +37,7 @@ Two hooks are attributes of this package, to be replaced by assignment: `describ
 from .active import (
     active,
     aside,
+    at_hand,
     call_at,
     call_every,
     checkpoint,
@@ -70,7 +71,7 @@ from .timers import Timer
 
 __all__ = [
     "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer", "VirtualClock",
-    "WaitEnded", "WallClock", "active", "allow_deep_recursion", "aside", "call_at", "call_every", "checkpoint", "cleanup", "current",
-    "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle",
+    "WaitEnded", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at", "call_every", "checkpoint", "cleanup",
+    "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle",
     "shield", "sleep", "slice_over", "spawn", "start", "stop", "unhandled", "unpark", "yield_",
 ]  # fmt: skip

@@ -55,6 +55,37 @@ def aside():
         budget.renew()
 
 
+_idle = None
+
+
+@contextmanager
+def at_hand():
+    """While the block runs a kernel is active: the one that is, or one in virtual time that is there for the moment.
+
+    For what may be asked outside of any plan. The moment's kernel is kept for the next one, if nothing has happened in it.
+    """
+    global _active, _idle
+    if _active is not None:
+        yield
+        return
+    kernel, _idle = _idle, None
+    if kernel is None or kernel.main.carrier.ident != get_ident():
+        kernel = Kernel()
+    _active = kernel
+    unused = False
+    try:
+        yield
+        unused = kernel.untouched
+    finally:
+        if not (unused or kernel.stopped):
+            kernel.stop()
+        if _active is kernel:
+            _active = None
+        if unused:
+            _idle = kernel
+        budget.renew()
+
+
 def _forget(kernel):
     global _active
     if _active is kernel:

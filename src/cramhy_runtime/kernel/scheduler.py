@@ -84,6 +84,12 @@ class Kernel(Endings, Outside):
         """The tasks that are alive, oldest first; the main task is the first."""
         return list(self._tasks.values())
 
+    @property
+    def untouched(self):
+        """Whether it is as it was at first: no task but the main one, no timer, no message, and no time has passed."""
+        return (len(self._tasks) == 1 and self.current is self.main and not self.now()
+                and not (self.stopped or self._timers.entries or self._inbox or self._unclaimed))
+
     def now(self):
         """Seconds since the kernel was started."""
         return self.clock.now()

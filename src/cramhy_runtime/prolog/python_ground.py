@@ -17,9 +17,5 @@ from ..lisp import package as lisp_package
 def reasoning() -> Iterator[None]:
     """While the block runs there are the functions of Lisp and a kernel: the active one, or one for the moment."""
     lisp_package.fill()
-    if kernel.active() is not None:
-        yield
-        return
-    with kernel.aside():
-        kernel.start()
+    with kernel.at_hand():
         yield
