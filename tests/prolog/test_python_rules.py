@@ -200,6 +200,14 @@ A group adds to predicates of other groups, or of cramhy, only if it says so: fa
     assert findall(V.x, P.parent(V.x, V._)) == ["eve"]
 
 
+def test_a_definition_that_is_refused_leaves_the_old_group(family):
+    with fact_group("others") as group:
+        group.fact(P.stranger("eve"))
+    with pytest.raises(SimpleError), fact_group("others") as group:
+        group.fact(P.stranger("lilith"), P.parent("eve", "abel"))
+    assert findall(V.x, P.stranger(V.x)) == ["eve"] and not holds(P.parent("eve", V._))
+
+
 def test_variables_of_a_rule_are_its_own(family):
     with fact_group("own") as group:
         group.rule(P.child(V.who, V.x), P.parent(V.x, V.who))
@@ -232,6 +240,8 @@ def test_variables_of_a_rule_are_its_own(family):
     (lambda: first(P.parent(V.father, "bob")).fahter, AttributeError,
      "This answer has no value for a variable 'fahter'. Did you mean 'father'?"),
     (lambda: first(P.parent(V.father, "bob")).who, AttributeError, "This answer has no value for a variable 'who'. It has: father."),
+    (lambda: names("CRAM-PROLG"), LookupError, "There is no Lisp package 'CRAM-PROLG'. Did you mean 'CRAM-PROLOG'?"),
+    (lambda: names("xyz"), LookupError, "There is no Lisp package 'XYZ'. Load the system that defines it first: import my_package."),
     (lambda: fact_group(3), TypeError, "3 cannot name a fact group. Give a string, or a name: P.family."),
     (lambda: fact_group("x").fact("tom"), TypeError, "'tom' is no goal. A goal is a name with arguments: P.parent(V.x, \"tom\")."),
 ])

@@ -25,7 +25,7 @@ from typing import Any, NoReturn
 
 from ..lisp.data import Character, Cons, Keyword, LispString, Symbol, list_from
 from ..lisp.faces import attribute_symbols
-from ..lisp.packages import KEYWORD, Package, ensure_package, find_package_or_error, printed
+from ..lisp.packages import KEYWORD, Package, ensure_package, find_package, near_names, package_names, printed
 from ..lisp.printer import print_controls
 from ..utilities.lazy_lists import force_ll, lazy_list_p
 from ..utilities.patterns import ANONYMOUS
@@ -232,8 +232,14 @@ kw = Keywords()
 
 
 def names(package: str) -> Names:
-    """The names of the Lisp package ``package``: ``names("TUT").drive``. A package that is not there is an error."""
-    return Names(find_package_or_error(package.upper()))
+    """The names of the Lisp package ``package``: ``names("TUT").drive``. A LookupError if there is none of that name."""
+    with reasoning():
+        found = find_package(package.upper())
+    if found is None:
+        near = near_names(package.upper(), package_names(), 1)
+        hint = f"Did you mean {near[0]!r}?" if near else "Load the system that defines it first: import my_package."
+        raise LookupError(f"There is no Lisp package {package.upper()!r}. {hint}")
+    return Names(found)
 
 
 def import_predicates(*symbols: Any) -> None:
