@@ -145,6 +145,12 @@ def test_the_hint_says_when_there_is_a_solution_by_now():
         assert problem.hint == "There is a solution now. This designator was tried before there was, and keeps to that: make a new one."
 
 
+def test_the_hint_can_be_read_when_the_kernel_has_stopped(driving):
+    problem = error_of(make("motion", [":type", ":driving"]))
+    kernel.stop()
+    assert "There is no property :speed." in problem.hint
+
+
 def test_the_groundings_of_a_designator_can_be_traced(driving):
     output = StringOutputStream()
     with binding(TRACE_OUTPUT, output, sym("*PACKAGE*"), HERE), tracing.tracing("DESIG::MOTION-GROUNDING", "DESIG::DESIG-PROP"):

@@ -11,6 +11,7 @@ from ..lisp.condition_types import Warning_
 from ..lisp.conditions import handler_bind, muffle_warning
 from ..lisp.data import Cons, Symbol, lisp_list, python_list
 from ..prolog import explanations
+from ..prolog.python_ground import reasoning
 from ..prolog.reasons import declare_harmless, explains, spelled_like
 from ..prolog.showing import show
 from ..prolog.terms import Var, deref
@@ -39,6 +40,11 @@ def hint(designator):
         return _BY_PERCEPTION.format("A human", "the human")
     if not isinstance(designator, (MotionDesignator, ActionDesignator)):
         return None
+    with reasoning():  # an error may be looked at when its kernel has stopped
+        return _why_not_grounded(designator)
+
+
+def _why_not_grounded(designator):
     predicate = _predicate(designator)
     told = handler_bind([(Warning_, muffle_warning)],
                         lambda: explanations.explain(designator, _MOST_GOALS, dry=True))

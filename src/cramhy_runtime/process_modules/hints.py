@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..lisp.data import Symbol, lisp_list
 from ..prolog import explaining, explanations
+from ..prolog.python_ground import reasoning
 from ..prolog.reasons import declare_harmless
 from ..prolog.showing import show
 from ..prolog.terms import resolve
@@ -22,6 +23,11 @@ _MOST_GOALS = 2000
 
 def why_none_runs(designator):
     """The text for ``designator``, for which `running_matches` found no module."""
+    with reasoning():  # a failure may be looked at when its kernel has stopped
+        return _missing(designator)
+
+
+def _missing(designator):
     matching = _modules(lisp_list(MATCHING, designator, _MODULE))
     if not matching:
         return _explained(lisp_list(MATCHING, designator, _MODULE))

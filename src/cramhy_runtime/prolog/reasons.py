@@ -54,10 +54,10 @@ def why(m, goal):
     if function is None or list_end(goal) is not None:
         return None, 0
     terms = list(elements(goal.cdr))
-    try:
-        found = function(m, *terms)
-    except TypeError:  # another number of arguments
-        return None, 0
+    code = function.__code__
+    if len(terms) + 1 != code.co_argcount and not (code.co_flags & 0x04 and len(terms) + 1 >= code.co_argcount):
+        return None, 0  # a handler takes numbers of arguments that mean nothing
+    found = function(m, *terms)
     return found if isinstance(found, tuple) else (found, 0)
 
 
