@@ -36,8 +36,8 @@ class Errand(Block):
         if self.kernel_task is not None:
             super().remind()
 
-    def run(self, body: Any) -> tuple[Any, Any]:
-        """Call ``body()``: the status and result that a task with this body would have had.
+    def run(self, body: Any, *arguments: Any) -> tuple[Any, Any]:
+        """Call ``body(*arguments)``: the status and result that a task with this body would have had.
 
         What ends the whole task, or the program, passes. One that was ended before it is run does not call ``body``.
         """
@@ -46,7 +46,8 @@ class Errand(Block):
         self.__enter__()
         task, me = self.task, self.kernel_task
         path, node, outer = task.path, task.node, me.dynamic
-        self.children, self.threads, self.unclaimed = tuple(task.children), task.threads, task.unclaimed
+        self.children = tuple(task.children) if task.children else ()
+        self.threads, self.unclaimed = task.threads, task.unclaimed
         self.limit = None
         bindings = None if outer is None else inherited_bindings(me, task, task)
         if outer is not None:
@@ -56,7 +57,7 @@ class Errand(Block):
             bindings.enter()
         task.path = task.node = passing = None
         try:
-            result = body()
+            result = body(*arguments)
             self.over = True
             status = SUCCEEDED
             if self.asked and not self.delivered:  # at the last moment

@@ -12,9 +12,10 @@ from ..cpl.plans import GOAL, bodies_of, call_goal, define_goal
 from ..cpl.tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
 from ..designators.resolution import reference
-from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import Error, handler_case, warn
+from ..lisp.condition_types import Condition, SimpleWarning
+from ..lisp.conditions import Error, HandlerExit, caught, enter_case, foreign_case, handler_case, warn
 from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
+from ..lisp.dynamic import unbind
 from ..lisp.evaluation.expansion_support import check_shape
 from ..lisp.evaluation.places_in_source import circumstance
 from ..lisp.objects.generic import generic
@@ -87,15 +88,22 @@ _own_body = bodies_of(PERFORM)[0]
 
 def try_reference_designator(designator, error_message=""):
     """Resolve ``designator``; if that cannot be, fail with ``designator-reference-failure`` and ``error_message`` in the text."""
+    case = enter_case(_REFUSED)
+    try:
+        try:
+            return reference(designator)
+        except (Exception, Condition) as exception:  # of Python code, which did not signal it
+            foreign_case(exception, case)
+        finally:
+            unbind()
+    except HandlerExit as exit_:
+        problem = caught(exit_, case)
+    failure = DesignatorReferenceFailure("Designator ~a could not be resolved.~%~a", designator, error_message)
+    failure.about = problem.about
+    return fail(failure)
 
-    def refused(problem):
-        failure = DesignatorReferenceFailure("Designator ~a could not be resolved.~%~a", designator, error_message)
-        failure.about = problem.about
-        return fail(failure)
 
-    return handler_case([(DesignatorError, refused)], lambda: reference(designator))
-
-
+_REFUSED = lisp_list(DesignatorError)
 try_reference_designator.__lisp_lambda_list__ = lisp_list(sym("DESIG::DESIGNATOR"), sym("&OPTIONAL"),
                                                           lisp_list(sym("EXE::ERROR-MESSAGE"), ""))
 

@@ -82,20 +82,22 @@ class Results:
     """
 
     def __init__(self):
-        self._inputs = weakref.WeakKeyDictionary()  # in the order of completion
+        self._inputs = {}  # id of a designator -> weak reference to it, in the order of completion
         self._key = object()
 
     def note(self, designator, values):
-        if isinstance(designator, Designator):
-            self._inputs.pop(designator, None)
-            self._inputs[designator] = True
-            designator.__dict__.setdefault("_results_of_modules", {})[self._key] = values
+        if not isinstance(designator, Designator):
+            return
+        inputs, number = self._inputs, id(designator)
+        inputs.pop(number, None)
+        inputs[number] = weakref.ref(designator, lambda gone: inputs.pop(number, None))
+        designator.__dict__.setdefault("_results_of_modules", {})[self._key] = values
 
     def take(self, wanted):
         """The values for the first designator among ``wanted`` that has some, or for any one if it is empty; else ``None``."""
-        for designator in wanted or list(self._inputs):
-            if isinstance(designator, Designator) and self._inputs.pop(designator, False):
-                return designator.__dict__["_results_of_modules"].pop(self._key)
+        for number in [id(designator) for designator in wanted] or list(self._inputs):
+            if number in self._inputs:
+                return self._inputs.pop(number)().__dict__["_results_of_modules"].pop(self._key)
         return None
 
 
@@ -222,7 +224,7 @@ class ProcessModule(AbstractProcessModule):
             self.caller.set(request.caller)
             self.input.set(request.input)
             self.status_fluent.set(RUNNING)
-            status, outcome = errand.run(lambda: self._call_body(body, request))
+            status, outcome = errand.run(self._call_body, body, request)
         except (PlanFailure, Exception) as problem:  # of an observer of a fluent: it is the end of the module, too
             status, outcome = TASK_FAILED, from_python(problem)
             raise
