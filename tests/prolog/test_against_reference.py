@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from prolog_text import HERE, read
 
-from cramhy_runtime import kernel
+from cramhy_runtime import cpl, kernel
 from cramhy_runtime.lisp.data import Cons, Symbol, list_from
 from cramhy_runtime.prolog import facts, query
 from cramhy_runtime.utilities import patterns
@@ -57,18 +57,22 @@ def calls(callable_names):
                      st.lists(terms, min_size=2, max_size=2))
 
 
+def compound(name, *parts):
+    return st.tuples(*parts).map(lambda items: list_from([read(name), *items]))
+
+
 def goals_over(names):
     """Goals that call only the predicates ``names``, so that programs end."""
-    basic = st.builds(lambda a, b: list_from([read("=="), a, b]), terms, terms)
-    simple = st.one_of(basic, calls(names)) if names else basic
+    basic = compound("==", terms, terms)
+    simple = st.one_of(basic, calls(names), st.just(list_from([read("cut")]))) if names else basic
     return st.one_of(simple, simple, simple, st.recursive(
         simple,
         lambda inner: st.one_of(
-            st.builds(lambda goals: Cons(read("and"), list_from(goals)), st.lists(inner, max_size=3)),
-            st.builds(lambda goals: Cons(read("or"), list_from(goals)), st.lists(inner, max_size=3)),
-            st.builds(lambda goal: list_from([read("not"), goal]), inner),
-            st.builds(lambda parts: Cons(read("->"), list_from(parts)), st.lists(inner, min_size=2, max_size=3))),
-        max_leaves=4))
+            *(st.lists(inner, max_size=3).map(lambda goals, name=name: Cons(read(name), list_from(goals))) for name in ("and", "or", "once")),
+            compound("not", inner), compound("call", inner), compound("forall", inner, inner),
+            *(compound(name, terms, inner, terms) for name in ("findall", "bagof")),
+            *(compound(name, *[inner] * count) for name in ("->", "*->") for count in (2, 3))),
+        max_leaves=5))
 
 
 def clauses_of(name, below):
@@ -80,30 +84,106 @@ def clauses_of(name, below):
 programs = st.tuples(clauses_of("P1", []), clauses_of("P2", ["P1"]), clauses_of("P3", ["P1", "P2"]))
 
 
-@given(programs, goals_over(["P1", "P2", "P3"]))
-@settings(max_examples=300, deadline=None)
-def test_random_programs_have_the_answers_of_the_textbook(program, goal):
+MOST = 60
+"""Solutions of a program that are compared."""
+
+
+def answers_of(goal, symbols):
+    """The values of ``symbols`` in the answers that the engine gives."""
+    got = []
+    for table in elements(query.prolog(goal)):
+        got.append(canonical([patterns.substitute_vars(symbol, table) for symbol in symbols]))
+        if len(got) > MOST:
+            break
+    return got
+
+
+def compare_with_textbook(goal, clauses, times=1):
+    """Ask ``goal`` some ``times`` in a group of ``clauses``; the answers are those of the textbook, up to `MOST`."""
     kernel.start(clock="virtual")
-    clauses = [clause for part in program for clause in part]
-    group = read("random-program")
-    facts.remove_fact_group(group)
-    facts.define_fact_group(group, None, clauses)
     symbols = [symbol for symbol in patterns.variables_of(goal)]
     expected = []
     try:
-        for bindings in textbook.solve(goal, clauses, {}):
+        for bindings in textbook.solve(goal, clauses, {}, textbook.Barrier()):
             expected.append(canonical([textbook.substitute(symbol, bindings) for symbol in symbols]))
-            if len(expected) > 60:
+            if len(expected) > MOST:
                 break
     except textbook.Cyclic:
         return
-    got = []
-    for table in elements(query.prolog(goal)):
-        got.append(canonical([patterns.var_value(symbol, table) for symbol in symbols]))
-        if len(got) > 60:
-            break
+    group = read("random-program")
     facts.remove_fact_group(group)
-    assert got == expected
+    facts.define_fact_group(group, None, clauses)
+    try:
+        for _ in range(times):
+            assert answers_of(goal, symbols) == expected
+    finally:
+        facts.remove_fact_group(group)
+
+
+@given(programs, goals_over(["P1", "P2", "P3"]))
+@settings(max_examples=400, deadline=None)
+def test_random_programs_have_the_answers_of_the_textbook(program, goal):
+    """Asked as data, which is interpreted, and as the body of a clause, which is compiled."""
+    clauses = [clause for part in program for clause in part]
+    compare_with_textbook(goal, clauses)
+    head = Cons(HERE.intern("WHOLE-GOAL"), list_from(patterns.variables_of(goal)))
+    compare_with_textbook(head, [*clauses, list_from([head, goal])])
+
+
+values = st.one_of(st.sampled_from([read("a"), read("b"), read("c"), None, True, 1, 2, 1.0, "s", read(":k")]),
+                   st.sampled_from([read("(a 1)"), read("(a b)"), read("(b)"), read("(1 a)")]))
+plain_values = st.sampled_from([read("a"), read("b"), read("c"), 1, "s"])
+patterns_of_values = st.one_of(variables, variables, variables, values, st.sampled_from([read("(a ?x)"), read("(?x . ?y)"), read("(b . ?z)")]))
+
+
+def table(name, arity, of):
+    return st.lists(st.lists(of, min_size=arity, max_size=arity).map(lambda row: list_from([Cons(HERE.intern(name), list_from(row))])),
+                    min_size=1, max_size=8)
+
+
+def asked(name, arity, arguments):
+    return st.lists(arguments, min_size=arity, max_size=arity).map(lambda row: Cons(HERE.intern(name), list_from(row)))
+
+
+@given(st.tuples(table("R1", 1, values), table("R2", 2, values), table("R3", 3, values)),
+       st.lists(st.one_of(*(asked(f"R{arity}", arity, patterns_of_values) for arity in (1, 2, 3))), min_size=1, max_size=3))
+@settings(max_examples=200, deadline=None)
+def test_facts_have_the_answers_of_the_textbook(tables, goals):
+    compare_with_textbook(Cons(read("and"), list_from(goals)), sum(tables, []))
+
+
+@given(st.tuples(table("R1", 1, plain_values), table("R2", 2, plain_values), table("R3", 3, plain_values)),
+       st.lists(st.one_of(*(asked(f"R{arity}", arity, st.one_of(variables, variables, plain_values)) for arity in (1, 2, 3))),
+                min_size=1, max_size=4))
+@settings(max_examples=200, deadline=None)
+def test_joins_that_are_asked_again_have_the_answers_of_the_textbook(tables, goals):
+    compare_with_textbook(Cons(read("and"), list_from(goals)) if len(goals) > 1 else goals[0], sum(tables, []), times=3)
+
+
+items = st.one_of(st.sampled_from([read("?u"), read("?v")]), plain_values)
+
+
+def partial_list(tail):
+    return st.builds(list_from, st.lists(items, max_size=4), st.sampled_from([None, read(tail)]))
+
+
+APPEND = [read("((app () ?l ?l))"), read("((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))")]
+
+
+@given(partial_list("?x"), partial_list("?y"), partial_list("?z"))
+@settings(max_examples=200, deadline=None)
+def test_lists_that_a_loop_builds_are_those_of_the_textbook(a, b, c):
+    compare_with_textbook(list_from([read("app"), a, b, c]), APPEND)
+
+
+def test_a_loop_that_runs_along_the_list_that_it_builds_never_ends():
+    """``?rest`` is both what is read and what is built, so each turn reads what the one before it has built."""
+    kernel.start(clock="virtual")
+    facts.define_fact_group(read("loop"), None, APPEND)
+    ended = []
+    cpl.top_level(lambda: cpl.pursue(
+        lambda: cpl.sleep(0.01), lambda: ended.append(query.prolog(read("(and (== ?l (1 . ?rest)) (app ?l () ?rest))")))))
+    assert not ended
 
 
 def test_a_fresh_name_is_no_name_of_the_program():

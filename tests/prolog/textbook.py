@@ -1,12 +1,13 @@
 """A tiny Prolog in the way of textbooks, slow and plain, to compare the engine with.
 
-Bindings are dicts, clauses are renamed at every use, solutions come from recursive generators. It knows ``and``, ``or``,
-``not``, ``==``, ``->`` and clauses; no cut.
+Bindings are dicts, clauses are renamed at every use, solutions come from recursive generators. It knows the constructs of control,
+``findall``, ``bagof``, ``==`` and clauses. A cut lets the goals behind it give all their solutions, and then tells those before it to
+stop, up to its barrier.
 """
 
 from itertools import count
 
-from cramhy_runtime.lisp.data import Cons, Symbol
+from cramhy_runtime.lisp.data import Cons, Symbol, list_from
 from cramhy_runtime.utilities.patterns import variable
 
 _fresh = count()
@@ -58,39 +59,78 @@ def rename(term, names):
     return Cons(rename(term.car, names), rename(term.cdr, names)) if isinstance(term, Cons) else term
 
 
-def solve(goal, clauses, bindings):
-    name = goal.car.name
+class Barrier:
+    """Where a cut stops: ``cut`` is true once all that the cut leaves open has been tried."""
+
+    cut = False
+
+
+def solve(goal, clauses, bindings, barrier):
+    name, arguments = goal.car.name, list(goal.cdr or ())
     if name == "AND":
-        yield from conjunction(goal.cdr, clauses, bindings)
+        yield from conjunction(goal.cdr, clauses, bindings, barrier)
     elif name == "OR":
-        for branch in goal.cdr or ():
-            yield from solve(branch, clauses, bindings)
-    elif name == "NOT":
-        if next(solve(goal.cdr.car, clauses, bindings), None) is None:
+        barrier = Barrier()
+        for branch in arguments:
+            yield from solve(branch, clauses, bindings, barrier)
+            if barrier.cut:
+                return
+    elif name == "CUT":
+        yield bindings
+        barrier.cut = True
+    elif name in ("TRUE", "FAIL"):
+        if name == "TRUE":
             yield bindings
+    elif name == "NOT":
+        if next(solve(arguments[0], clauses, bindings, Barrier()), None) is None:
+            yield bindings
+    elif name == "FORALL":
+        if all(next(solve(arguments[1], clauses, found, Barrier()), None) is not None
+               for found in solve(arguments[0], clauses, bindings, Barrier())):
+            yield bindings
+    elif name == "CALL":
+        yield from solve(arguments[0], clauses, bindings, Barrier())
+    elif name == "ONCE":
+        found = next(conjunction(goal.cdr, clauses, bindings, Barrier()), None)
+        if found is not None:
+            yield found
+    elif name in ("FINDALL", "BAGOF"):
+        template, inner, result = arguments
+        found = [substitute(template, solution) for solution in solve(inner, clauses, bindings, Barrier())]
+        unified = unify(result, list_from(found), bindings)
+        if unified is not None and (found or name == "FINDALL"):
+            yield unified
     elif name == "==":
-        unified = unify(goal.cdr.car, goal.cdr.cdr.car, bindings)
+        unified = unify(*arguments, bindings)
         if unified is not None:
             yield unified
-    elif name == "->":
-        condition, then, *otherwise = goal.cdr
-        found = next(solve(condition, clauses, bindings), None)
-        if found is not None:
-            yield from solve(then, clauses, found)
-        elif otherwise:
-            yield from solve(otherwise[0], clauses, bindings)
+    elif name in ("->", "*->"):
+        condition, then, *otherwise = arguments
+        some = False
+        for found in solve(condition, clauses, bindings, Barrier()):
+            some = True
+            yield from solve(then, clauses, found, barrier)
+            if barrier.cut or name == "->":
+                return
+        if not some and otherwise:
+            yield from solve(otherwise[0], clauses, bindings, barrier)
     else:
+        barrier = Barrier()
         for clause in clauses:
             if clause.car.car is goal.car:
                 renamed = rename(clause, {})
                 unified = unify(renamed.car, goal, bindings)
                 if unified is not None:
-                    yield from conjunction(renamed.cdr, clauses, unified)
+                    yield from conjunction(renamed.cdr, clauses, unified, barrier)
+                    if barrier.cut:
+                        return
 
 
-def conjunction(goals, clauses, bindings):
+def conjunction(goals, clauses, bindings, barrier):
     if goals is None:
         yield bindings
-    else:
-        for found in solve(goals.car, clauses, bindings):
-            yield from conjunction(goals.cdr, clauses, found)
+        return
+    for found in solve(goals.car, clauses, bindings, barrier):
+        yield from conjunction(goals.cdr, clauses, found, barrier)
+        if barrier.cut:
+            return

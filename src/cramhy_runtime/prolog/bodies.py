@@ -397,34 +397,28 @@ class Bodies(Matching):
         """The method for ``findall`` and its like: the goal is a function that a machine of its own proves."""
         def collect(arguments, goals, names, context):
             template, goal, result = arguments
-            needed = variables(goal)
-            variables(template, needed)
-            live = [name for name in needed if name in names]
+            self.first_occurrences(list_from([template, goal]), names)  # what a solution leaves unset is the same in all instances
+            live = list(variables(list_from([template, goal])))
             function = self.fresh("all_")
 
             def body():
                 self.emit(f"{', '.join(['_', 'k', 'template', *(f'w{i}' for i in range(len(live)))])} = step")
                 self.emit("trail = m.trail")
-                here = {name: f"w{i}" for i, name in enumerate(live)}
-                inner = [goal]
-                if variable(template) and template is not ANONYMOUS and template not in here:
-                    here[template] = "template"
-                    self.name_variable("template", template)
-                elif is_ground(template):
-                    self.emit(f"template.ref = {self.constant(template)}")
-                else:
-                    whole = _TEMPLATE
-                    here[whole] = "template"
-                    inner.append(list_from([UNIFIES, whole, template]))
-                outer, self.failing = self.failing, "return fail(m)"
                 self.emit("b = 0")
+                inner = [goal]
+                here = {name: f"w{i}" for i, name in enumerate(live)}
+                if template not in live:
+                    here[_TEMPLATE] = "template"
+                    inner.append(list_from([UNIFIES, _TEMPLATE, template]))
+                outer, self.failing = self.failing, "return fail(m)"
                 self.body(inner, here, Context())
                 self.failing = outer
 
             self.define(function, "m, step", body)
             found = self.fresh("f")
             held = "".join(names[name] + ", " for name in live)
-            self.emit(f"{found} = {self.constant(getattr(control, kind))}(m, {function}, ({held}))")
+            self.emit(f"{found} = {self.constant(getattr(control, kind))}(m, {function}, ({held}), "
+                      f"{live.index(template) if template in live else None})")
             if kind != "findall":
                 self.emit(f"if {found} is None: {self.failing}")
             if variable(result) and result is not ANONYMOUS and result not in names and not self.keep_variables:

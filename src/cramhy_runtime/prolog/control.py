@@ -278,26 +278,30 @@ def _instances(m, template, goal):
     return Instances(m, template, copies, (_solve_goal, SOLVED, goal))
 
 
-def _compiled_instances(m, function, terms):
-    """The `Instances` for a goal that is code: ``function`` gets a variable for the template, and copies of ``terms``."""
-    copies, template = {}, Var()
-    return Instances(m, template, copies, (function, SOLVED, template, *[copy_term(term, copies) for term in terms]))
+def _compiled_instances(m, function, terms, position):
+    """The `Instances` for a goal that is code: ``function`` gets copies of ``terms``.
+
+    The template is the term at ``position``; if that is ``None``, a variable that the function gets before them.
+    """
+    copies, template = {}, Var() if position is None else None
+    terms = [copy_term(term, copies) for term in terms]
+    return Instances(m, template if position is None else terms[position], copies, (function, SOLVED, template, *terms))
 
 
 def _solve_goal(m, step):
     return m.solve(step[2], step[1], 0)
 
 
-def findall(m, function, terms):
+def findall(m, function, terms, position):
     """The list for ``findall`` in compiled code, see `_compiled_instances`; so `bagof` and `setof`, ``None`` without a solution."""
-    return _compiled_instances(m, function, terms).lazy_list()
+    return _compiled_instances(m, function, terms, position).lazy_list()
 
 
 bagof = findall
 
 
-def setof(m, function, terms):
-    return list_from(_distinct(_compiled_instances(m, function, terms).remaining()))
+def setof(m, function, terms, position):
+    return list_from(_distinct(_compiled_instances(m, function, terms, position).remaining()))
 
 
 @_control("CRAM-PROLOG::FINDALL", 3, 3)
