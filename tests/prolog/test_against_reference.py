@@ -9,7 +9,7 @@ from cramhy_runtime import cpl, kernel
 from cramhy_runtime.lisp.data import Cons, Symbol, list_from
 from cramhy_runtime.prolog import facts, query
 from cramhy_runtime.utilities import patterns
-from cramhy_runtime.utilities.lazy_lists import elements
+from cramhy_runtime.utilities.lazy_lists import LazyTail, elements
 
 variables = st.sampled_from([read(f"?{letter}") for letter in "uvwxyz"])
 atoms = st.one_of(st.sampled_from([read("a"), read("b"), None, True, 1, 2, 1.0, "s", read(":k")]))
@@ -18,7 +18,9 @@ _FUNCTORS = {name: HERE.intern(name) for name in ("P1", "P2", "P3")}
 
 
 def normal(term, names):
-    """``term`` with variables numbered in order of occurrence, as a Python value that can be compared."""
+    """``term`` with variables numbered in order of occurrence, as a Python value that can be compared; lazy lists are computed."""
+    if isinstance(term, LazyTail):
+        return normal(term.force(), names)
     if patterns.variable(term):
         return "var", names.setdefault(term, len(names))
     if isinstance(term, Cons):
