@@ -17,6 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "tutorials"
 PAGES = sorted(FOLDER.glob("[0-9]-*.md"))
+OTHER_PAGES = [ROOT / "docs" / "projection.md"]
 BLOCK = re.compile(r"^```(?:lisp|sh)\n(.*?)^```$", re.M | re.S)
 PROMPT = re.compile(r"^([A-Z-]+> |\d+\] )", re.M)
 
@@ -98,7 +99,7 @@ def type_into_repl(path, backend):
 
 def rewrite():
     """Write what the REPL answers, and what it draws, into the pages."""
-    for path in PAGES:
+    for path in [*PAGES, *OTHER_PAGES]:
         page = Page(path)
         with tempfile.TemporaryDirectory() as folder:
             path.write_text(page.with_blocks(play(page, folder), [run(block, folder) for block in page.commands]))
