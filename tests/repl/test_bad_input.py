@@ -198,7 +198,8 @@ class TestPlans:
     def test_an_error_in_a_process_module(self, tried, backend):
         said = tried("(top-level (cpm:with-process-modules-running (clumsy) (cpm:pm-execute 'clumsy (desig:a motion (type any)))))",
                      before=["(cpm:def-process-module clumsy (motion)\n  (car 5))"], backend=backend)
-        assert said.endswith("  at <repl 1>:2:3\n      (car 5))\n      ^\n") and "\n    5\n" in said
+        assert said.endswith("  at <repl 1>:2:3\n      (car 5))\n      ^\n"
+                             "  while process module CLUMSY executed #<A MOTION (TYPE ANY)>\n") and "\n    5\n" in said
 
     def test_a_process_module_that_nobody_defined(self, tried):
         said = tried("(top-level (cpm:with-process-modules-running (nobody) 1))")
