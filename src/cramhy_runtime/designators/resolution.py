@@ -96,8 +96,10 @@ class QuickReference(GenericFunction):
     def __call__(self, desig=UNSUPPLIED, role=UNSUPPLIED, *more):
         cls = desig.__class__
         if (cls is MotionDesignator or cls is ActionDesignator or cls is ObjectDesignator) and not more:
-            if desig.effective and desig.data is not None:
-                return desig.data
+            if desig.effective:
+                found = desig.data
+                if found is not None:
+                    return found
         elif more or desig is UNSUPPLIED:
             return wrong_argument_count(len(more) + 2 if more else 0)
         elif not isinstance(desig, Designator):

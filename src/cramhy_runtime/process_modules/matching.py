@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..cpl.failures import attempt, fail_with_advice, signal_failure
+from ..designators.clause_index import index_by_properties
 from ..lisp.data import list_from, one, truth
 from ..lisp.hooks import Hook
 from ..prolog.facts import built_in_group
@@ -18,6 +19,7 @@ on_finishing_performing = Hook("CPL::ON-FINISHING-PERFORMING-ACTION-DESIGNATOR",
 
 for _functor in (MATCHING, AVAILABLE, sym("CPM::PROJECTION-RUNNING")):
     built_in_group(sym("CPM::PROCESS-MODULES"), _functor)
+index_by_properties(MATCHING)  # its clauses ask for properties of the designator
 
 
 def matching_names(designator):

@@ -64,7 +64,7 @@ def call_lisp(function, arguments, kind, written, m=None):
 
     ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it, ``m`` the proof that the goal is of.
     """
-    if truth(BREAK_ON_LISP_ERRORS.value):
+    if BREAK_ON_LISP_ERRORS.value is not None and truth(BREAK_ON_LISP_ERRORS.value):
         return True, _apply(function, arguments)
     case = enter_case(_ERRORS)
     try:
