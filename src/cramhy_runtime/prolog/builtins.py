@@ -6,16 +6,16 @@ prolog.md section 7.
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import Error, SimpleError, SimpleWarning, error, handler_case, warn
+from cramhy_runtime.lisp.conditions import Error, SimpleError, SimpleWarning, error, handler_case, type_error, warn
 from cramhy_runtime.lisp.data import Cons, Symbol, UndefinedFunction, list_from, one, truth
-from cramhy_runtime.lisp.packages import is_symbol
 
 from cramhy_runtime.utilities.lazy_lists import lazy_take
+from .deep_terms import LIST_SUSPECTED, refuse_endless
 from .lisp_calls import BREAK_ON_LISP_ERRORS, call_lisp, compare, lisp_fun, lisp_fun_goal, lisp_pred_goal
 from .machine import fail
 from .natives import step_predicate, test
 from .symbols import sym
-from .terms import Var, deref, elements, ground, import_term, list_end, raw, resolve, undo, unify
+from .terms import Var, deref, elements, ground, import_term, list_end, raw, resolve, undo, unify, value_of
 
 _MISC, _LISTS, _MATH = "CRAM-PROLOG::MISC-UTILS", "CRAM-PROLOG::LIST-UTILS", "CRAM-PROLOG::MATH-UTILS"
 _STRINGS, _DEBUGGING = "CRAM-PROLOG::STRING-UTILS", "CRAM-PROLOG::DEBUGGING"
@@ -67,7 +67,7 @@ def _member(m, step):
     """Each element in turn; of a list with an unset end all its extensions."""
     _, k, element, lst = step
     trail = m.trail
-    height = len(trail)
+    height, count = len(trail), 0
     element = deref(element)
     while True:
         while lst.__class__ is not Cons:
@@ -95,6 +95,9 @@ def _member(m, step):
             return k
         if len(trail) > height:
             undo(trail, height)
+        count += 1
+        if count == LIST_SUSPECTED:
+            refuse_endless(lst, value_of)
 
 
 def _next_member(m, step):
@@ -129,8 +132,11 @@ def _append(m, step):
     """With a known first list one solution; otherwise the ways to split the third."""
     _, k, a, b, c = step
     trail = m.trail
-    a = deref(a)
+    a, count = deref(a), 0
     while a.__class__ is Cons:
+        count += 1
+        if count == LIST_SUSPECTED:
+            refuse_endless(a, value_of)
         rest, whole = Var(), deref(c)
         if whole.__class__ is Cons:
             if not unify(a.car, whole.car, trail):
@@ -171,7 +177,10 @@ def _append_longer(m, step):
 
 
 def _list_copy(m, term):
-    return resolve(list_from(list(elements(term))), m.names)
+    """A list that a Lisp function may change; what is no proper list is what it is, for the function to complain of."""
+    if list_end(term) is not None:
+        return resolve(term, m.names)
+    return list_from([resolve(item, m.names) for item in elements(term)])
 
 
 @test("SORT", _LISTS)
@@ -194,7 +203,12 @@ def _max(m, lst, result):
 
 @test("CRAM-PROLOG::TAKE")
 def _take(m, n, lst, result):
-    return m.unify(result, lazy_take(resolve(n), deref(lst)))
+    count, whole = resolve(n), deref(lst)
+    if not isinstance(count, int) or isinstance(count, bool):
+        return type_error(count, "INTEGER")
+    if whole is not None and whole.__class__ is not Cons:
+        return type_error(resolve(whole), "LIST")
+    return m.unify(result, lazy_take(count, whole))
 
 
 # ------------------------------------------------------------------------------------------------------------------- strings
@@ -249,7 +263,7 @@ test("CRAM-PROLOG::LISP-PRED")(lisp_pred_goal)
 def _generate_values(m, values, call):
     call = resolve(call, m.names)
     function = call.car if isinstance(call, Cons) else call
-    if not isinstance(function, Symbol) or isinstance(function.function, UndefinedFunction):
+    if not isinstance(function, Symbol) or isinstance(function.function, UndefinedFunction) or list_end(call) is not None:
         return error("Generator function `~a' not valid", function)
     return m.unify(values, import_term(one(function.function(*(call.cdr or ()))), m.names))
 
@@ -310,10 +324,6 @@ def _symbol_value(m, symbol, value):
 
 @test("CRAM-PROLOG::SET-SYMBOL-VALUE", _STRUCTURES)
 def _set_symbol_value(m, symbol, value):
-    symbol, value = resolve(symbol, m.names), resolve(value, m.names)
-    if not is_symbol(symbol):
-        return False
-    symbol.value = value
-    return True
+    return lisp_fun(m, sym("SET"), (resolve(symbol, m.names), resolve(value, m.names)), Var())
 
 

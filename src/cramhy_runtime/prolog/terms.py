@@ -10,11 +10,16 @@ A `LazyTail` in a term stands for the list that it will compute: looking at it f
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import StorageCondition, error
 from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, list_from, python_list
 
 from cramhy_runtime.utilities.lazy_lists import LazyTail, force_ll
 from cramhy_runtime.utilities.patterns import ANONYMOUS, fresh_name, same_atom
+
+from .deep_terms import CYCLE_SUSPECTED, LIST_SUSPECTED, rebuild, refuse_cycle, refuse_endless
+
+_CELLS = range(CYCLE_SUSPECTED)
+_TURNS = 200_000
+"""Lists in lists, or parts of a list, that are unified before it is asked whether they end."""
 
 UNSET = type("Unset", (), {"__repr__": lambda self: "#<unset>", "__slots__": ()})()
 """The value of a variable that has none."""
@@ -95,7 +100,7 @@ def import_term(term, table):
     if kind is not Cons:
         return None if term is False else term
     cell = term
-    while True:  # as far as nothing changes
+    for _ in _CELLS:  # as far as nothing changes
         car = cell.car
         kind = car.__class__
         if kind is Symbol or kind is Keyword:
@@ -108,23 +113,28 @@ def import_term(term, table):
             if cell is None:
                 return term
             break
-    cars, changed, cell = [], False, term
-    while cell.__class__ is Cons:
-        car = cell.car
-        kind = car.__class__
-        if kind is Symbol or kind is Cons or kind is Keyword:
-            value = import_term(car, table)
-            if value is not car:
-                changed = True
-            cars.append(value)
-        else:
-            cars.append(car)
-        cell = cell.cdr
-    if cell is not None:
-        value = import_term(cell, table)
-        changed = changed or value is not cell
-        cell = value
-    return list_from(cars, cell) if changed else term
+    else:
+        refuse_cycle(term, value_of)
+    try:
+        cars, changed, cell = [], False, term
+        while cell.__class__ is Cons:
+            car = cell.car
+            kind = car.__class__
+            if kind is Symbol or kind is Cons or kind is Keyword:
+                value = import_term(car, table)
+                if value is not car:
+                    changed = True
+                cars.append(value)
+            else:
+                cars.append(car)
+            cell = cell.cdr
+        if cell is not None:
+            value = import_term(cell, table)
+            changed = changed or value is not cell
+            cell = value
+        return list_from(cars, cell) if changed else term
+    except RecursionError:
+        return rebuild(term, value_of, lambda part: import_term(part, table))
 
 
 def resolve(term, names=None):
@@ -135,7 +145,10 @@ def resolve(term, names=None):
     while True:
         kind = term.__class__
         if kind is Cons:
-            return _resolve_list(term, names)
+            try:
+                return _resolve_list(term, names)
+            except RecursionError:
+                return rebuild(term, value_of, lambda part: _resolved_part(part, names))
         if kind is Var:
             value = term.ref
             if value is UNSET:
@@ -155,12 +168,27 @@ def _resolved_later(lazy, names):
     return (lambda: resolve(lazy.force(), names)), (lambda: python_list(resolve(force_ll(lazy.force(True)), names)))
 
 
-_CYCLE_SUSPECTED = 1_000_000
+def _resolved_part(part, names):
+    if part.__class__ is TermTail:
+        return TermTail(*_resolved_later(part, names))
+    return resolve(part, names) if part.__class__ is Var else part
+
+
+def value_of(term):
+    """What ``term`` stands for: follows variables and the tails that are computed already, and computes nothing."""
+    while True:
+        kind = term.__class__
+        if kind is Var and term.ref is not UNSET:
+            term = term.ref
+        elif (kind is LazyTail or kind is TermTail) and term.generator is None:
+            term = term.value
+        else:
+            return term
 
 
 def _resolve_list(term, names):
     cell, count = term, 0
-    while count < _CYCLE_SUSPECTED:  # as far as nothing changes
+    while count < CYCLE_SUSPECTED:  # as far as nothing changes
         car = cell.car
         kind = car.__class__
         if kind is Var or kind is LazyTail or kind is TermTail or kind is Cons:
@@ -185,8 +213,8 @@ def _resolve_list(term, names):
             else:
                 cars.append(car)
             cell = cell.cdr
-            if len(cars) == _CYCLE_SUSPECTED:
-                _refuse_cycle(term)
+            if len(cars) == CYCLE_SUSPECTED:
+                refuse_cycle(term, value_of)
         elif kind is Var:
             changed = True
             value = cell.ref
@@ -209,18 +237,6 @@ def _resolve_list(term, names):
     return list_from(cars, cell) if changed else term
 
 
-def _refuse_cycle(term):
-    seen, cell = set(), term
-    while True:
-        cell = deref(cell)
-        if not isinstance(cell, Cons):
-            return
-        if id(cell) in seen:
-            error(StorageCondition("A variable was unified with a list that contains it, which makes the list endless."))
-        seen.add(id(cell))
-        cell = cell.cdr
-
-
 def raw(term, names):
     """Lisp data for a term as it is written: variables become symbols even when they have a value."""
     kind = term.__class__
@@ -230,14 +246,17 @@ def raw(term, names):
         return symbol
     if kind is not Cons:
         return term
-    cars, changed, cell = [], False, term
-    while cell.__class__ is Cons:
-        value = raw(cell.car, names)
-        changed = changed or value is not cell.car
-        cars.append(value)
-        cell = cell.cdr
-    value = raw(cell, names)
-    return list_from(cars, value) if changed or value is not cell else term
+    try:
+        cars, changed, cell = [], False, term
+        while cell.__class__ is Cons:
+            value = raw(cell.car, names)
+            changed = changed or value is not cell.car
+            cars.append(value)
+            cell = cell.cdr
+        value = raw(cell, names)
+        return list_from(cars, value) if changed or value is not cell else term
+    except RecursionError:
+        return rebuild(term, lambda part: part, lambda part: raw(part, names))
 
 
 def copy_term(term, mapping):
@@ -255,36 +274,45 @@ def copy_term(term, mapping):
         return copy
     if kind is not Cons:
         return term
-    cars, changed, cell = [], False, term
-    while True:
-        if cell.__class__ is Cons:
-            car = cell.car
-            kind = car.__class__
-            if kind is Cons or kind is Var:
-                value = copy_term(car, mapping)
-                if value is not car:
-                    changed = True
-                cars.append(value)
+    try:
+        cars, changed, cell = [], False, term
+        while True:
+            if cell.__class__ is Cons:
+                if len(cars) == CYCLE_SUSPECTED:
+                    refuse_cycle(term, value_of)
+                car = cell.car
+                kind = car.__class__
+                if kind is Cons or kind is Var:
+                    value = copy_term(car, mapping)
+                    if value is not car:
+                        changed = True
+                    cars.append(value)
+                else:
+                    cars.append(car)
+                cell = cell.cdr
+            elif cell.__class__ is Var:
+                changed = True
+                if cell.ref is UNSET:
+                    cell = copy_term(cell, mapping)
+                    break
+                cell = cell.ref
             else:
-                cars.append(car)
-            cell = cell.cdr
-        elif cell.__class__ is Var:
-            changed = True
-            if cell.ref is UNSET:
-                cell = copy_term(cell, mapping)
                 break
-            cell = cell.ref
-        else:
-            break
-    return list_from(cars, cell) if changed else term
+        return list_from(cars, cell) if changed else term
+    except RecursionError:
+        return rebuild(term, value_of, lambda part: copy_term(part, mapping) if part.__class__ is Var else part)
 
 
 def unset_variables(term, found):
     """Enter the unset variables of ``term`` in the dict ``found``, in order of occurrence."""
-    stack = [term]
+    stack, count = [term], 0
     while stack:
         item = stack.pop()
+        count += 1
         while True:
+            if len(stack) + count > CYCLE_SUSPECTED:
+                refuse_cycle(term, value_of)
+                count = -1_000_000_000
             if item.__class__ is Var:
                 if item.ref is UNSET:
                     found.setdefault(item)
@@ -308,7 +336,7 @@ def ground(term):
 
 def unify(a, b, trail):
     """Make both terms the same by setting variables, noted on ``trail``. False when that is impossible; no occurs check."""
-    pending = None
+    pending, turns = None, 0
     while True:
         while a.__class__ is Var:
             value = a.ref
@@ -364,6 +392,10 @@ def unify(a, b, trail):
                                 break
                     if a.__class__ is not Cons or b.__class__ is not Cons:
                         break
+                turns += 1
+                if turns > _TURNS:
+                    turns = -50 * _TURNS  # a long way until it is asked again
+                    refuse_cycle(a, value_of)
                 continue
             elif kind is LazyTail or kind is TermTail:
                 a = a.force()
@@ -387,15 +419,21 @@ def undo(trail, height):
 
 def elements(term):
     """The elements of a list term, each as it stands; the list must end in ``nil`` (see `list_end`)."""
-    term = deref(term)
-    while term.__class__ is Cons:
-        yield term.car
-        term = deref(term.cdr)
+    cell, count = deref(term), 0
+    while cell.__class__ is Cons:
+        yield cell.car
+        cell = deref(cell.cdr)
+        count += 1
+        if count == LIST_SUSPECTED:
+            refuse_endless(cell, value_of)
 
 
 def list_end(term):
     """What ends the list ``term``: ``None`` when it is proper."""
-    term = deref(term)
-    while term.__class__ is Cons:
-        term = deref(term.cdr)
-    return term
+    cell, count = deref(term), 0
+    while cell.__class__ is Cons:
+        cell = deref(cell.cdr)
+        count += 1
+        if count == LIST_SUSPECTED:
+            refuse_endless(cell, value_of)
+    return cell
