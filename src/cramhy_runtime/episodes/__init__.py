@@ -4,7 +4,7 @@
 
     episodes.enable_fluent_tracing()
     cpl.top_level(plan)
-    episodes.fluent_changes("ROBOT-POSE", episodes.last_episode())       # [(value, seconds), ...]
+    episodes.fluent_changes(robot_pose.name, episodes.last_episode())    # [(value, seconds), ...]
 
 Where the parts are:
 
