@@ -225,3 +225,41 @@ def test_the_names_of_modules_do_not_pile_up(text):
     text("(dotimes (n 20) (plan (nav) (pm-execute 'nav (motion 1))))")
     count = text("(let ((n 0)) (do-symbols (s *package* n) (when (search \"NAV-\" (symbol-name s)) (incf n))))")
     assert re.fullmatch(r"\d+", count) and int(count) < 10
+
+
+# ------------------------------------------------------------------------------------------------- cleanup that does not end
+
+
+STUCK = """(defvar *never* (make-fluent :name 'never))
+           (def-process-module nav (motion)
+             (if (eql (goal-of motion) :stuck)
+                 (unwind-protect (unwind-protect (sleep 100) (wait-for *never*) (note :not-reached)) (note :outer))
+                 (goal-of motion)))"""
+
+
+def test_a_second_evaporation_of_the_caller_ends_the_wait_that_the_cleanup_of_the_body_is_stuck_in(text):
+    text(STUCK)
+    assert text("""(plan (nav)
+                     (with-tags
+                       (par (:tag drive (pm-execute 'nav (motion :stuck)))
+                            (progn (sleep 1) (evaporate drive :sync nil) (sleep 1) (note :again) (evaporate drive))))
+                     (pm-execute 'nav (motion 5)))""") == "5"
+    assert text("*notes*") == "(:AGAIN :OUTER)" and kernel.now() == 2
+
+
+def test_the_limit_of_cleanup_holds_for_the_cleanup_of_a_body(text, capsys):
+    text(STUCK)
+    assert text("""(let ((cpl-impl::*cleanup-time-limit* 3))
+                     (plan (nav)
+                       (pursue (pm-execute 'nav (motion :stuck)) (sleep 1))
+                       (pm-execute 'nav (motion 5))))""") == "5"
+    assert text("*notes*") == "(:OUTER)" and kernel.now() == 4
+    assert "waited for the fluent #<FLUENT NEVER [NIL]>" in capsys.readouterr().err
+
+
+def test_a_deadlock_in_the_cleanup_of_a_body_brings_the_plan_down_with_a_warning(text, capsys):
+    text(STUCK)
+    with pytest.raises(kernel.Deadlock, match="process module NAV to stop"):
+        text("(plan (nav) (pursue (pm-execute 'nav (motion :stuck)) (sleep 1)))")
+    assert text("(list *notes* (get-running-process-module 'nav))") == "((:OUTER) NIL)"
+    assert "waited for the fluent #<FLUENT NEVER [NIL]>" in capsys.readouterr().err
