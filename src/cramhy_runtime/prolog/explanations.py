@@ -266,9 +266,18 @@ def _others(box, best, as_far=False):
     for (group, brief), clauses in stopped.items():
         numbers = [clause_number(clause) for clause in clauses]
         of = "" if group is best.clause.group else f" of {show(group)}"
-        place = describe(getattr(clauses[0], "position", None))
-        lines.append(f"clause{'s' if len(numbers) > 1 else ''} {', '.join(numbers)}{of}{f' at {place}' if place else ''}: {brief}")
+        lines.append(f"clause{'s' if len(numbers) > 1 else ''} {', '.join(numbers)}{of}{_place(clauses[0], best.clause)}: {brief}")
     return lines
+
+
+def _place(clause, told):
+    """Where ``clause`` stands, shortly when that is the file of the clause ``told``."""
+    position = clause.position
+    if position is None:
+        return ""
+    if told.position is not None and told.position[0] == position[0]:
+        return f" (line {position[1]})"
+    return f" at {describe(position)}"
 
 
 def _brief(attempt):
