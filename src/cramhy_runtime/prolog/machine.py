@@ -153,7 +153,15 @@ def _solved(m, step):
         m.found = True
         return None
     collect()
-    return fail(m)
+    choices = m.choices  # what `fail` does, without a call
+    if not choices:
+        return None
+    step = choices[-1]
+    height = step[2]
+    trail = m.trail
+    while len(trail) > height:
+        trail.pop().ref = UNSET
+    return step
 
 
 SOLVED = (_solved, None)

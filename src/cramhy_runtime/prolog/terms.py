@@ -10,7 +10,7 @@ A `LazyTail` in a term stands for the list that it will compute: looking at it f
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, list_from, python_list
+from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, list_from
 
 from cramhy_runtime.utilities.lazy_lists import LazyTail, force_ll
 from cramhy_runtime.utilities.patterns import ANONYMOUS, fresh_name, same_atom
@@ -165,7 +165,7 @@ def resolve(term, names=None):
 
 def _resolved_later(lazy, names):
     """The two ways to force a tail whose elements are those of ``lazy``, resolved."""
-    return (lambda: resolve(lazy.force(), names)), (lambda: python_list(resolve(force_ll(lazy.force(True)), names)))
+    return (lambda: resolve(lazy.force(), names)), (lambda: resolve(force_ll(lazy.force(True)), names))
 
 
 def _resolved_part(part, names):

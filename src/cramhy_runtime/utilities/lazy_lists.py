@@ -74,7 +74,8 @@ class Once:
 class LazyTail(Once):
     """The rest of a lazy list, not yet computed. ``generator`` takes no arguments and returns the rest: a list or ``None``.
 
-    ``drain``, if given, returns all remaining elements at once, which is quicker for whoever wants the whole list.
+    ``drain``, if given, returns all remaining elements at once, a Python list or a Lisp list, which is quicker for whoever wants the
+    whole list.
     """
 
     __slots__ = ("drain",)
@@ -91,7 +92,9 @@ class LazyTail(Once):
             return self.value
         try:
             if completely and self.drain is not None:
-                rest = list_from(self.drain())
+                rest = self.drain()
+                if rest.__class__ is list:
+                    rest = list_from(rest)
             else:
                 rest = self.generator()
                 while isinstance(rest, LazyTail):
@@ -225,7 +228,7 @@ def force_ll(ll):
     cell = ll
     while isinstance(cell, Cons):
         rest = cell.cdr
-        if isinstance(rest, LazyTail):
+        if rest.__class__ is not Cons and isinstance(rest, LazyTail):
             rest = cell.cdr = rest.force(True)
         cell = rest
     return ll
