@@ -22,6 +22,9 @@ _STRINGS, _DEBUGGING = "CRAM-PROLOG::STRING-UTILS", "CRAM-PROLOG::DEBUGGING"
 _STRUCTURES, _TYPES = "CRAM-PROLOG::LISP-DATA-STRUCTS", "CRAM-PROLOG::LISP-TYPES"
 
 
+_NOT_GIVEN = object()
+
+
 def bound(term):
     """Whether ``term`` is anything but an unset variable."""
     return deref(term).__class__ is not Var
@@ -184,11 +187,12 @@ def _list_copy(m, term):
 
 
 @test("SORT", _LISTS)
-def _sort(m, lst, pred, key_or_result, *result):
-    if len(result) > 1 or not all(bound(term) for term in ((lst, pred, key_or_result) if result else (lst, pred))):
+def _sort(m, lst, pred, key_or_result, result=_NOT_GIVEN):
+    keyed = result is not _NOT_GIVEN
+    if not all(bound(term) for term in ((lst, pred, key_or_result) if keyed else (lst, pred))):
         return False
-    key = [sym(":KEY"), resolve(key_or_result)] if result else []
-    return lisp_fun(m, sym("SORT"), [_list_copy(m, lst), resolve(pred), *key], result[0] if result else key_or_result)
+    key = [sym(":KEY"), resolve(key_or_result)] if keyed else []
+    return lisp_fun(m, sym("SORT"), [_list_copy(m, lst), resolve(pred), *key], result if keyed else key_or_result)
 
 
 @test("REDUCE", _LISTS)

@@ -110,6 +110,8 @@ def solve_all(m, goals, k, b):
     goals = goals if goals.__class__ is Cons else deref(goals)
     if goals is None:
         return k
+    if goals.__class__ is not Cons:
+        return type_error(raw(goals, m.names), "LIST")
     rest = goals.cdr if goals.cdr.__class__ is Cons else deref(goals.cdr)
     return m.solve(goals.car, k if rest is None else (_solve_rest, k, rest, b), b)
 
@@ -124,11 +126,15 @@ CONTROL[sym("AND")] = _BASE[sym("AND")] = _and
 def _or(m, terms, k, b):
     """A barrier: a cut in a branch drops the other alternatives of that branch and the branches after it."""
     terms = deref(terms)
+    if terms is not None and terms.__class__ is not Cons:
+        return type_error(raw(terms, m.names), "LIST")
     return FAIL if terms is None else _branch(m, k, terms)
 
 
 def _branch(m, k, terms):
     rest = deref(terms.cdr)
+    if rest.__class__ is not Cons:
+        rest = None
     height = len(m.choices)
     if rest is not None:
         m.choices.append((_next_branch, k, len(m.trail), rest))

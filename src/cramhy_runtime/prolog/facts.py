@@ -14,6 +14,7 @@ from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn, type_
 from cramhy_runtime.lisp.data import Cons, list_from, python_list
 
 from .database import Clause, changed, functor_entry, functors, valid_functor
+from .terms import list_end
 from cramhy_runtime.utilities.patterns import rename_vars
 
 _groups: dict = {}
@@ -27,16 +28,20 @@ def define_fact_group(name, extendable, facts, origins=()):
     """
     if name in _groups:
         style_warn("Redefining prolog fact-group ~a.", name)
-    extendable = python_list(extendable) if extendable is None or isinstance(extendable, Cons) else list(extendable)
+    if extendable is not None and not isinstance(extendable, (Cons, list, tuple)):
+        return type_error(extendable, "LIST")
+    extendable = python_list(extendable)
     for functor in extendable:
         if not valid_functor(functor):
             return error(SimpleError("Extendible predicates in the definition of fact group ~a~%            "
                                      "contained an invalid functor ~a.", name, functor))
     clauses = {}
     for fact, origin in zip_longest(facts or (), origins):
-        head = fact.car
+        head = fact.car if isinstance(fact, Cons) else fact
         if not isinstance(head, Cons):
             return type_error(head, "LIST")
+        if list_end(fact) is not None:
+            return type_error(fact, "LIST")
         functor = head.car
         if not valid_functor(functor):
             return error(SimpleError("Functor ~a of fact head ~a is not valid.", functor, head))
