@@ -87,14 +87,14 @@ def _member(m, step):
         item, lst = lst.car, lst.cdr
         if element.__class__ is Var:
             if lst is not None:
-                m.choices.append((_next_member, k, height, element, lst))
+                m.choices.append([_next_member, k, height, element, lst])
             if item is not element:
                 element.ref = item
                 trail.append(element)
             return k
         if unify(element, item, trail):
             if lst is not None:
-                m.choices.append((_next_member, k, height, element, lst))
+                m.choices.append([_next_member, k, height, element, lst])
             return k
         if len(trail) > height:
             undo(trail, height)
@@ -104,9 +104,20 @@ def _member(m, step):
 
 
 def _next_member(m, step):
-    """Choice point: the elements of a list that are left."""
+    """Choice point: the elements of a list that are left. It moves along the list as long as the elements just become the value."""
+    _, k, _, element, lst = step
+    if element.__class__ is Var and lst.__class__ is Cons:
+        item, rest = lst.car, lst.cdr
+        if rest is None:
+            m.choices.pop()
+        else:
+            step[4] = rest
+        if item is not element:
+            element.ref = item
+            m.trail.append(element)
+        return k
     m.choices.pop()
-    return _member(m, (_member, step[1], step[3], step[4]))
+    return _member(m, (_member, k, element, lst))
 
 
 def _member_of_extension(m, step):
