@@ -4,7 +4,9 @@ import pytest
 from prolog_text import ask, error_text, first, function, group, read, show
 
 from cramhy_runtime.lisp.data import list_from
+from cramhy_runtime.lisp.tools.advice import hint_for
 from cramhy_runtime.prolog import facts, natives, query
+from cramhy_runtime.repl.session import Session, condition_of
 from cramhy_runtime.utilities.lazy_lists import elements, lazy_cdr
 from cramhy_runtime.prolog.terms import Var
 
@@ -39,6 +41,16 @@ def test_extending_without_permission_is_an_error():
 def test_a_head_needs_a_symbol(head):
     text = error_text(lambda: group("g", f"(({head} 1))"))
     assert text.startswith("Functor ") and text.endswith(" is not valid.")
+
+
+@pytest.mark.parametrize("clause, text", [
+    ("()", "The value\n  NIL\nis not of type\n  CONS"), ("(nil)", "The value\n  NIL\nis not of type\n  CONS"),
+    ("(7)", "The value\n  7\nis not of type\n  LIST"), ("((:p 1) . :q)", "The value\n  ((:P 1) . :Q)\nis not of type\n  LIST"),
+])
+def test_a_clause_that_is_none_leaves_the_old_group(warnings_given, clause, text):
+    group("g", "((p 1))")
+    assert error_text(lambda: group("g", "((p 2))", clause)) == text
+    assert ask("(p ?x)") == "(((?X . 1)))"
 
 
 def test_an_extendable_name_must_be_a_functor():
@@ -253,3 +265,14 @@ def test_the_hooks_of_a_proof_take_methods():
         query.on_prepare_prolog_prove.remove("test")
         query.on_finish_prolog_prove.remove("test")
     assert seen == ["(MEMBER ?X (1))", ("id", True)]
+
+
+# ------------------------------------------------------------------------------------------------------------------- errors
+
+
+def test_an_error_in_a_definition_names_the_clause_and_its_place(fresh_kernel):
+    session = Session(time="virtual", turtlesim=False)
+    session.evaluate_text("(defpackage :slips (:use :cl :prolog)) (in-package :slips)")
+    with pytest.raises(BaseException) as problem:
+        session.evaluate_text("(def-fact-group shelf ()\n  (<- (on cup shelf))\n  (<- (member cup shelf)))")
+    assert hint_for(condition_of(problem.value)) == "in the clause (<- (member cup shelf)) at <repl 2>:3:3"

@@ -1,5 +1,7 @@
 """Facts that come and go, and productions. Source: prolog.md section 12."""
 
+import re
+
 import pytest
 from prolog_text import ask, error_text, read, show
 
@@ -42,6 +44,10 @@ def test_asserting_twice_counts_twice():
     rete.rete_retract(read("(x 1)"))
     assert rete.rete_holds(read("(x 1)")) is None
     assert error_text(lambda: rete.rete_retract(read("(x 1)"))) == "wme-memory already empty. Cannot retract."
+
+
+def test_the_node_of_a_fact_prints_as_a_thing_of_lisp():
+    assert re.fullmatch(r"#<CRAM-PROLOG::ALPHA-NODE \{[0-9A-F]+\}>", show(rete.rete_assert(read("(x 1)"))))
 
 
 def test_bad_facts():

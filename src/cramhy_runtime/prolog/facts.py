@@ -12,14 +12,28 @@ from itertools import zip_longest
 
 from cramhy_runtime.lisp.conditions import SimpleError, error, style_warn, type_error
 from cramhy_runtime.lisp.data import Cons, list_from, python_list
+from cramhy_runtime.lisp.evaluation.places_in_source import circumstance, describe
 
 from .database import Clause, changed, functor_entry, functors, valid_functor
+from .origins import position_of_origin
+from .showing import show
+from .symbols import sym
 from .terms import list_end
 from cramhy_runtime.utilities.patterns import rename_vars
 
 _groups: dict = {}
+_ARROW = sym("CRAM-PROLOG::<-")
 
 
+def _tell_fact(here):
+    """For an error in a definition: which of its clauses is meant, and where it stands."""
+    if "fact" not in here:
+        return None
+    place = describe(position_of_origin(here["origin"]))
+    return f"in the clause {show(Cons(_ARROW, here['fact']))}" + (f" at {place}" if place else "")
+
+
+@circumstance(_tell_fact)
 def define_fact_group(name, extendable, facts, origins=()):
     """Define the group ``name`` with ``facts``, a list of (head goal...); returns a list of (functor fact...).
 
@@ -39,7 +53,7 @@ def define_fact_group(name, extendable, facts, origins=()):
     for fact, origin in zip_longest(facts or (), origins):
         head = fact.car if isinstance(fact, Cons) else fact
         if not isinstance(head, Cons):
-            return type_error(head, "LIST")
+            return type_error(head, "CONS" if head is None else "LIST")
         if list_end(fact) is not None:
             return type_error(fact, "LIST")
         functor = head.car

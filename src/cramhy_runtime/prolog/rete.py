@@ -13,11 +13,13 @@ from cramhy_runtime.lisp.conditions import error
 from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol, list_from, one, python_list, truth
 from cramhy_runtime.lisp.equality import eql, eql_key
 from cramhy_runtime.lisp.evaluation.functions import function_of
+from cramhy_runtime.lisp.printer.printer import define_printer, output_object, print_unreadable
 from cramhy_runtime.lisp.objects.generic import generic, specializer_of, when_methods_change
 from cramhy_runtime.utilities.lazy_lists import from_iterator
 from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, vars_in
 
 from .natives import predicate
+from .symbols import sym
 from .terms import import_term, raw
 
 object_id = generic("CRAM-PROLOG::OBJECT-ID", "(obj)", documentation="""
@@ -80,6 +82,16 @@ class Node:
             else:
                 rest = cell
             stack += [(child, rest) for child in node.children.values()]
+
+
+_ALPHA_NODE = sym("CRAM-PROLOG::ALPHA-NODE")
+
+
+def _print_node(node, stream):
+    print_unreadable(node, stream, identity=True, body=lambda: output_object(_ALPHA_NODE, stream))
+
+
+define_printer(Node, _print_node)
 
 
 class Occurrence:
