@@ -420,3 +420,10 @@ def test_solutions_that_cannot_be():
     assert text_of(problem).startswith(
         "A validator returns True, False, None or kw.maybe_reject, not 'yes'.\n"
         f"This happened in the location validator perhaps ({place(perhaps)}), for #<A LOCATION>.")
+
+
+def test_an_error_reads_the_same_where_no_kernel_runs():
+    kernel.stop()
+    with pytest.raises(DesignatorError) as problem:
+        reference(Motion(type=kw.flying))
+    assert str(problem.value) == "Cannot resolve motion designator #<A MOTION\n    (TYPE FLYING)>."

@@ -276,3 +276,14 @@ def test_an_error_in_a_definition_names_the_clause_and_its_place(fresh_kernel):
     with pytest.raises(BaseException) as problem:
         session.evaluate_text("(def-fact-group shelf ()\n  (<- (on cup shelf))\n  (<- (member cup shelf)))")
     assert hint_for(condition_of(problem.value)) == "in the clause (<- (member cup shelf)) at <repl 2>:3:3"
+
+
+@pytest.mark.parametrize("result, datum", [("5", "5"), ("'(5)", "5"), ("'((?x . 1))", "(?X . 1)"), ("t", "T")])
+def test_a_handler_whose_result_is_no_list_of_binding_lists(fresh_kernel, result, datum):
+    session = Session(time="virtual", turtlesim=False)
+    session.evaluate_text("(defpackage :slips (:use :cl :prolog)) (in-package :slips)")
+    with pytest.raises(BaseException) as problem:
+        session.evaluate_text(f"(def-prolog-handler slip (bdgs) (declare (ignore bdgs)) {result}) (prolog '(slip))")
+    assert str(condition_of(problem.value)).replace("SLIPS::", "") == (
+        f"The value\n  {datum}\nis not of type\n  LIST\n"
+        "(A handler returns a list of binding lists, one for each solution: (list bdgs) for one that binds nothing, nil for none.)")

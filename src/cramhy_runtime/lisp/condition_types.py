@@ -64,7 +64,8 @@ class Condition(BaseException):
 
     def __str__(self):
         try:
-            return self.report()
+            with kernel.at_hand():  # Python prints what nobody caught when the kernel is gone
+                return self.report()
         except Exception as problem:  # a broken :report must not hide the condition itself
             control = getattr(self, "format_control", None)
             told = f"{control!s}" if isinstance(control, str) else f"A condition of type {shown(late.class_name(type(self)))} was signalled"

@@ -18,7 +18,7 @@ Handlers written in Lisp work on binding lists: `define_handler` adapts them.
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import wrong_argument_count
+from cramhy_runtime.lisp.conditions import type_error, wrong_argument_count
 from cramhy_runtime.lisp.data import Cons, list_from, one
 
 from .database import changed, functor_entry
@@ -114,6 +114,9 @@ def step_predicate(name, group=None, arity=None):
 # ------------------------------------------------------------------------------------------------- handlers written in Lisp
 
 
+_WANTED = "\n(A handler returns a list of binding lists, one for each solution: (list bdgs) for one that binds nothing, nil for none.)"
+
+
 def define_handler(name, function):
     """``def-prolog-handler``: ``function(bindings, *arguments)`` gets a binding list and the arguments as they are written.
 
@@ -124,7 +127,12 @@ def define_handler(name, function):
     def solutions(m, terms):
         written = [raw(term, m.names) for term in terms]
         given = binding_list(m)
-        for bindings in lazy_elements(one(function(given, *written))):
+        found = one(function(given, *written))
+        if found and not isinstance(found, Cons):
+            type_error(found, "LIST", _WANTED)
+        for bindings in lazy_elements(found):
+            if bindings and not (isinstance(bindings, Cons) and isinstance(bindings.car, Cons)):
+                type_error(bindings, "LIST", _WANTED)
             if _adopt(m, bindings, given):
                 yield
 
