@@ -3,6 +3,7 @@
 import pytest
 from prolog_text import ask, error_text, function, group, read, show
 
+from cramhy_runtime import image
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.data import MultipleValues, Symbol, lisp_list
 from cramhy_runtime.lisp.dynamic import binding
@@ -127,8 +128,8 @@ def test_error_and_warn_goals(warnings_given):
 
 
 def test_symbol_values():
+    image.boot()  # the functions that the predicates call are Lisp's
     read("*thing*").value = 4
-    function("cl:symbol-value")(lambda symbol: symbol.value)
     assert ask("(symbol-value *thing* ?x)") == "(((?X . 4)))"
     assert ask("(set-symbol-value *thing* (1 2))") == "(NIL)"
     assert show(read("*thing*").value) == "(1 2)"
