@@ -7,6 +7,7 @@ from cramhy_runtime.lisp.faces import define_face
 
 from . import facts, natives, productions, rete, tracing
 from .origins import origin
+from .undefined import warn_of_misspelled_functors
 
 
 class FactCollector:
@@ -28,7 +29,9 @@ def collect_fact(collector, fact):
 
 
 def finish_fact_group(name, extendable, collector):
-    return facts.define_fact_group(name, extendable, collector.facts, collector.origins)
+    defined = facts.define_fact_group(name, extendable, collector.facts, collector.origins)
+    warn_of_misspelled_functors(name, python_list(extendable))
+    return defined
 
 
 def fact_outside_group(fact):

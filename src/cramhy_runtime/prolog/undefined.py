@@ -6,8 +6,10 @@ place of a goal in a proof, not again when the proof comes back there. Source: p
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import SimpleWarning, warn
+from cramhy_runtime.lisp.conditions import SimpleStyleWarning, SimpleWarning, warn
 from cramhy_runtime.lisp.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp.evaluation.places_in_source import describe
+from cramhy_runtime.lisp.packages import COMMON_LISP, CURRENT
 from cramhy_runtime.utilities.patterns import variable
 
 from . import control, database
@@ -31,8 +33,8 @@ def advice(functor):
     name, known = show(functor), defined_functors()
     twins = [other for other in known if other.name == functor.name and other is not functor]
     if twins:
-        package = min(twins[0].package.names, key=len).lower() if twins[0].package is not None else "#"
-        return f"nobody defines {name}; there is {package}:{twins[0].name.lower()}, another symbol of that name: write it so, or import it"
+        twin = _written(twins[0], qualified=True)
+        return f"nobody defines {name}; there is {twin}, another symbol of that name: write it so, or import it"
     near = spelled_like(functor, known)
     if near:
         return f"nobody defines {name}; did you mean {' or '.join(show(symbol) for symbol in near)}?"
@@ -55,6 +57,40 @@ def warn_undefined(m, goal):
         meant = (f"N{meant[1:]}" if meant.startswith("n") else meant) + ("" if meant[-1] == "?" else ".")
     warning.where, warning.hint = place.where, "\n".join(filter(None, [place.rule("It is a goal of"), meant]))
     warn(warning)
+
+
+def warn_of_misspelled_functors(group, extendable):
+    """Style-warn of functors that the new fact group ``group`` lists as extendable, or has clauses of, where others may be meant.
+
+    A list may name functors that nobody has defined yet; so may a program say before what it will define. But a name that is
+    almost that of a predicate which is there to be extended, or the same in another package, is a slip as a rule, and nothing else
+    would tell of it: the clauses would be there, and nobody would ask them.
+    """
+    to_extend = [functor for functor, entry in database.functors.items() if entry.native_group is not None]
+    for functor in dict.fromkeys([*extendable, *(f for f, entry in database.functors.items() if group in entry.groups())]):
+        entry = database.functors.get(functor)
+        if functor in control.CONTROL or (entry is not None and any(other is not group for other in entry.groups())):
+            continue
+        twins = [other for other in to_extend if other.name == functor.name]
+        known = [other for other in to_extend if other.package not in (COMMON_LISP, None)]
+        meant = twins or (spelled_like(functor, known) if functor in extendable else [])
+        if not meant:
+            continue
+        clause = next((clause for clause in entry.clauses if clause.group is group), None) if entry is not None else None
+        warning = SimpleStyleWarning("Fact group ~a ~a ~s, which no other group defines.", group,
+                                     "extends" if functor in extendable else "has clauses of", functor)
+        place = describe(clause.position) if clause is not None else None
+        warning.where = f"at {place}" if place else None
+        warning.hint = f"Did you mean {' or '.join(_written(other, qualified=bool(twins)) for other in meant)}?"
+        warn(warning)
+
+
+def _written(functor, qualified=False):
+    """``functor`` as one writes it in the package that is current; with its package in any case if ``qualified``."""
+    package = functor.package
+    if package is None or not qualified and CURRENT.value.lookup(functor.name)[0] is functor:
+        return functor.name.lower()
+    return f"{min(package.names, key=len).lower()}:{functor.name.lower()}"
 
 
 database.warn_undefined = warn_undefined

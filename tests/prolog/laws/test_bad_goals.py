@@ -164,3 +164,27 @@ def test_the_rules_stay_as_they_were(printed, lisp):
     for query in ("(ancestor ?x ann)", "(older ?a ?b)", "(parnt ?x ?y)"):
         printed(query)
     assert lisp("(all '(ancestor tom ?x))") == "(((?X . BOB)))"
+
+
+def defining(lisp, form):
+    """What evaluating ``form`` prints as warnings, the place at the prompt left out."""
+    shown = lisp.session.evaluate_text(f"(with-output-to-string (*error-output*) {form})")[0]
+    return re.sub(r"\n  at <.*", "", str(shown)).replace("STYLE-WARNING:\n  ", "STYLE-WARNING:")
+
+
+def test_a_group_that_extends_a_misspelled_predicate(lisp):
+    assert defining(lisp, "(def-fact-group own (matchng-process-module) (<- (matchng-process-module ?d nav)))") == """\
+STYLE-WARNING: Fact group OWN extends MATCHNG-PROCESS-MODULE, which no other group defines.
+  Did you mean cpm:matching-process-module?
+"""
+
+
+def test_a_group_with_clauses_of_a_symbol_of_the_wrong_package(lisp):
+    assert defining(lisp, "(def-fact-group own () (<- (motion-grounding ?d (drive 1))))") == """\
+STYLE-WARNING: Fact group OWN has clauses of MOTION-GROUNDING, which no other group defines.
+  Did you mean desig:motion-grounding?
+"""
+
+
+def test_a_group_may_list_what_nobody_has_defined_yet(lisp):
+    assert defining(lisp, "(def-fact-group own (reachable) (<- (reachable kitchen)) (<- (near kitchen)))") == ""
