@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 ABORT = """\
 restarts (type a number to choose one, or a form to evaluate):
   0: [ABORT] Exit debugger, returning to top level.
@@ -38,6 +40,16 @@ CPL-USER> (list cl:* 'nil)
 (1 NIL)""", type_in('(values 1 "two" #\\3)\n(values)\n(list cl:* \'nil)\n'))
 
 
+@pytest.mark.parametrize("form, told", [
+    ("(lambda (x) x)", "(LAMBDA (X))"), ("(lambda (x &optional y) (list x y))", "(LAMBDA (X &OPTIONAL Y))"),
+    ("(let ((y 3)) (lambda () y))", "(LAMBDA ())"), ("(lambda (x &key k) (list x k))", "(LAMBDA (X &KEY ...))"),
+    ("(flet ((turn-left (x) x)) #'turn-left)", "(FLET TURN-LEFT)"),
+    ("(progn (defun outer (x) (lambda (z) (list x z))) (outer 1))", "(LAMBDA (Z) :IN OUTER)"),
+])
+def test_a_function_without_a_name_is_shown_as_lisp_calls_it(type_in, form, told):
+    assert re.search(r"^#<FUNCTION (.*) \{[0-9A-F]+\}>$", type_in(form), re.MULTILINE)[1] == told
+
+
 def test_a_form_may_have_many_lines_and_comments(type_in):
     shown("""\
 CPL-USER> (+ 1 ; one
@@ -69,6 +81,7 @@ def test_an_unmatched_parenthesis_is_a_warning(type_in):
 CPL-USER> (+ 1 2))
 3
 STYLE-WARNING: unmatched close parenthesis at <repl 1>:1:8, ignored
+  There is one ) too many here, or a ( is missing before it.
 CPL-USER> 4
 4""", type_in("(+ 1 2))\n4"))
 

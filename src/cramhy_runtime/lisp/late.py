@@ -32,6 +32,7 @@ WHERE = {
     "printer.printer": "output_object output_ugly prin1_to_string print_unreadable write_string_text",
     "printer.standard_printers": "print_python_object",
     "printer.pprint_code": "is_backquoted",
+    "evaluation.function_facts": "lambda_list_of",
     "format.format": "format_ format_to_string",
     "format.format_directives": "HANDLERS",
     "streams.streams": "warning_line ask_for_form",

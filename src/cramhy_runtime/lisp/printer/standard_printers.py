@@ -172,10 +172,28 @@ def _print_function(function, stream):
 
     def named():
         stream.write("FUNCTION ")
+        if name is None and (made := _local_name(function)):
+            stream.write(made)
+            return
         with bound(PRINT_ESCAPE, True):
             output_object(_python_name(function) if name is None else name, stream)
 
     print_unreadable(function, stream, identity=not proper, body=named)
+
+
+def _local_name(function):
+    """What SBCL calls a function that a Lisp form made, such as ``(LAMBDA (X) :IN DRIVE)`` or ``(FLET TURN)``; ``None`` for others."""
+    top, *outer = getattr(function, "__qualname__", "").split(".<locals>.")
+    if top != "toplevel" or not outer:
+        return None
+    *outer, name = (part.replace("_", "-").upper() for part in outer)
+    names = [part for part in outer if not part.startswith(("LFUNCTION", "<"))]
+    inside = f" :IN {names[0]}" if names else ""
+    if not name.startswith(("LFUNCTION", "<")):
+        return f"(FLET {name}{inside})"
+    parameters = " ".join(symbol_name(item) for item in late.lambda_list_of(function) or ())
+    parameters = parameters.replace("&REST LKEYS &KEY &ALLOW-OTHER-KEYS", "&KEY ...")  # the code looks for its keywords itself
+    return f"(LAMBDA ({parameters}){inside})"
 
 
 def _python_name(function):
