@@ -143,3 +143,14 @@ def test_the_newest_effective_designator():
     assert equating.newest_effective_designator(second) is None
     first.effective = True
     assert equating.newest_effective_designator(second) is first
+
+
+def test_the_living_designators_are_found_in_the_order_of_their_making(lisp):
+    """A run must not depend on the addresses of its objects."""
+    assert lisp("""(let* ((made (loop for n below 200 collect (make-designator :motion `((:ordered ,n)))))
+                               (numbers (lambda (found) (remove nil (mapcar (lambda (d) (ignore-errors (desig-prop-value d :ordered))) found)))))
+                          (setf made (remove-if (lambda (d) (evenp (desig-prop-value d :ordered))) made))
+                          (let ((expected (loop for n from 1 below 200 by 2 collect n)))
+                            (list (equal expected (remove-if #'evenp (funcall numbers (get-all-designators))))
+                                  (equal expected (remove-if #'evenp (funcall numbers (mapcar (lambda (bdgs) (cdr (first bdgs)))
+                                                                   (cut:force-ll (prolog:prolog '(designator ?d))))))))))""") == "(T T)"

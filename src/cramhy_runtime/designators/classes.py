@@ -10,7 +10,7 @@ Designators are equal by identity; that two describe the same thing is said by e
 from __future__ import annotations
 
 import itertools
-import weakref
+from weakref import ref
 
 from ..lisp.condition_types import SimpleError, SimpleWarning
 from ..lisp.conditions import error, type_error, warn
@@ -30,7 +30,7 @@ DESCRIPTION = keyword("DESCRIPTION")
 IN_ERROR_TEXT = special(Symbol("*IN-ERROR-TEXT*"))
 """Whether the text of an error is made, which must not become an error itself."""
 _object_ids = itertools.count(1)
-_live = weakref.WeakSet()
+_live = {}  # a weak reference to each living designator, in the order of their making: a run must not depend on addresses
 _classes = {}  # type keyword -> class, or the symbol that is to name it
 _types = {}  # class -> the first keyword registered for it
 _quick = {}  # type keyword -> class, for the kinds whose instances are made by their constructor alone
@@ -87,7 +87,7 @@ class Designator:
         self._object_id = None
         self.callbacks = None
         self.resolver = None  # the kernel task that resolves it now
-        _live.add(self)
+        _live[ref(self, _live.pop)] = None
 
     @property
     def object_id(self):
@@ -261,12 +261,12 @@ def make_all_designator(class_, description=None):
 
 
 def get_all_designators():
-    """All living designators, in no useful order."""
-    return list_from(list(_live))
+    """All living designators, the oldest first."""
+    return list_from(living())
 
 
 def living():
-    return list(_live)
+    return [designator for reference in list(_live) if (designator := reference()) is not None]
 
 
 # ------------------------------------------------------------------------------------------------------- derived designators
