@@ -148,7 +148,8 @@ def test_the_newest_effective_designator():
 def test_the_living_designators_are_found_in_the_order_of_their_making(lisp):
     """A run must not depend on the addresses of its objects."""
     assert lisp("""(let* ((made (loop for n below 200 collect (make-designator :motion `((:ordered ,n)))))
-                               (numbers (lambda (found) (remove nil (mapcar (lambda (d) (ignore-errors (desig-prop-value d :ordered))) found)))))
+                               (number (lambda (d) (ignore-errors (desig-prop-value d :ordered))))
+                               (numbers (lambda (found) (remove nil (mapcar number found)))))
                           (setf made (remove-if (lambda (d) (evenp (desig-prop-value d :ordered))) made))
                           (let ((expected (loop for n from 1 below 200 by 2 collect n)))
                             (list (equal expected (remove-if #'evenp (funcall numbers (get-all-designators))))

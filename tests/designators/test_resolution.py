@@ -167,6 +167,20 @@ def test_the_groundings_of_a_designator_can_be_traced(driving):
 """
 
 
+def traced(designator):
+    output = StringOutputStream()
+    with binding(TRACE_OUTPUT, output, sym("*PACKAGE*"), HERE), tracing.tracing("DESIG::MOTION-GROUNDING"):
+        error_of(designator)
+    return output.take().splitlines()[-1]
+
+
+def test_the_trace_says_that_there_are_no_clauses_only_where_there_are_none():
+    flying = "  0: FAIL (MOTION-GROUNDING #<A MOTION (TYPE FLYING)> ?_)"
+    assert traced(make("motion", [":type", ":flying"])) == f"{flying}   there are no clauses for it"
+    with facts("driving", ["desig::motion-grounding"], *DRIVING):
+        assert traced(make("motion", [":type", ":flying"])) == flying
+
+
 def test_explain_without_a_goal_takes_the_designator_of_the_last_error(driving):
     designator = make("motion", [":type", ":flying"])
     hint_of(designator)

@@ -11,6 +11,7 @@ from ..lisp.condition_types import Warning_
 from ..lisp.conditions import handler_bind, muffle_warning
 from ..lisp.data import Cons, Symbol, lisp_list, python_list
 from ..prolog import explanations
+from ..prolog.database import extended
 from ..prolog.python_ground import reasoning
 from ..prolog.reasons import declare_harmless, explains, spelled_like
 from ..prolog.showing import show
@@ -77,9 +78,15 @@ declare_harmless(*(f"DESIG::{name}" for name in """DESIG-PROP LOC-DESIG? OBJ-DES
     NEWEST-EFFECTIVE-DESIGNATOR MOTION-GROUNDING ACTION-GROUNDING LOCATION-GROUNDING""".split()))
 
 
-@explains("DESIG::MOTION-GROUNDING", "DESIG::ACTION-GROUNDING", "DESIG::LOCATION-GROUNDING")
-def _no_clauses(m, desig, solution):
-    return "there are no clauses for it"
+def _no_clauses(functor):
+    def reason(m, desig, solution):
+        return None if extended(functor) else "there are no clauses for it"
+
+    return reason
+
+
+for _name in ("DESIG::MOTION-GROUNDING", "DESIG::ACTION-GROUNDING", "DESIG::LOCATION-GROUNDING"):
+    explains(_name)(_no_clauses(sym(_name)))
 
 
 def _no_designator(term):
