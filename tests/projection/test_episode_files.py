@@ -1,6 +1,7 @@
 """Saving and loading episodes: projection-and-events.md C1. A file of somebody else's is text, and runs no code."""
 
 import json
+import os
 
 import pytest
 
@@ -231,7 +232,7 @@ def test_random_damage_is_an_error_or_an_episode_and_never_more(saved, tmp_path)
     from cramhy_runtime.episodes.files import read_episode
     from cramhy_runtime.lisp.conditions import SimpleError
 
-    for _ in range(1500):
+    for _ in range(1500 if os.environ.get("CRAMHY_SOAK") else 300):
         place, length = chance.randrange(len(text)), chance.randrange(4)
         damaged = text[:place] + chance.choice(['"', "[", "{", "7", "null", ",", "}", "x", ""]) + text[place + length:]
         try:

@@ -9,7 +9,7 @@ from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.lisp.evaluation.macros import ensure_loaded
 from cramhy_runtime.lisp.objects.classes import find_class
-from cramhy_runtime.lisp.packages import find_package
+from cramhy_runtime.lisp.packages import find_package, register
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.lisp.types.types import is_known_type
 from cramhy_runtime.prolog.database import functors
@@ -142,3 +142,19 @@ def test_packages_of_users_may_use_them_together_with_the_plan_language():
     session = Session(time="virtual", turtlesim=False)
     session.evaluate_text("(defpackage together (:use :cpl :cram-projection :cram-execution-trace :cram-occasions-events :cram-executive))")
     assert find_package("TOGETHER").lookup("HOLDS")[0] is exported("coe:holds")
+
+
+def test_a_program_may_have_packages_that_are_called_like_the_nicknames(lisp):
+    # In the original these packages are there only if a program asks for them; PROJ is a likely name for a project.
+    package = find_package("CRAM-PROJECTION")
+    try:
+        assert lisp("(package-name (defpackage :proj (:use :cl) (:nicknames :coe)))") == '"PROJ"'
+        assert lisp("(list (package-name :proj) (package-name :coe) (package-name :occasions-events))") == (
+            '("PROJ" "PROJ" "CRAM-OCCASIONS-EVENTS")')
+        assert lisp("(fboundp 'cram-projection:clock-time)") != "NIL"
+        assert find_package("CRAM-PROJECTION") is package
+    finally:
+        lisp("(delete-package :proj)")
+        for full, nickname in (("CRAM-PROJECTION", "PROJ"), ("CRAM-OCCASIONS-EVENTS", "COE")):
+            find_package(full).nicknames.append(nickname)
+            register(find_package(full))

@@ -92,7 +92,8 @@ class AbstractTask:
         self.kernel_task = None
         self.constraints = None
         self.ended = None
-        self.started_at = self.ended_at = None  # s of the kernel's clock
+        self.started_at: float | None = None  # s of the kernel's clock
+        self.ended_at: float | None = None
         self.observers = None
         self.held = False  # a suspension is wanted
         self.unschedulable = 0

@@ -143,7 +143,7 @@ def checked(episode, or_nil=False):
     """``episode``, when it is one; else the type-error that says how to choose one."""
     if isinstance(episode, EpisodeKnowledge) or (or_nil and (episode is None or episode is UNBOUND)):
         return episode
-    return type_error(episode, sym("CET::EPISODE-KNOWLEDGE"),
+    return type_error(episode, sym("CRAM-EXECUTION-TRACE::EPISODE-KNOWLEDGE"),
                       "\n(Which episode is meant? Write (with-last-episode-knowledge ...) around the query, or give one as last argument.)")
 
 

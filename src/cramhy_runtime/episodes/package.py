@@ -25,7 +25,7 @@ EXPORTED = """throughout episode-knowledge live-episode-knowledge offline-episod
     defstore-episode-knowledge-backend defrestore-episode-knowledge-backend with-episode-knowledge with-last-episode-knowledge
     with-top-level-episode-knowledge with-offline-episode-knowledge traced-fluent timestamp name traced-value"""
 
-traced_value = generic("CET::TRACED-VALUE", "(traced-fluent)", documentation="The value that a record of the trace tells.")
+traced_value = generic("CRAM-EXECUTION-TRACE::TRACED-VALUE", "(traced-fluent)", documentation="The value that a record of the trace tells.")
 traced_value.method(TracedFluent)(lambda record: record.traced_value)
 
 
@@ -34,7 +34,8 @@ def define_faces():
     define_face("CRAM-EXECUTION-TRACE", ["CET"], use=["COMMON-LISP", "CRAM-UTILITIES", "CRAM-LANGUAGE-IMPLEMENTATION"],
                 functions=FUNCTIONS, export=EXPORTED, internal="episode-knowledge-end-time")
     files.save_episode_knowledge.__lisp_lambda_list__ = lisp_list(
-        sym("CET::DESTINATION"), sym("&OPTIONAL"), lisp_list(sym("CET::EPISODE"), knowledge.EPISODE), sym("&REST"), sym("CET::KEY-ARGS"))
+        CET.intern("DESTINATION"), sym("&OPTIONAL"), lisp_list(CET.intern("EPISODE"), knowledge.EPISODE), sym("&REST"),
+        CET.intern("KEY-ARGS"))
     macro_support.define()
 
 

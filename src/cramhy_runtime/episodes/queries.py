@@ -16,7 +16,7 @@ from .symbols import sym
 from .tracing import tracing
 from .trees import nodes_of, tree_or_error
 
-THROUGHOUT = sym("CET::THROUGHOUT")
+THROUGHOUT = sym("CRAM-EXECUTION-TRACE::THROUGHOUT")
 AFTER_THE_LAST = 0.1
 """Seconds from the last that is known of an episode to its max time."""
 

@@ -5,5 +5,6 @@ from ..lisp.packages import COMMON_LISP, ensure_package, sym
 from ..utilities.symbols import CUT
 
 CET = ensure_package("CRAM-EXECUTION-TRACE", "CET", use=[COMMON_LISP, CUT, CPL_IMPL])
+CET.lends_nicknames = True
 
 __all__ = ["CET", "sym"]

@@ -37,7 +37,7 @@ from .knowledge import episode_of
 
 MILLISECOND, STEP = 0.001, 0.0001
 
-durable_copy = generic("CET::DURABLE-COPY", "(obj)", documentation="""
+durable_copy = generic("CRAM-EXECUTION-TRACE::DURABLE-COPY", "(obj)", documentation="""
 A snapshot of ``obj`` for the trace: a list is copied one level deep, anything else is itself. Add methods for what is changed in place.""")
 
 

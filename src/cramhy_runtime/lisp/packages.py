@@ -13,9 +13,13 @@ from .late import late
 
 
 class Package:
-    """A package. ``internal`` and ``external`` map names to the symbols present in it; ``built_in``: it is part of cramhy."""
+    """A package. ``internal`` and ``external`` map names to the symbols present in it; ``built_in``: it is part of cramhy.
 
-    built_in = False
+    ``lends_nicknames``: programs may define packages that are called like its nicknames, which it loses then. So it is with packages
+    that the original has only in a program that asks for them, when they have short nicknames; their room uses the full name.
+    """
+
+    built_in = lends_nicknames = False
 
     def __init__(self, name, nicknames=(), use=(), documentation=None):
         self.name = name
@@ -152,6 +156,14 @@ def register(package):
     for name in package.names:
         _packages[name] = package
     return package
+
+
+def take_lent_nickname(name):
+    """If ``name`` is a nickname that a package lends, it is that package's no more."""
+    package = _packages.get(name)
+    if package is not None and package.lends_nicknames and package.name != name:
+        package.nicknames.remove(name)
+        del _packages[name]
 
 
 def ensure_package(name, *nicknames, use=()):

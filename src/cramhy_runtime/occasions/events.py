@@ -11,8 +11,8 @@ from ..lisp.objects.generic import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 
-on_event = Hook("COE::ON-EVENT", "(event)")
-clear_belief = Hook("COE::CLEAR-BELIEF", "()")
+on_event = Hook("CRAM-OCCASIONS-EVENTS::ON-EVENT", "(event)")
+clear_belief = Hook("CRAM-OCCASIONS-EVENTS::CLEAR-BELIEF", "()")
 
 
 class Event:
@@ -25,5 +25,6 @@ class Event:
         self.timestamp = current_timestamp() if timestamp is None else timestamp
 
 
-event_timestamp = generic("COE::EVENT-TIMESTAMP", "(event)", documentation="When ``event`` happened: seconds, a double-float.")
+event_timestamp = generic("CRAM-OCCASIONS-EVENTS::EVENT-TIMESTAMP", "(event)", documentation="""
+When ``event`` happened: seconds, a double-float.""")
 event_timestamp.method(Event)(lambda event: event.timestamp)

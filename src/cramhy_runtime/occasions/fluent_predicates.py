@@ -17,12 +17,12 @@ from .occasions import HOLDS
 from .symbols import sym
 from .time_terms import included
 
-GROUP = "COE::FLUENTS"
-_NAME, _VALUE, _TIME = sym("COE::?NAME"), sym("COE::?VALUE"), sym("COE::?TIME")
+GROUP = "CRAM-OCCASIONS-EVENTS::FLUENTS"
+_NAME, _VALUE, _TIME = sym("CRAM-OCCASIONS-EVENTS::?NAME"), sym("CRAM-OCCASIONS-EVENTS::?VALUE"), sym("CRAM-OCCASIONS-EVENTS::?TIME")
 
 define_fact_group(sym(GROUP), [HOLDS], [
-    lisp_list(lisp_list(HOLDS, lisp_list(sym("COE::FLUENT-VALUE"), _NAME, _VALUE), _TIME),
-              lisp_list(sym("COE::FLUENT-VALUE-AT"), _NAME, _VALUE, _TIME))])
+    lisp_list(lisp_list(HOLDS, lisp_list(sym("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE"), _NAME, _VALUE), _TIME),
+              lisp_list(sym("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE-AT"), _NAME, _VALUE, _TIME))])
 
 
 @predicate("CPL-IMPL::FLUENT", group=GROUP)
@@ -39,17 +39,17 @@ def fluent(m, name):
             yield
 
 
-@test("COE::FLUENT-VALUE", group=GROUP)
+@test("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE", group=GROUP)
 def fluent_value(m, thing, value):
     """``(fluent-value f v)``: the value that a fluent, an object, has now."""
     found = deref(thing)
     return isinstance(found, Fluent) and m.unify(value, found.peek())
 
 
-@predicate("COE::FLUENT-VALUE-AT", group=GROUP)
+@predicate("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE-AT", group=GROUP)
 def fluent_value_at(m, name, value, time):
     """The values of the traced fluent ``name`` whose durations include ``time``."""
-    episode = asked_episode("COE::FLUENT-VALUE")
+    episode = asked_episode("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE")
     if episode is None:
         return
     known = deref(name)

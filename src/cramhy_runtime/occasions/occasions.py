@@ -20,12 +20,12 @@ from ..utilities.small_functions import deprecate
 from .events import clear_belief
 from .symbols import sym
 
-HOLDS, OCCASION = sym("COE::HOLDS"), sym("COE::?OCCASION")
+HOLDS, OCCASION = sym("CRAM-OCCASIONS-EVENTS::HOLDS"), sym("CRAM-OCCASIONS-EVENTS::?OCCASION")
 
-define_fact_group(sym("COE::OCCASIONS"), [HOLDS], [
+define_fact_group(sym("CRAM-OCCASIONS-EVENTS::OCCASIONS"), [HOLDS], [
     lisp_list(lisp_list(HOLDS, OCCASION), lisp_list(sym("CRAM-PROLOG::CALL"), OCCASION))])
 
-holds = generic("COE::HOLDS", "(occasion &optional time-specification)", documentation="""
+holds = generic("CRAM-OCCASIONS-EVENTS::HOLDS", "(occasion &optional time-specification)", documentation="""
 The lazy list of the binding lists under which ``occasion`` holds: now, or at the time that is given as a term such as ``(at 5.0d0)``.""")
 
 

@@ -5,5 +5,6 @@ from ..episodes import symbols as _episodes  # noqa: F401
 from ..lisp.packages import ensure_package, sym
 
 COE = ensure_package("CRAM-OCCASIONS-EVENTS", "COE", "OCCASIONS-EVENTS")
+COE.lends_nicknames = True
 
 __all__ = ["COE", "sym"]

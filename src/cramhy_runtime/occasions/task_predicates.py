@@ -27,12 +27,12 @@ from .occasions import HOLDS
 from .symbols import sym
 from .time_terms import included
 
-GROUP = "COE::TASKS"
-_TASK, _STATUS, _TIME = sym("COE::?TASK"), sym("COE::?STATUS"), sym("COE::?TIME")
+GROUP = "CRAM-OCCASIONS-EVENTS::TASKS"
+_TASK, _STATUS, _TIME = sym("CRAM-OCCASIONS-EVENTS::?TASK"), sym("CRAM-OCCASIONS-EVENTS::?STATUS"), sym("CRAM-OCCASIONS-EVENTS::?TIME")
 
 define_fact_group(sym(GROUP), [HOLDS], [
-    lisp_list(lisp_list(HOLDS, lisp_list(sym("COE::TASK-STATUS"), _TASK, _STATUS), _TIME),
-              lisp_list(sym("COE::TASK-STATUS-AT"), _TASK, _STATUS, _TIME))])
+    lisp_list(lisp_list(HOLDS, lisp_list(sym("CRAM-OCCASIONS-EVENTS::TASK-STATUS"), _TASK, _STATUS), _TIME),
+              lisp_list(sym("CRAM-OCCASIONS-EVENTS::TASK-STATUS-AT"), _TASK, _STATUS, _TIME))])
 
 
 def _nodes(term, functor):
@@ -75,22 +75,25 @@ def task(m, node):
             yield
 
 
-@predicate("COE::GOAL-TASK", group=GROUP)
+@predicate("CRAM-OCCASIONS-EVENTS::GOAL-TASK", group=GROUP)
 def goal_task(m, node):
-    for found in _nodes(node, "COE::GOAL-TASK"):
+    for found in _nodes(node, "CRAM-OCCASIONS-EVENTS::GOAL-TASK"):
         if goal_task_tree_node_p(found) and m.unify(node, found):
             yield
 
 
 _of_each_node("CPL-IMPL::TASK-PATH", lambda node: node.path)
-_of_each_node("COE::TASK-RESULT", lambda node: NOTHING if _task_of(node) is None else one(_plain(task_tree_node_result(node))))
-_of_each_node("COE::TASK-STATUS-FLUENT", lambda node: NOTHING if _task_of(node) is None else _task_of(node).status_fluent.name)
-_of_each_node("COE::TASK-GOAL", lambda node: goal_task_tree_node_goal(node) if goal_task_tree_node_p(node) else NOTHING)
-_of_each_node("COE::TASK-OUTCOME", lambda node: _task_of(node).status if _task_of(node) and _task_of(node).status in DEAD else NOTHING)
-_of_each_node("COE::TASK-ERROR", lambda node: _error(_task_of(node)))
-_of_each_node("COE::TASK-CREATED-AT", lambda node: _first_time(node, (CREATED,), None))
-_of_each_node("COE::TASK-STARTED-AT", lambda node: _first_time(node, (RUNNING,), "started_at"))
-_of_each_node("COE::TASK-ENDED-AT", lambda node: _first_time(node, DEAD, "ended_at"))
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-RESULT",
+              lambda node: NOTHING if _task_of(node) is None else one(_plain(task_tree_node_result(node))))
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-STATUS-FLUENT",
+              lambda node: NOTHING if _task_of(node) is None else _task_of(node).status_fluent.name)
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-GOAL", lambda node: goal_task_tree_node_goal(node) if goal_task_tree_node_p(node) else NOTHING)
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-OUTCOME",
+              lambda node: _task_of(node).status if _task_of(node) and _task_of(node).status in DEAD else NOTHING)
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-ERROR", lambda node: _error(_task_of(node)))
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-CREATED-AT", lambda node: _first_time(node, (CREATED,), None))
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-STARTED-AT", lambda node: _first_time(node, (RUNNING,), "started_at"))
+_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-ENDED-AT", lambda node: _first_time(node, DEAD, "ended_at"))
 
 
 def _task_of(node):
@@ -125,10 +128,10 @@ def _first_time(node, statuses, attribute):
     return NOTHING if time is None else stamp(of, time)
 
 
-@predicate("COE::TASK-STATUS-AT", group=GROUP)
+@predicate("CRAM-OCCASIONS-EVENTS::TASK-STATUS-AT", group=GROUP)
 def task_status_at(m, node, status, time):
     """The statuses of tasks whose durations include ``time``: as traced, or from the start and end of the task."""
-    for found in _nodes(node, "COE::TASK-STATUS"):
+    for found in _nodes(node, "CRAM-OCCASIONS-EVENTS::TASK-STATUS"):
         for was, start, end in _traced(found) or _known_statuses(found):
             fit = included(m, start, end, time)
             if fit is not None and m.unify(node, found, status, was, *fit):
@@ -136,7 +139,7 @@ def task_status_at(m, node, status, time):
 
 
 def _known_statuses(node):
-    of, episode = _task_of(node), asked_episode("COE::TASK-STATUS")
+    of, episode = _task_of(node), asked_episode("CRAM-OCCASIONS-EVENTS::TASK-STATUS")
     if of is None or of.started_at is None:
         return
     start, last = stamp(of, of.started_at), episode_knowledge_max_time(episode)
@@ -146,7 +149,7 @@ def _known_statuses(node):
         yield of.status, end, last
 
 
-@test("COE::ERROR-TYPE", group=GROUP)
+@test("CRAM-OCCASIONS-EVENTS::ERROR-TYPE", group=GROUP)
 def error_type(m, condition, type_):
     """``(error-type e type)``: the type of a condition."""
     found = deref(condition)
@@ -206,7 +209,7 @@ def _beside(node, step):
     return [row[place]] if 0 <= place < len(row) else []
 
 
-_relation("COE::SUBTASK", _children, _parents)
-_relation("COE::SUBTASK+", lambda node: nodes_of(node)[1:], _above)
-_relation("COE::TASK-SIBLING", _siblings, _siblings)
-_relation("COE::TASK-NEXT-SIBLING", lambda node: _beside(node, 1), lambda node: _beside(node, -1))
+_relation("CRAM-OCCASIONS-EVENTS::SUBTASK", _children, _parents)
+_relation("CRAM-OCCASIONS-EVENTS::SUBTASK+", lambda node: nodes_of(node)[1:], _above)
+_relation("CRAM-OCCASIONS-EVENTS::TASK-SIBLING", _siblings, _siblings)
+_relation("CRAM-OCCASIONS-EVENTS::TASK-NEXT-SIBLING", lambda node: _beside(node, 1), lambda node: _beside(node, -1))

@@ -13,11 +13,11 @@ from ..prolog.natives import deref, test
 from ..prolog.terms import Var, resolve
 from .symbols import sym
 
-AT, THROUGHOUT, DURING = sym("COE::AT"), sym("CET::THROUGHOUT"), sym("COE::DURING")
+AT, THROUGHOUT, DURING = sym("CRAM-OCCASIONS-EVENTS::AT"), sym("CRAM-EXECUTION-TRACE::THROUGHOUT"), sym("CRAM-OCCASIONS-EVENTS::DURING")
 GROUP = "TIME"
 
 
-@test("COE::DURATION-INCLUDES", group=GROUP)
+@test("CRAM-OCCASIONS-EVENTS::DURATION-INCLUDES", group=GROUP)
 def duration_includes(m, duration, time):
     """``(duration-includes (throughout t1 t2) time)``: whether ``time`` is in that stretch; an unbound point of time becomes its start."""
     stretch = times_of(m, duration, THROUGHOUT, 2)

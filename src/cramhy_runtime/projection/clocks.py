@@ -25,10 +25,10 @@ from ..lisp.objects.generic import generic
 from . import symbols  # noqa: F401  the package must exist
 from .symbols import sym
 
-clock_time = generic("PROJ::CLOCK-TIME", "(clock)", documentation="The time that ``clock`` shows.")
-clock_wait = generic("PROJ::CLOCK-WAIT", "(clock duration)", documentation="""
+clock_time = generic("CRAM-PROJECTION::CLOCK-TIME", "(clock)", documentation="The time that ``clock`` shows.")
+clock_wait = generic("CRAM-PROJECTION::CLOCK-WAIT", "(clock duration)", documentation="""
 Let ``duration`` pass on ``clock``: it shows at least its old time plus the duration when this returns.""")
-partially_ordered_clock_enabled = generic("PROJ::PARTIALLY-ORDERED-CLOCK-ENABLED", "(clock)", documentation="""
+partially_ordered_clock_enabled = generic("CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK-ENABLED", "(clock)", documentation="""
 True if nobody disables ``clock`` at the moment.""")
 
 _DURATION = lisp_list(sym("REAL"), 0)
@@ -120,7 +120,7 @@ def _enabled(clock):
 def with_partially_ordered_clock_disabled(clock, body):
     """Values of ``body()``, during which the time of ``clock`` does not advance; it does when all such forms have been left."""
     if not isinstance(clock, PartiallyOrderedClock):
-        return type_error(clock, sym("PROJ::PARTIALLY-ORDERED-CLOCK"))
+        return type_error(clock, sym("CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK"))
     clock.disabled += 1
     try:
         return body()

@@ -29,7 +29,7 @@ from ..process_modules.running import with_process_modules_running
 from .own_modules import ProjectedRegistry
 from .symbols import PROJ, sym
 
-PROJECTION_ENVIRONMENT = inherit(sym("PROJ::*PROJECTION-ENVIRONMENT*"), None)
+PROJECTION_ENVIRONMENT = inherit(sym("CRAM-PROJECTION::*PROJECTION-ENVIRONMENT*"), None)
 """The name of the environment that the current task runs in; nil in the real world."""
 
 _environments = {}
@@ -119,7 +119,7 @@ def with_projection_environment(name, body):
     return structure_named(RESULT).cls(name=name, result=list_from(list(values)), environment=list_from(variables))
 
 
-RESULT = sym("PROJ::PROJECTION-ENVIRONMENT-RESULT")
+RESULT = sym("CRAM-PROJECTION::PROJECTION-ENVIRONMENT-RESULT")
 
 
 def define_result():

@@ -3,5 +3,6 @@
 from ..lisp.packages import COMMON_LISP, ensure_package, sym
 
 PROJ = ensure_package("CRAM-PROJECTION", "PROJ", use=[COMMON_LISP])
+PROJ.lends_nicknames = True
 
 __all__ = ["PROJ", "sym"]
