@@ -128,6 +128,18 @@ RUNNING = [
   at plan.lisp:3:12
       (t (list no-such-variable)))
                ^"""),
+    ("(defvar *seen* 1) ; a (comment\n(list \")\" #\\( (def-fact-group animals\n  (legs)))", """\
+  The variable ANIMALS is unbound.
+  at plan.lisp:2:31
+    (list ")" #\\( (def-fact-group animals
+                                  ^
+  Nobody has defined def-fact-group here, so (def-fact-group ...) is taken for a call, whose arguments are evaluated.
+  There is prolog:def-fact-group in another package."""),
+    ("(case 3\n  (3 no-such-variable))", """\
+  The variable NO-SUCH-VARIABLE is unbound.
+  at plan.lisp:2:6
+      (3 no-such-variable))
+         ^"""),
     ("(defun f ()\n  (prnit 1))\n(f)", """\
   The function COMMON-LISP-USER::PRNIT is undefined.
   at plan.lisp:2:3

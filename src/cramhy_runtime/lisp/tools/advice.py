@@ -20,6 +20,7 @@ from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
 from ..printer.printer import princ_to_string
 from ..streams.streams import ERROR_OUTPUT, output_stream
+from .operators_around import undefined_operator
 
 COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
 SHOWN_PLACES = 3
@@ -110,6 +111,11 @@ def _advice(condition):
     undefined = getattr(condition, "undefined", None)
     if isinstance(name, Symbol):
         if undefined == "variable" or isinstance(condition, types.UnboundVariable):
+            operator = undefined_operator(getattr(condition, "position", None))
+            if operator is not None:
+                called = operator.name.lower()
+                taken = f"Nobody has defined {called} here, so ({called} ...) is taken for a call, whose arguments are evaluated."
+                return "\n".join(filter(None, [taken, _function(operator)]))
             return _variable(name)
         if undefined == "function" or isinstance(condition, types.UndefinedFunction):
             return _function(name)
