@@ -121,6 +121,8 @@ def test_a_grounding_that_is_no_list_is_a_destructuring_error(text):
     assert text("(top-level (text-of (generic-perform (an action (type idling)))))") == (
         '"Error while parsing arguments to DESTRUCTURING-BIND: invalid number of elements in NOTHING-TO-DO to satisfy lambda list '
         '(CRAM-EXECUTIVE::COMMAND &REST CRAM-EXECUTIVE::ARGUMENTS): at least 1 expected, but got a non-list"')
+    assert "while #<A ACTION (TYPE IDLING)> was performed, whose grounding is NOTHING-TO-DO" in text.error(
+        "(top-level (perform (an action (type idling))))")
 
 
 def test_the_name_of_a_macro_counts_as_defined_and_fails_as_undefined_function(text):

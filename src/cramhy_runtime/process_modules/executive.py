@@ -120,8 +120,7 @@ def _perform_motion(designator):
 @generic_perform.method(ActionDesignator)
 def _perform_action(designator):
     solution = try_reference_designator(designator)
-    check_shape(solution, 1, None, "DESTRUCTURING-BIND", _COMMAND_SHAPE)
-    command = solution.car
+    command = _command(designator, solution)
     if not isinstance(command, Symbol) or (isinstance(command.function, UndefinedFunction) and command.macro is None):
         return fail("Action designator `~a' resolved to cram function `~a', but it isn't defined. Cannot perform action.",
                     designator, command)
@@ -138,7 +137,17 @@ def _perform_action(designator):
     return None
 
 
-@circumstance(lambda here: f"while {in_one_line(here['designator'])} was performed, whose grounding is {in_one_line(here['solution'])}")
+_told_with_the_grounding = circumstance(
+    lambda here: f"while {in_one_line(here['designator'])} was performed, whose grounding is {in_one_line(here['solution'])}")
+
+
+@_told_with_the_grounding
+def _command(designator, solution):
+    check_shape(solution, 1, None, "DESTRUCTURING-BIND", _COMMAND_SHAPE)
+    return solution.car
+
+
+@_told_with_the_grounding
 def _call_plan(designator, solution):
     return solution.car.function(*(solution.cdr or ()))
 

@@ -66,14 +66,15 @@ def warn_of_misspelled_functors(group, extendable):
     almost that of a predicate which is there to be extended, or the same in another package, is a slip as a rule, and nothing else
     would tell of it: the clauses would be there, and nobody would ask them.
     """
-    to_extend = [functor for functor, entry in database.functors.items() if entry.native_group is not None]
+    ours = {functor: entry for functor, entry in database.functors.items()
+            if entry.native_group is not None and functor.package is not COMMON_LISP and functor.package.built_in}
+    to_extend = [functor for functor, entry in ours.items() if not entry.native]  # nothing but what users give them
     for functor in dict.fromkeys([*extendable, *(f for f, entry in database.functors.items() if group in entry.groups())]):
         entry = database.functors.get(functor)
         if functor in control.CONTROL or (entry is not None and any(other is not group for other in entry.groups())):
             continue
-        twins = [other for other in to_extend if other.name == functor.name]
-        known = [other for other in to_extend if other.package not in (COMMON_LISP, None)]
-        meant = twins or (spelled_like(functor, known) if functor in extendable else [])
+        twins = [other for other in (ours if functor in extendable else to_extend) if other.name == functor.name]
+        meant = twins or (spelled_like(functor, ours) if functor in extendable else [])
         if not meant:
             continue
         clause = next((clause for clause in entry.clauses if clause.group is group), None) if entry is not None else None
