@@ -287,3 +287,9 @@ def test_a_handler_whose_result_is_no_list_of_binding_lists(fresh_kernel, result
     assert str(condition_of(problem.value)).replace("SLIPS::", "") == (
         f"The value\n  {datum}\nis not of type\n  LIST\n"
         "(A handler returns a list of binding lists, one for each solution: (list bdgs) for one that binds nothing, nil for none.)")
+
+
+def test_t_is_a_functor_like_any_other(warnings_given):
+    group("odd", "((t 1))", "((p 2))")
+    assert ask("(t ?x)") == "(((?X . 1)))"
+    assert ask("(pp ?x)") == "NIL" and len(warnings_given) == 1  # what else may be meant is looked for among all functors

@@ -20,8 +20,8 @@ from .terms import raw
 
 
 def defined_functors():
-    """The functors of which goals can have solutions."""
-    return [*control.CONTROL, *(functor for functor, entry in database.functors.items() if entry.defined)]
+    """The functors of which goals can have solutions, all but ``t``, which is a functor, too, but Python's ``True`` and like no other."""
+    return [*control.CONTROL, *(functor for functor, entry in database.functors.items() if entry.defined and functor is not True)]
 
 
 def advice(functor):
@@ -71,7 +71,7 @@ def warn_of_misspelled_functors(group, extendable):
     to_extend = [functor for functor, entry in ours.items() if not entry.native]  # nothing but what users give them
     for functor in dict.fromkeys([*extendable, *(f for f, entry in database.functors.items() if group in entry.groups())]):
         entry = database.functors.get(functor)
-        if functor in control.CONTROL or (entry is not None and any(other is not group for other in entry.groups())):
+        if functor is True or functor in control.CONTROL or (entry is not None and any(other is not group for other in entry.groups())):
             continue
         twins = [other for other in (ours if functor in extendable else to_extend) if other.name == functor.name]
         meant = twins or (spelled_like(functor, ours) if functor in extendable else [])

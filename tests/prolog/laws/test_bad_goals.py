@@ -49,7 +49,8 @@ def printed(lisp, tmp_path, monkeypatch):
 
 
 def test_a_goal_that_nobody_defined_in_a_rule(printed):
-    assert re.sub(r"\?V-\d+", "?V", printed("(ancestor ?x ann)")) == """\
+    told = re.sub(r"\?V-\d+", "?V", printed("(ancestor ?x ann)"))  # the number counts on, and with it the width of the line
+    assert re.sub(r"^WARNING:\s+", "WARNING: ", told) == """\
 WARNING: Trying to prove goal (ANCESTR ?V ANN) with undefined functor ANCESTR.
   at family.lisp:9:9
   It is a goal of clause 2 of family.
