@@ -18,10 +18,10 @@ FILES = {
 (defsystem "proj/tests" :depends-on ("proj" "lisp-unit" "fiveam")
   :components ((:module "tests" :components ((:file "unit") (:file "five")))))
 """,
-    "src/package.lisp": "(defpackage :proj (:use :cl) (:export #:my-max))",
-    "src/code.lisp": "(in-package :proj) (defun my-max (a b) (if (> a b) a a))",
-    "tests/unit.lisp": """(defpackage :proj-tests (:use :cl :proj :lisp-unit))
-(in-package :proj-tests)
+    "src/package.lisp": "(defpackage :sums (:use :cl) (:export #:my-max))",
+    "src/code.lisp": "(in-package :sums) (defun my-max (a b) (if (> a b) a a))",
+    "tests/unit.lisp": """(defpackage :sums-tests (:use :cl :sums :lisp-unit))
+(in-package :sums-tests)
 (define-test maximum
   (assert-equal 3 (my-max 3 2))
   (let ((x 2))
@@ -30,8 +30,8 @@ FILES = {
   (car 5))
 (define-test fine (assert-true t))
 """,
-    "tests/five.lisp": """(defpackage :proj-five (:use :cl :proj :5am))
-(in-package :proj-five)
+    "tests/five.lisp": """(defpackage :sums-five (:use :cl :sums :5am))
+(in-package :sums-five)
 (def-suite proj) (in-suite proj)
 (test five-good (is (= 3 (my-max 3 2))))
 (test five-bad
@@ -76,7 +76,7 @@ def test_pytest_reports_form_values_and_line(project):
     assert done.returncode == 1
     assert "5 failed, 4 passed, 1 skipped" in done.stdout, done.stdout + done.stderr
     for text in ("""\
-PROJ-TESTS::MAXIMUM ______________________________
+SUMS-TESTS::MAXIMUM ______________________________
  | Failed Form: (MY-MAX X 5)
  | Expected 5 but saw 2
  | X => 2

@@ -9,7 +9,7 @@ from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.lisp.evaluation.macros import ensure_loaded
 from cramhy_runtime.lisp.objects.classes import find_class
-from cramhy_runtime.lisp.packages import find_package, register
+from cramhy_runtime.lisp.packages import delete_package, find_package, register
 from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.lisp.types.types import is_known_type
 from cramhy_runtime.prolog.database import functors
@@ -154,7 +154,7 @@ def test_a_program_may_have_packages_that_are_called_like_the_nicknames(lisp):
         assert lisp("(fboundp 'cram-projection:clock-time)") != "NIL"
         assert find_package("CRAM-PROJECTION") is package
     finally:
-        lisp("(delete-package :proj)")
+        delete_package(find_package("PROJ"))
         for full, nickname in (("CRAM-PROJECTION", "PROJ"), ("CRAM-OCCASIONS-EVENTS", "COE")):
             find_package(full).nicknames.append(nickname)
             register(find_package(full))
