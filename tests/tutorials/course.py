@@ -19,7 +19,7 @@ from cramhy_runtime.turtlesim.node import running_simulator, start_with_first_no
 from cramhy_runtime.turtlesim.world import EXTENT
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
-SEEDS = range(200 if SOAK else 20)
+SEEDS = range(200 if SOAK else 10)
 BACKENDS = ("threads", "greenlet")
 TICK = 0.016
 STEP = 1.5 * TICK  # metres that a moving turtle goes in a tick: so much nearer than the threshold may it stop
