@@ -158,14 +158,6 @@ def register(package):
     return package
 
 
-def take_lent_nickname(name):
-    """If ``name`` is a nickname that a package lends, it is that package's no more."""
-    package = _packages.get(name)
-    if package is not None and package.lends_nicknames and package.name != name:
-        package.nicknames.remove(name)
-        del _packages[name]
-
-
 def ensure_package(name, *nicknames, use=()):
     """The package ``name``, registered with its nicknames if it does not exist yet: what a room's ``symbols.py`` calls."""
     return find_package(name) or register(Package(name, nicknames, use))
@@ -256,9 +248,13 @@ def find_package(designator):
 
 
 def defined_by_program(names):
-    """The packages ``names`` are about to be defined; no library is loaded for them any more."""
+    """Packages called ``names`` are about to be defined: no library is loaded for them any more, and a nickname that was lent is theirs."""
     for name in names:
         on_demand.pop(name, None)
+        package = _packages.get(name)
+        if package is not None and package.lends_nicknames and package.name != name:
+            package.nicknames.remove(name)
+            del _packages[name]
 
 
 def find_package_or_error(designator):

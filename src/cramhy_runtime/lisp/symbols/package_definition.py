@@ -22,7 +22,6 @@ from ..packages import (
     string_designator,
     sym,
     symbol_name,
-    take_lent_nickname,
 )
 from .package_errors import SimplePackageError, unlocked
 from .package_functions import add_nicknames, add_package_local_nickname, export, import_, shadow, shadowing_import, use_package
@@ -84,10 +83,7 @@ def _disjoint(*sets):
 def define_package(name, options):
     """``defpackage``: make or update the package; returns it."""
     definition = Definition(name, options)
-    names = [definition.name, *definition.names("NICKNAMES")]
-    defined_by_program(names)
-    for each in names:
-        take_lent_nickname(each)
+    defined_by_program([definition.name, *definition.names("NICKNAMES")])
     package = find_package(definition.name)
     if package is not None and package.name != definition.name:
         return error(SimplePackageError(package, "~A is a nickname for the package ~A", definition.name, package.name))
