@@ -1,15 +1,20 @@
-# make tutorial: both lectures, typed into the REPL. make test: everything. The first call of either makes the environment.
+# make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make test: everything.
+# The first call of any of them makes the environment.
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: tutorial test docs bench golden lint soak clean
+.PHONY: tutorial view test docs bench golden lint soak clean
 
 tutorial: $(READY)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
 
+view: $(READY)
+	@$(BIN)/roslisp_repl --view --load cram-my-beginner-tutorial --package tut --eval '(start-ros-node "turtle1")' \
+	    --eval '(init-ros-turtle "turtle1")' --eval '(perform-draw-house)'
+
 test: $(READY)
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py

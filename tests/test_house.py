@@ -14,8 +14,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "cramhy_runtime"
-FLOORS = [["kernel"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"], ["designators", "turtlesim", "episodes"],
-          ["occasions"], ["process_modules"], ["projection"], ["view", "repl", "testing"],
+FLOORS = [["kernel"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"],
+          ["designators", "turtlesim", "episodes", "actionlib", "rosbridge"],
+          ["occasions", "tf"], ["process_modules"], ["projection"], ["chronicle", "ros_tools"], ["view", "repl", "testing"],
           ["cli", "image", "pytest_plugin", "__init__"]]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 ALLOWED_UPWARDS = {("repl", "image"), ("testing", "image"), ("pytest_plugin", "image"), ("cli", "image")}
@@ -60,8 +61,8 @@ def test_a_room_imports_only_from_floors_below_its_own(path):
         assert FLOOR[other] < FLOOR[room] or (room, other) in ALLOWED_UPWARDS, f"{room} imports {other}"
 
 
-@pytest.mark.parametrize("room", ["kernel", "lisp", "utilities", "transforms", "cpl", "prolog", "designators", "turtlesim", "episodes",
-                                  "occasions", "process_modules", "projection", "repl", "testing"])
+@pytest.mark.parametrize("room", ["kernel", "lisp", "utilities", "transforms", "cpl", "prolog", "ros", "designators", "turtlesim",
+                                  "episodes", "occasions", "process_modules", "projection", "chronicle", "ros_tools", "repl", "testing"])
 def test_the_modules_of_a_room_import_each_other_without_circles(room):
     """Not even within functions: what a lower module needs of a higher one goes through one seam, as ``lisp/late.py``."""
     modules = {".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__"): path
@@ -88,11 +89,12 @@ def test_every_module_opens_with_a_paragraph(path):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each module gets a fresh interpreter by a fork")
-@pytest.mark.parametrize("room", sorted(path.parent.name for path in FILES if path.name == "__init__.py"
-                                        and "Where the parts are" in path.read_text()))
+@pytest.mark.parametrize("room", [path.parent for path in FILES
+                                  if path.name == "__init__.py" and "Where the parts are" in path.read_text()],
+                         ids=lambda room: str(room.relative_to(SOURCE)))
 def test_a_room_that_says_where_its_parts_are_names_them_all(room):
-    told = ast.get_docstring(ast.parse((SOURCE / room / "__init__.py").read_text())).partition("Where the parts are")[2]
-    parts = {path.stem for path in (SOURCE / room).glob("*.py")} | {path.parent.name for path in (SOURCE / room).glob("*/__init__.py")}
+    told = ast.get_docstring(ast.parse((room / "__init__.py").read_text())).partition("Where the parts are")[2]
+    parts = {path.stem for path in room.glob("*.py")} | {path.parent.name for path in room.glob("*/__init__.py")}
     assert parts - set(re.findall(r"`(\w+)`", told)) == {"__init__"}
 
 

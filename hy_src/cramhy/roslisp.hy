@@ -129,15 +129,28 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 ;; ------------------------------------------------------------------------------------- 10: loading message packages
 
+(defn ros-package [name]
+  "The ROS package of a name or a type: my_msgs of \"my_msgs/Thing\"."
+  (get (.split (.lower (if (isinstance name str) name (symbol-name name))) "/") 0))
+
 (defn load-system-form [name suffix]
-  (setv system (+ (.lower (if (isinstance name str) name (symbol-name name))) suffix))
-  `(asdf::load-system ~system))
+  `(asdf::load-system ~(+ (ros-package name) suffix)))
+
+(defn use-system-form [name suffix]
+  `(progn ~(load-system-form name suffix)
+          (use-package ~(.upper (+ (ros-package name) suffix)))))
 
 (defoperator load-message-types [#* names]
   `(progn ~@(lfor name names (load-system-form name "-msg"))))
 
 (defoperator load-service-types [#* names]
   `(progn ~@(lfor name names (load-system-form name "-srv"))))
+
+(defoperator load-msg [type]
+  (use-system-form type "-msg"))
+
+(defoperator load-srv [type]
+  (use-system-form type "-srv"))
 
 (defoperator load-if-necessary [#* arguments]
   `(error "load-if-necessary deprecated!"))

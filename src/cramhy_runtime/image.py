@@ -13,10 +13,12 @@ ROOMS = ("transforms", "prolog", "cpl", "ros", "turtlesim", "designators", "epis
 """The rooms with a ``package.py``, in the order of their floors."""
 
 SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
-cram-executive cram-projection cram-execution-trace cram-occasions-events cl-transforms roslisp roslisp-utilities std_msgs-msg
-std_srvs-srv geometry_msgs-msg rosgraph_msgs-msg turtlesim-msg turtlesim-srv actionlib_msgs-msg roscpp-msg roscpp-srv
-roscpp_tutorials-srv turtlesim asdf uiop trivial-features"""
-"""The systems of CRAM, ROS and ASDF that need no loading, because they are here."""
+cram-executive cram-projection cram-execution-trace cram-occasions-events cl-transforms
+cl-transforms-stamped cl-tf cl-tf2 actionlib actionlib-lisp roslisp roslisp-utilities turtlesim asdf uiop trivial-features"""
+"""The systems of CRAM, ROS and ASDF that need no loading, because they are here. Those of messages are made on demand (ros/messages.py)."""
+
+TF_PACKAGES = ("CL-TRANSFORMS-STAMPED", "TF-TYPES", "CL-TF", "TF", "CL-TF2")
+"""The packages of the room ``tf`` with their nicknames."""
 
 _booted = False
 
@@ -46,6 +48,8 @@ def boot():
     systems.provide_system(SYSTEMS)
     packages.on_demand.update(systems.LIBRARY_PACKAGES)
     packages.on_demand.update(dict.fromkeys(("CRAMHY-TESTING", "TESTING-USER"), define_testing))
+    packages.on_demand.update(dict.fromkeys(TF_PACKAGES, define_tf))
+    packages.on_demand.update(dict.fromkeys(("ACTIONLIB-LISP", "ACTIONLIB"), define_actionlib))
     ros_load.define_faces()
     asdf.define_faces()
     uiop.define_faces()
@@ -61,6 +65,20 @@ def define_testing():
     from cramhy_runtime.testing import package
 
     package.define_faces()
+
+
+def define_actionlib():
+    """Make the packages of the room ``actionlib``."""
+    from cramhy_runtime.actionlib import package
+
+    package.define_faces()
+
+
+def define_tf():
+    """Make the packages of the room ``tf``: the turtle's course has no frames."""
+    from cramhy_runtime.tf import package
+
+    package.define_faces(TF_PACKAGES)
 
 
 def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, turtlesim=True):

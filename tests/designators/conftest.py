@@ -4,14 +4,13 @@ import itertools
 import re
 
 import pytest
+from lisp_text import LispLine
 
 from cramhy_runtime import image, kernel
 from cramhy_runtime.designators import classes, language_support, locations
 from cramhy_runtime.lisp.data import all_values
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
-from cramhy_runtime.lisp.tools.advice import hint_for
 from cramhy_runtime.prolog.facts import fact_group_names, remove_fact_group
-from cramhy_runtime.repl.session import Session, condition_of
+from cramhy_runtime.repl.session import Session
 
 image.boot()
 
@@ -52,7 +51,7 @@ def no_rules_left():
     language_support._create_functions[:] = makers
 
 
-class Lisp:
+class Lisp(LispLine):
     """``lisp(text)``: the values of the last form of ``text``, printed in one line. Each test has a package of its own.
 
     ``(note x)`` adds to the list ``*notes*``; ``(answers goal)`` are all answers of Prolog; ``(solutions d)`` the references of
@@ -60,30 +59,17 @@ class Lisp:
     """
 
     def __init__(self, backend, time_limit=3600):
-        self.session = Session(time="virtual", turtlesim=False, backend=backend, time_limit=time_limit)
-        self.session.evaluate_text(PRELUDE.format(name=f"DESIGNATORS-{next(_numbers)}"))
-
-    def __call__(self, text):
-        return " ; ".join(" ".join(prin1_to_string(value).split()) for value in self.session.evaluate_text(text))
+        super().__init__(Session(time="virtual", turtlesim=False, backend=backend, time_limit=time_limit),
+                         PRELUDE.format(name=f"DESIGNATORS-{next(_numbers)}"))
 
     def text(self, form):
         """The string that ``form`` returns, as it is."""
         value, = all_values(self.session.evaluate_text(form)[-1])
         return value
 
-    def condition(self, text):
-        """The condition that ``text`` ends with."""
-        with pytest.raises(BaseException) as problem:
-            self.session.evaluate_text(text)
-        return condition_of(problem.value)
-
     def error(self, text):
-        """The text of that condition, without addresses."""
-        return re.sub(r"\{[0-9A-F]+\}", "{}", " ".join(princ_to_string(self.condition(text)).split()))
-
-    def hint(self, text):
-        """What the REPL adds to the text of that condition."""
-        return hint_for(self.condition(text))
+        """The text of the condition that ``text`` ends with, without addresses."""
+        return re.sub(r"\{[0-9A-F]+\}", "{}", super().error(text))
 
 
 @pytest.fixture

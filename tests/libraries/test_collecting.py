@@ -133,7 +133,7 @@ def test_which_files_look_like_tests(project, name, expected):
 @pytest.fixture
 def command(project, session, capsys, monkeypatch):
     """A function: exit status, standard output and standard error of ``cramhy test``."""
-    monkeypatch.setattr(systems, "extra_folders", [str(project)])
+    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(project)])
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
 
     def run(*arguments):

@@ -13,7 +13,7 @@ from cramhy_runtime.lisp.systems import systems
 @pytest.fixture
 def write(tmp_path, session, monkeypatch):
     """A function: write a file below the folder in which systems are found."""
-    monkeypatch.setattr(systems, "extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     session.package = "CL-USER"
     before = dict(systems.systems)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import weakref
+
 import pytest
 
 from cramhy_runtime.lisp import conditions
@@ -30,6 +32,15 @@ def test_an_exception_of_python_is_an_error(evaluate):
     assert evaluate("(handler-case (python-fails) (error (c) (princ-to-string c)))") == '''"There is no key 'missing'."'''
     assert evaluate("(ignore-errors (python-fails) 1)").startswith("NIL ; #<")
     assert evaluate("(let ((r nil)) (ignore-errors (unwind-protect (python-fails) (push 'cleanup r))) r)") == "(CLEANUP)"
+
+
+def test_who_called_a_local_function_wrongly_is_told_though_a_weak_proxy_has_outlived_its_object(evaluate):
+    thing = conditions.SimpleError("gone")
+    proxy = weakref.proxy(thing)
+    del thing
+    text = "(handler-case (labels ((f (x) x)) (funcall #'f 1 2)) (error (c) (princ-to-string c)))"
+    assert evaluate(text) == '"invalid number of arguments: 2"'
+    assert type(proxy) is weakref.ProxyType
 
 
 def test_a_handler_sees_an_exception_of_python_once_for_each_binding(evaluate):

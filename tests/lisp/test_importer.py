@@ -10,7 +10,7 @@ import pytest
 
 from cramhy_runtime.lisp.conditions import SimpleProgramError, TypeError_, from_python
 from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.systems import importer, systems
+from cramhy_runtime.lisp.systems import importer
 
 _numbers = itertools.count()
 
@@ -18,7 +18,7 @@ _numbers = itertools.count()
 @pytest.fixture
 def module(tmp_path, session, monkeypatch):
     """The module of a small Lisp package, imported by Python."""
-    monkeypatch.setattr(systems, "extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
     name = f"imported-{next(_numbers)}"
     home = tmp_path / name
     home.mkdir()
@@ -108,7 +108,7 @@ def test_an_unknown_module_stays_unknown(session):
 
 
 def test_a_system_without_a_package_of_its_name(tmp_path, session, monkeypatch):
-    monkeypatch.setattr(systems, "extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
     (tmp_path / "packageless-system.asd").write_text("(defsystem packageless-system)")
     importer.install()
     with pytest.raises(ImportError) as caught:

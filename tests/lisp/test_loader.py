@@ -72,7 +72,7 @@ def test_a_kept_file_is_used_only_after_the_same_files(folder, compiled):
     assert value("*ANSWER*") == "2"
 
 
-@pytest.mark.parametrize("rubbish", [b"", b"rubbish", b"\xe3\x01\x02", os.urandom(50)])
+@pytest.mark.parametrize("rubbish", [b"", b"rubbish", b"\xe3\x01\x02", os.urandom(50)], ids=["nothing", "text", "a beginning", "noise"])
 def test_a_damaged_kept_file_is_made_anew(folder, rubbish):
     path = write(folder, "(defparameter *loaded* 3)")
     loader.load_file(path)

@@ -11,14 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.lisp.systems import systems
 
 SYSTEMS = Path(__file__).parent / "systems"
 RECORDED = SYSTEMS / "kitchen-courier" / "transcript.txt"
 
 
 def test_the_transcript_is_that_of_sbcl(session, monkeypatch):
-    monkeypatch.setattr(systems, "extra_folders", [str(SYSTEMS / "kitchen-courier")])
+    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(SYSTEMS / "kitchen-courier")])
     session.package = "CL-USER"
     session.evaluate_text('(asdf:load-system "kitchen-courier/tests")')
     [text] = session.evaluate_text("""(with-output-to-string (*standard-output*)

@@ -45,7 +45,7 @@ class Workspace:
 
 @pytest.fixture
 def workspace(tmp_path, session, monkeypatch):
-    monkeypatch.setattr(systems, "extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     session.package = "CL-USER"
     return Workspace(tmp_path, session)

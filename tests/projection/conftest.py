@@ -5,17 +5,17 @@ import itertools
 import re
 
 import pytest
+from lisp_text import LispLine
 
 from cramhy_runtime import image
 from cramhy_runtime.cpl import past_plans, task_variables
 from cramhy_runtime.episodes import auto_tracing, backends, tracing
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER
 from cramhy_runtime.lisp.printer.print_controls import PACKAGE
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.projection import environments
 from cramhy_runtime.prolog import facts, rete
 from cramhy_runtime.repl.console import report
-from cramhy_runtime.repl.session import Session, condition_of
+from cramhy_runtime.repl.session import Session
 
 image.boot()
 
@@ -33,34 +33,26 @@ PRELUDE = """
 _numbers = itertools.count(1)
 
 
-class Lisp:
+class Lisp(LispLine):
     """``lisp(text)``: the values of the last form of ``text``, printed on one line. Each test has a package of its own.
 
     In the text, ``(note x)`` adds to a list and ``(notes)`` gives and empties it; ``(warnings-of form...)`` are texts of warnings.
     """
 
+    name = "<repl>"
+
     def __init__(self, backend):
-        self.session = Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600)
-        self.session.evaluate_text(PRELUDE.format(name=f"PROJECTION-TEST-{next(_numbers)}"))
+        super().__init__(Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600),
+                         PRELUDE.format(name=f"PROJECTION-TEST-{next(_numbers)}"))
 
     def __call__(self, text):
-        shown = " ; ".join(" ".join(prin1_to_string(value).split()) for value in self.session.evaluate_text(text))
-        return re.sub(r"\{[0-9A-F]+\}", "{}", shown)
-
-    def error(self, text):
-        """The text of the condition that ``text`` ends with, on one line."""
-        return " ".join(princ_to_string(self._condition(text)).split())
+        return re.sub(r"\{[0-9A-F]+\}", "{}", super().__call__(text))
 
     def shown_error(self, text):
         """What the user is shown of the condition that ``text`` ends with."""
         written = io.StringIO()
-        report(self._condition(text), file=written)
+        report(self.condition(text), file=written)
         return written.getvalue()
-
-    def _condition(self, text):
-        with pytest.raises(BaseException) as problem:
-            self.session.evaluate_text(text, "<repl>")
-        return condition_of(problem.value)
 
 
 @pytest.fixture(params=["threads", "greenlet"])

@@ -5,7 +5,7 @@ from tutorials.pages import OTHER_PAGES, Page, play
 
 from .test_inventory import EXPORTS
 
-PAGE = Page(*OTHER_PAGES)
+PAGE = Page(OTHER_PAGES[0])
 
 
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])

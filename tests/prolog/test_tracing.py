@@ -306,6 +306,12 @@ def test_what_is_traced_answers_as_ever(goal):
     assert "CALL" in written(output) and all_answers() == expected
 
 
+def test_forall_behind_a_cut_works_while_the_goals_that_it_is_made_of_are_traced():
+    group("forall", "((tidy ?x) (cut) (forall (parent ?x ?y) (parent ?x ?y)) (== ?x homer))")
+    with binding(TRACE_OUTPUT, StringOutput()), tracing.tracing(*map(read, ("cut", "not"))):
+        assert query.holds(read("(tidy homer)"))
+
+
 @given(programs, goals_over(["P1", "P2", "P3"]), st.lists(st.integers(0, 20), max_size=4))
 @settings(max_examples=100, deadline=None)
 def test_random_programs_answer_as_ever_when_they_are_traced(program, goal, cuts):

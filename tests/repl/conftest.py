@@ -75,3 +75,24 @@ def backend(request):
     if request.param == "greenlet":
         pytest.importorskip("greenlet")
     return request.param
+
+
+@pytest.fixture
+def private(tmp_path, monkeypatch):
+    """A runtime folder of this test's alone, for it and the programs that it starts."""
+    folder = tmp_path / "run"
+    folder.mkdir(mode=0o700)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(folder))
+    return folder
+
+
+@pytest.fixture
+def tool(tmp_path, private):
+    """``tool("rosservice call /clear")``: (output, complaints, status) of a ROS command."""
+    def tool(*words):
+        words = words[0].split() if len(words) == 1 else words
+        done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "ros", *words], cwd=tmp_path, text=True, capture_output=True,
+                              env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]}, timeout=60, stdin=subprocess.DEVNULL)
+        return done.stdout, done.stderr, done.returncode
+
+    return tool

@@ -158,7 +158,7 @@ ROSLISP::ROS-RPC-ERROR:
   at <repl 2>:1:1
     (roslisp:call-service "/nobody" 'std_srvs-srv:Empty)
     ^
-  No node offers this service. (ros:rosservice "list") shows those that there are; (wait-for-service name) waits for one.
+  No node offers this service. rosservice list, typed at the prompt, shows those that there are; (wait-for-service name) waits for one.
 """  # noqa: W291  (the text of the original ends in a blank)
 
     def test_garbage_is_not_published(self, tried):

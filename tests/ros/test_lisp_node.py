@@ -6,11 +6,12 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.condition_types import SimpleError
+from cramhy_runtime.lisp.condition_types import Error, SimpleError
 from cramhy_runtime.lisp.data import lisp_list
 from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.ros import graph, logging, messages, node, parameters, services, topics, utilities
+from cramhy_runtime.ros import graph, messages
 from cramhy_runtime.ros.names import Naming, qualify, read_private_value
+from cramhy_runtime.ros.roslisp import logging, node, parameters, services, topics, utilities
 
 START = """[(ROSLISP TOP) INFO] 1292688669.674: Node name is /turtle1
 [(ROSLISP TOP) INFO] 1292688669.674: Namespace is /
@@ -231,3 +232,19 @@ class TestUtilities:
         assert utilities.lispify_ros_underscore_name("foo_bar_Baz").name == "FOO-BAR-BAZ"
         assert utilities.rosify_underscores_lisp_name(sym("CL-USER::FOO-BAR")) == "foo_bar"
         assert utilities.rosify_underscores_lisp_name(sym("CL-USER::Foo-bar")) == "Foo-bar"
+
+
+@pytest.mark.parametrize("package", ["roslisp", "roslisp-utilities", "turtlesim", "ros-load-manifest"])
+def test_who_goes_into_a_package_of_ros_has_common_lisp_there(lisp, package):
+    """As in the original, whose packages use COMMON-LISP."""
+    assert lisp(f"(in-package :{package}) (let ((sum 0)) (dotimes (i 4 sum) (incf sum i)))") == "6"
+
+
+@pytest.mark.parametrize("form, hint", [
+    ('(call-service "/spawn" "turtlesim/Spawn" :why 1)', "turtlesim/Spawn has the fields x y theta name."),
+    ('(make-msg "geometry_msgs/Twist" :why 1)', "geometry_msgs/Twist has the fields linear angular."),
+])  # fmt: skip
+def test_a_form_with_a_wrong_field_says_which_there_are(node, form, hint):
+    with pytest.raises(Error) as caught:
+        node(f"(in-package :roslisp) {form}")
+    assert caught.value.hint == hint

@@ -283,6 +283,54 @@ class TestTheWire:
         received = wire.transmit(twist)
         assert received is not twist and received.linear is not twist.linear
 
+    def test_another_receiver_gets_another_object_with_the_same_values(self):
+        polygon = self.sent("geometry_msgs/PolygonStamped", polygon=messages.message_class("geometry_msgs/Polygon")(
+            points=[messages.message_class("geometry_msgs/Point32")(x=1)]))  # fmt: skip
+        numbers = self.sent("std_msgs/UInt8MultiArray", data=[1, 2])
+        for received, parts in ((polygon, ("header", "polygon")), (numbers, ("layout", "data"))):
+            other = wire.fresh(received)
+            assert other is not received and repr(other) == repr(received)
+            assert all(getattr(other, part) is not getattr(received, part) for part in parts)
+        assert wire.fresh(polygon).polygon.points[0] is not polygon.polygon.points[0]
+
     def test_a_part_of_another_kind_is_an_error(self, fails, printed):
         fails(self.sent, "geometry_msgs/Twist", linear=3)
         assert "Hmm... unexpectedly asked for serialization length of 3." in printed()
+
+
+@pytest.mark.parametrize("make, hint", [
+    (lambda: make_request("turtlesim/Spawn", [(("WHY",), 1)]), "turtlesim/Spawn has the fields x y theta name."),
+    (lambda: make_response("turtlesim/Spawn", sym(":WHY"), 1), "The response of turtlesim/Spawn has the field name."),
+    (lambda: make_response("std_srvs/Empty", sym(":WHY"), 1), "The response of std_srvs/Empty has no fields."),
+    (lambda: make_message("geometry_msgs/Twist", [(("WHY",), 1)]), "geometry_msgs/Twist has the fields linear angular."),
+    (lambda: make_message("geometry_msgs/Twist", [(("Q", "LINEAR"), 1)]), "geometry_msgs/Vector3 has the fields x y z."),
+    (lambda: make_message("turtle_actionlib/ShapeGoal", [(("EDGE",), 1)]), "turtle_actionlib/ShapeGoal has the fields edges radius."),
+])  # fmt: skip
+def test_a_wrong_field_has_those_of_the_type_for_a_hint(make, hint):
+    with pytest.raises(Error) as caught:
+        make()
+    assert caught.value.hint == hint
+
+
+@pytest.mark.parametrize("name, specs, hint", [
+    ("geometry_msgs/Twist", [(("X", "LINEAR"), "fast")], 'geometry_msgs/Twist: linear.x holds "fast", which is no float64.'),
+    ("geometry_msgs/Twist", [(("LINEAR",), 3)], "geometry_msgs/Twist: linear holds 3, which is no geometry_msgs/Vector3."),
+    ("turtlesim/Color", [(("G",), 1.5)], "turtlesim/Color: g holds 1.5, which is no uint8."),
+    ("std_msgs/UInt8MultiArray", [(("DATA",), 3)], "std_msgs/UInt8MultiArray: data holds 3, which is no uint8[]."),
+    ("std_msgs/UInt8MultiArray", [(("DATA",), [1, "a"])], 'std_msgs/UInt8MultiArray: data[1] holds "a", which is no uint8.'),
+    ("geometry_msgs/PoseWithCovariance", [(("COVARIANCE",), [None])],
+     "geometry_msgs/PoseWithCovariance: covariance[0] holds NIL, which is no float64."),
+    ("std_msgs/String", [(("DATA",), "\u03bb")], 'std_msgs/String: data holds "\u03bb", which has characters that are not Latin-1.'),
+    ("std_msgs/Int8", [(("DATA",), "x" * 100)], f'std_msgs/Int8: data holds "{"x" * 59}..., which is no int8.'),
+])  # fmt: skip
+def test_a_wrong_value_has_its_place_for_a_hint(name, specs, hint):
+    with pytest.raises(Error) as caught:
+        wire.transmit(make_message(name, specs))
+    assert caught.value.hint == hint
+
+
+def test_the_place_of_a_wrong_value_in_a_list_of_parts():
+    polygon = make_message("geometry_msgs/Polygon", [(("POINTS",), [make_message("geometry_msgs/Point32", [(("Y",), "no")])])])
+    with pytest.raises(Error) as caught:
+        wire.transmit(make_message("geometry_msgs/PolygonStamped", [(("POLYGON",), polygon)]))
+    assert caught.value.hint == 'geometry_msgs/PolygonStamped: polygon.points[0].y holds "no", which is no float32.'

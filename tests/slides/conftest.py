@@ -29,7 +29,7 @@ class Workspace:
     def shell(self, *words, where="."):
         """Run a ROS command as the shims do; its output."""
         done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "ros", *words], cwd=self.folder / where, text=True,
-                              capture_output=True, env=environment())
+                              capture_output=True, env=environment(), timeout=120)
         assert done.returncode == 0, done.stderr
         return done.stdout
 

@@ -13,7 +13,7 @@ from .conftest import ROOT, environment
 
 @pytest.fixture
 def private(tmp_path):
-    """An environment whose socket file is this test's alone."""
+    """An environment whose runtime folder is this test's alone."""
     folder = tmp_path / "run"
     folder.mkdir(mode=0o700)
     return {**environment(), "XDG_RUNTIME_DIR": str(folder)}
@@ -27,7 +27,7 @@ class OpenRepl:
     """A roslisp_repl in wall time whose input stays open."""
 
     def __init__(self, private):
-        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--commands"], env=private, cwd=ROOT,
+        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--serve"], env=private, cwd=ROOT,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def type(self, line, until):
@@ -36,7 +36,9 @@ class OpenRepl:
         self.process.stdin.flush()
         printed = ""
         while until not in printed:
-            printed += self.process.stdout.readline()
+            line = self.process.stdout.readline()
+            assert line, f"the REPL ended before it printed {until!r}; it had printed {printed!r}"
+            printed += line
         return printed
 
     def close(self):
@@ -62,7 +64,8 @@ def test_another_terminal_commands_the_turtle_of_the_repl(private):
 def test_without_a_repl_the_command_says_what_to_start(private):
     answer = command(private, "rosservice", "call", "/clear")
     assert answer.returncode == 1
-    assert "Start it with: roslisp_repl --commands" in answer.stderr
+    assert answer.stderr == ("ERROR: Unable to communicate with master!\nNo session serves here. Start one with: roslisp_repl --serve "
+                             "(after eval \"$(cramhy ros-shims)\" plain roslisp_repl does it).\n")
 
 
 def test_the_prompt_takes_ros_commands_too(workspace):

@@ -3,8 +3,6 @@
 import math
 
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
 
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.collections.vectors import LispArray
@@ -34,13 +32,6 @@ def error_text(thunk, kind=conditions.Error):
 
 def near(a, b):
     return all(math.isclose(x, y, abs_tol=1e-7) for x, y in zip(a, b))
-
-
-numbers = st.floats(-10, 10, allow_nan=False)
-points = st.builds(Vector3, numbers, numbers, numbers)
-quats = st.builds(Quaternion, numbers, numbers, numbers, numbers)
-units = quats.filter(lambda q: math.hypot(*q) > 0.1).map(quaternions.normalize)
-transforms = st.builds(Transform, points, units)
 
 
 @pytest.mark.parametrize("obj, text", [
@@ -214,37 +205,3 @@ def test_slerp():
     for ratio, angle in ((0, 0), (1, 2), (0.5, 1)):
         assert math.isclose(quaternions.get_yaw(quaternions.slerp(Quaternion(), target, ratio)), angle, abs_tol=1e-9)
     assert math.isclose(quaternions.q_norm(quaternions.slerp(Quaternion(), quaternions.yaw(D(4)), 0.5)), 1)
-
-
-@given(quats, quats, quats)
-def test_quaternion_algebra(a, b, c):
-    times = quaternions.q_star
-    assert near(times(times(a, b), c), times(a, times(b, c)))
-    assert near(times(a, quaternions.q_plus(b, c)), quaternions.q_plus(times(a, b), times(a, c)))
-    assume(min(math.hypot(*a), math.hypot(*b)) > 0.1)
-    assert near(times(a, quaternions.q_inv(a)), (0, 0, 0, 1))
-    assert near(quaternions.q_inv(times(a, b)), times(quaternions.q_inv(b), quaternions.q_inv(a)))
-
-
-@given(units, units, points)
-def test_rotation_respects_products(a, b, v):
-    assert near(quaternions.rotate(quaternions.normalize(quaternions.q_star(a, b)), v), quaternions.rotate(a, quaternions.rotate(b, v)))
-
-
-@given(transforms, transforms, points)
-def test_transforms_compose(a, b, p):
-    assert near(poses.transform_point(poses.transform_star(a, b), p), poses.transform_point(a, poses.transform_point(b, p)))
-    assert near(poses.transform_point(poses.transform_inv(a), poses.transform_point(a, p)), p)
-    difference = poses.transform_star(poses.transform_diff(a, b), b)
-    assert near(poses.transform_point(difference, p), poses.transform_point(a, p))
-
-
-@given(units)
-def test_matrices_are_rotations(q):
-    back = matrices.matrix_to_quaternion(matrices.quaternion_to_matrix(q))
-    assert near(back, q) or near(back, quaternions.q_minus(q))
-
-
-@given(st.floats(-3.14, 3.14))
-def test_yaw_there_and_back(angle):
-    assert math.isclose(quaternions.get_yaw(quaternions.yaw(D(angle))), angle, abs_tol=1e-9)

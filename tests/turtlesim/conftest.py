@@ -1,11 +1,14 @@
 """A kernel in virtual time, a simulator, and a probe that listens to it."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
+from lisp_text import LispText
 
 from cramhy_runtime import kernel
+from cramhy_runtime.lisp.printer.printer import prin1_to_string
 from cramhy_runtime.ros import graph, services
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 from cramhy_runtime.turtlesim.node import start_turtlesim
@@ -89,3 +92,93 @@ def facts():
         pytest.skip("the recorded facts are not here")
     runs = json.loads(path.read_text())
     return {name.split(".")[0]: samples for name, samples in runs.items()}
+
+
+class Typing(LispText):
+    """A student in front of a REPL, in virtual time: forms go in, printed values come out.
+
+    ``pose``, ``colour``, ``heard`` and so on are Lisp variables and functions of the package, made by `PRELUDE`.
+    """
+
+    name = "<repl>"
+
+    def __init__(self, session, backend):
+        super().__init__(session, PRELUDE)
+        self.backend = backend
+
+    def __call__(self, text):
+        """The values of the last form of ``text`` as the REPL prints them, on several lines if need be."""
+        return " ".join(map(prin1_to_string, self.values(text)))
+
+    def number(self, text):
+        """The value of the last form, a number, as Python's."""
+        return float(self.value(text))
+
+    def pose(self, turtle="turtle1"):
+        """(x, y, theta, linear velocity, angular velocity), as last heard on the topic."""
+        text = self(f'(pose-of "{turtle}")')
+        return tuple(float(word.replace("d", "e")) for word in text.strip("()").split())
+
+    def colour(self, turtle="turtle1"):
+        """(r, g, b), as last heard from the sensor."""
+        return tuple(int(word) for word in self(f'(colour-of "{turtle}")').strip("()").split())
+
+    def log(self):
+        """The simulator's log, without times, and take it away."""
+        from cramhy_runtime.turtlesim.node import running_simulator
+
+        lines = running_simulator().lines
+        texts = [re.sub(r"^\[ ?(\w+)\] \[[\d.]+\]: ", r"\1 ", line) for line in lines]
+        lines.clear()
+        return texts
+
+    @property
+    def paper(self):
+        from cramhy_runtime.turtlesim.node import running_simulator
+
+        return running_simulator().canvas
+
+
+PRELUDE = """
+(defpackage :turtle-laws (:use :cpl :roslisp)) (in-package :turtle-laws)
+(defvar *poses* (make-hash-table :test #'equal))
+(defvar *colours* (make-hash-table :test #'equal))
+(defun watch (turtle)
+  (subscribe (format nil "~a/pose" turtle) "turtlesim/Pose" (lambda (message) (push message (gethash turtle *poses*))))
+  (subscribe (format nil "~a/color_sensor" turtle) "turtlesim/Color" (lambda (message) (push message (gethash turtle *colours*)))))
+(defun pose-of (turtle)
+  (with-fields (x y theta linear_velocity angular_velocity) (first (gethash turtle *poses*))
+    (list x y theta linear_velocity angular_velocity)))
+(defun colour-of (turtle) (with-fields (r g b) (first (gethash turtle *colours*)) (list r g b)))
+(defvar *drivers* (make-hash-table :test #'equal))
+(defun drive (linear angular &key (turtle "turtle1") (sideways 0))
+  (publish (or (gethash turtle *drivers*)
+               (setf (gethash turtle *drivers*) (advertise (format nil "~a/cmd_vel" turtle) "geometry_msgs/Twist")))
+           (make-message "geometry_msgs/Twist" (:x :linear) linear (:y :linear) sideways (:z :angular) angular)))
+(start-ros-node "laws")
+(watch "turtle1")
+(sleep 0.1)
+"""
+
+
+@pytest.fixture(params=["threads", "greenlet"])
+def typed(request):
+    """A `Typing` in a package that uses CPL and ROSLISP, with a node and the turtle; ``/turtle1`` is watched."""
+    from cramhy_runtime.lisp.packages import COMMON_LISP_USER, delete_package, find_package
+    from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+    from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
+    from cramhy_runtime.repl.session import Session
+    from cramhy_runtime.ros.roslisp import utilities
+
+    if request.param == "greenlet":
+        pytest.importorskip("greenlet")
+    saved, STANDARD_OUTPUT.value = STANDARD_OUTPUT.value, StringOutputStream()
+    made = Session(time="virtual", backend=request.param)
+    typing = Typing(made, request.param)
+    yield typing
+    kernel.stop()
+    utilities.forget_registrations()
+    STANDARD_OUTPUT.value = saved
+    PACKAGE.value = COMMON_LISP_USER
+    if find_package("TURTLE-LAWS"):
+        delete_package(find_package("TURTLE-LAWS"))

@@ -15,10 +15,6 @@ def run(turtle, forward=0.0, turn=0.0, sideways=0.0, seconds=1.5):
     return [tuple(map(float, pose.values())) for pose in turtle.poses]
 
 
-def moving(poses):
-    return [pose for pose in poses if pose[3] or pose[4]]
-
-
 def test_a_fresh_turtle_stands_in_the_centre(turtle):
     assert turtle.pose == (5.544444561004639, 5.544444561004639, 0.0, 0.0, 0.0)
     assert turtle.colour == (69, 86, 255)
@@ -29,25 +25,6 @@ def test_poses_come_every_16_ms_also_at_rest(turtle):
     turtle.colours.clear()
     kernel.sleep(10.0)
     assert len(turtle.poses) == len(turtle.colours) == 625
-
-
-def test_one_command_counts_for_63_updates_each_as_recorded(turtle, facts):
-    poses = moving(run(turtle, forward=2, turn=1))
-    recorded = [tuple(sample[1:]) for sample in facts["2"] if sample[4]]
-    assert len(poses) == len(recorded) == 63
-    for ours, theirs in zip(poses, recorded):
-        assert ours == pytest.approx(theirs, abs=1e-6)
-
-
-@pytest.mark.parametrize("name, command", [("3", {"forward": 1}), ("3b", {"turn": 2}), ("3c", {"sideways": 1}), ("3d", {"forward": -1})])
-def test_the_other_recorded_runs_step_alike(turtle, facts, name, command):
-    # The recordings lost one or two ticks of wall time, so they are compared step by step from the start.
-    poses = moving(run(turtle, **command))
-    recorded = [tuple(sample[1:]) for sample in facts[name] if sample[4] or sample[5]]
-    assert len(poses) == 63
-    assert len(recorded) in (61, 62, 63)
-    for ours, theirs in zip(poses, recorded):
-        assert ours == pytest.approx(theirs, abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +50,7 @@ def test_the_first_update_is_one_tick_of_movement(turtle):
 
 
 def test_the_speed_is_never_negative(turtle):
-    assert {pose[3] for pose in moving(run(turtle, forward=-2))} == {2.0}
+    assert {pose[3] for pose in run(turtle, forward=-2) if pose[3]} == {2.0}
 
 
 def test_turning_on_the_spot_leaves_position_and_paper_untouched(turtle):

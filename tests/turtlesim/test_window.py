@@ -25,14 +25,14 @@ def test_a_key_that_does_not_exist_is_an_error_that_names_the_keys(turtle):
 
 def test_the_paper_can_be_saved(turtle, tmp_path):
     path = str(tmp_path / "turtle.png")
-    assert package.save_paper(path) == path
+    assert package.save_picture(path) == path
     assert (tmp_path / "turtle.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_without_a_simulator_the_error_says_how_to_get_one():
     kernel.start()
     with pytest.raises(SimpleError) as error:
-        package.save_paper("x.png")
+        package.save_picture("x.png")
     assert "start-ros-node" in error.value.report()
     package.start()
     assert package.running_simulator() is not None

@@ -14,9 +14,7 @@ from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.testing.leftovers import leftovers
 from cramhy_runtime.testing.plans import plan_of, with_lisp
-from cramhy_runtime.turtlesim.canvas import METRE
 from cramhy_runtime.turtlesim.node import running_simulator, start_with_first_node
-from cramhy_runtime.turtlesim.world import EXTENT
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 SEEDS = range(200 if SOAK else 10)
@@ -57,8 +55,7 @@ class Course:
         witness = graph.active().node("witness")
         witness.subscribe("/turtle1/pose", message_class_exact("turtlesim/Pose"), self._see)
         witness.subscribe("/turtle1/cmd_vel", message_class_exact("geometry_msgs/Twist"), self._hear)
-        paper = self.simulator.canvas
-        draw, paper.line = paper.line, lambda *line: (self._drawn(*line), draw(*line))
+        self.simulator.observe(self._drawn)
 
     def __call__(self, form):
         """The first value of a form, read in TUT."""
@@ -92,15 +89,15 @@ class Course:
     def _hear(self, twist):
         self.commands.append((kernel.now(), float(twist.linear.x), float(twist.angular.z)))
 
-    def _drawn(self, x1, y1, x0, y0, colour, width):
-        """A line of a tick, in pixels; a stroke is what one pen draws without being lifted: (colour, width, [point ...])."""
-        start, end = (x0 / METRE, EXTENT - y0 / METRE), (x1 / METRE, EXTENT - y1 / METRE)
-        if self.strokes:
-            last_colour, last_width, points = self.strokes[-1]
-            if (last_colour, last_width) == (colour, width) and math.dist(points[-1], start) < 1e-6:
-                points.append(end)
-                return
-        self.strokes.append((colour, width, [start, end]))
+    def _drawn(self, simulator, lines):
+        """The lines of a tick; a stroke is what one pen draws without being lifted: (colour, width, [point ...])."""
+        for x0, y0, x1, y1, colour, width in lines:
+            if self.strokes:
+                last_colour, last_width, points = self.strokes[-1]
+                if (last_colour, last_width) == (colour, width) and math.dist(points[-1], (x0, y0)) < 1e-6:
+                    points.append((x1, y1))
+                    continue
+            self.strokes.append((colour, width, [(x0, y0), (x1, y1)]))
 
     # ------------------------------------------------------------------------------------------------------ what must hold
 

@@ -17,7 +17,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "tutorials"
 PAGES = sorted(FOLDER.glob("[0-9]-*.md"))
-OTHER_PAGES = [ROOT / "docs" / "projection.md"]
+OTHER_PAGES = [ROOT / "docs" / "projection.md", ROOT / "docs" / "transforms.md", ROOT / "docs" / "turtle.md",
+               ROOT / "docs" / "actions.md"]
 BLOCK = re.compile(r"^```(?:lisp|sh)\n(.*?)^```$", re.M | re.S)
 PROMPT = re.compile(r"^([A-Z-]+> |\d+\] )", re.M)
 
@@ -103,8 +104,8 @@ def rewrite():
         page = Page(path)
         with tempfile.TemporaryDirectory() as folder:
             path.write_text(page.with_blocks(play(page, folder), [run(block, folder) for block in page.commands]))
-            for picture in Path(folder).glob("*.png"):
-                (FOLDER / picture.name).write_bytes(picture.read_bytes())
+            for picture in Path(folder).glob("*.[ps][nv]g"):
+                (path.parent / picture.name).write_bytes(picture.read_bytes())
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ Where the parts are (reference: cpl.md):
   ``ending``; pieces of a task: ``blocks``, ``errands``
 * forms with branches: ``branches``, ``operators``, ``orderings``, ``watching``, ``policies``
 * failures: ``failure_types``, ``failures``, ``retry_counters``, ``debugging``
-* plans as trees: ``tree``, ``tree_report``, ``tags``, ``plans``, ``past_plans``, ``walker``, ``plan_tree``
+* plans as trees: ``tree``, ``tree_report``, ``tags``, ``plans``, ``past_plans``, ``following``, ``walker``, ``plan_tree``
 * around them: ``hooks``, ``logging``, ``printing``
 * the Lisp faces: ``symbols``, ``package``, ``readers``, ``typed``, ``user_methods``, ``markers``, ``macro_shapes``, ``macro_support``
 * Python's face: ``python_forms``, ``plan_run``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``

@@ -3,31 +3,57 @@
 A plan that ends leaves its task here, with the tree of what ran, until the next one ends; that costs two assignments. When the plan
 of a name runs again, it clears and reuses its tree, so the earlier run keeps the codes that were in it.
 
-``observer`` is for whoever wants to follow plans while they run: an object with functions ``begins(task, name)``, ``made(task)`` for a task
-that is made long before it is executed, and ``ended(task, name)``. Nobody observes unless asked to.
+``observers`` are for whoever wants to follow plans while they run: objects with functions ``begins(task, name)``, ``beside(task)`` for
+the root of tasks that run beside a plan, ``made(task)`` for a task that is made long before it is executed, and ``ended(task, name)``.
+Nobody observes unless asked to. How each task of a plan is heard of stands in ``following.py``.
 """
 
 from __future__ import annotations
 
-observer = None
+observers = ()
 by_name = {}
 """Name → the task at the root of the plan of that name that ended last; ``None`` → of a plan without a name."""
 newest = None
+
+
+def observe(observer):
+    """Tell ``observer`` of all plans from now on."""
+    global observers
+    if observer not in observers:
+        observers = (*observers, observer)
+
+
+def observe_no_more(observer):
+    """Do not tell ``observer`` any more."""
+    global observers
+    observers = tuple(other for other in observers if other is not observer)
+
+
+def made(task):
+    """``task`` was made; it may be executed later."""
+    for observer in observers:
+        observer.made(task)
 
 
 def begins(task, name):
     """The plan at whose root ``task`` is is about to run."""
     if name is not None:
         task.plan_name = name
-    if observer is not None:
+    for observer in observers:
         observer.begins(task, name)
+
+
+def beside(task):
+    """The root ``task`` of a tree of tasks that is no plan, but runs beside one, is about to run."""
+    for observer in observers:
+        observer.beside(task)
 
 
 def ended(task, name):
     """The plan at whose root ``task`` is is over."""
     global newest
     newest = by_name[name] = task
-    if observer is not None:
+    for observer in observers:
         observer.ended(task, name)
 
 

@@ -27,6 +27,7 @@ from ..lisp.data import NO_VALUES, Symbol, truth
 from ..lisp.dynamic import special
 from ..lisp.evaluation.places_in_source import locate
 from ..lisp.objects.generic import generic
+from ..lisp.printer.printer import only_looked_at
 from .current import current_task
 from .ending import end_tasks, end_waits, limit_cleanup
 from .failure_types import PlanFailure, envelope, opened
@@ -109,8 +110,10 @@ class AbstractTask:
 
     @property
     def name(self) -> str:
-        """Its name, a string. Names given as functions are made when somebody asks."""
+        """Its name, a string. Names given as functions are made when somebody asks, unless that only looks on."""
         name = self._name
+        if name.__class__ is not str and only_looked_at():
+            return "UNKNOWN" if name is None else name() if callable(name) else name
         if name is None:
             name = self._name = f"UNKNOWN-{next(_count)}"
         elif callable(name):
@@ -151,9 +154,9 @@ class AbstractTask:
             self.tell_observers()
 
     def tell_observers(self):
-        """Have those who wait in `park_until` look again."""
-        for observer in self.observers or ():
-            observer.kernel.unpark(observer)
+        """Call the functions ``observers`` with the task: of those who wait in `park_until`, and of who follows the plan."""
+        for observe in self.observers or ():
+            observe(self)
 
     # ------------------------------------------------------------------------------------------------------------- life
 
@@ -381,14 +384,18 @@ class AbstractTask:
     def park_until(self, statuses, why, given_up=None):
         """Wait until its status is among ``statuses``, or until ``given_up()``. To be called in another task."""
         me = kernel.current()
+
+        def look_again(task):
+            me.kernel.unpark(me)
+
         while self.status not in statuses and (given_up is None or not given_up()):
             if self.observers is None:
                 self.observers = []
-            self.observers.append(me)
+            self.observers.append(look_again)
             try:
                 pause(why)
             finally:
-                self.observers.remove(me)
+                self.observers.remove(look_again)
 
     def __repr__(self):
         return f"<{type(self).__name__} {self.name} {self.status!r}>"

@@ -176,8 +176,8 @@ def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None
     if not parts_of(path):
         error("There is no task at the root of the task tree: a path has one part at least.")
     task = _task_of(_next_free(path.car, ensure_node(path.cdr, _tree_or_error())), name, sexp, function, parameters)
-    if past_plans.observer is not None:
-        past_plans.observer.made(task)
+    if past_plans.observers:
+        past_plans.made(task)
     return task
 
 

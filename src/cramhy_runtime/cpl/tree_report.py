@@ -210,14 +210,19 @@ def described(task, more=""):
     if isinstance(task, kernel.Task):
         text = "running, is being killed" if task.cancelled else "running"
         return f"thread {task.name}", RUNNING, ", ".join(text for text in (_waiting(task, text), more) if text)
-    name = _name(task)
-    if task.path is not None and (task.parent is None or task.parent.path is not task.path):
-        name += f" {_part(task)}"
+    name = title(task)
     rest = [_outcome(task) if task.dead else _doing(task), more]
     return name, task.status, ", ".join(text for text in rest if text)
 
 
-def _name(task):
+def title(task):
+    """Its name, and the part of the path that it adds to its parent's."""
+    if task.path is not None and (task.parent is None or task.parent.path is not task.path):
+        return f"{plain_name(task)} {_part(task)}"
+    return plain_name(task)
+
+
+def plain_name(task):
     """Its name; without the number if nobody has asked for it yet, so that a report changes no name."""
     name = task._name
     return name() if callable(name) else name or "UNKNOWN"
@@ -253,11 +258,15 @@ def _outcome(task):
         values = all_values(task.result)
         return f"succeeded{took}: {', '.join(map(short, values)) or 'no values'}"
     if task.status is FAILED:
-        condition = opened(task.result)
-        text = f"failed{took}: {_failure(condition)}"
-        position = describe(getattr(condition, "position", None))
-        return f"{text} at {position}" if position else text
+        text, position = failure(task)
+        return f"failed{took}: {text} at {position}" if position else f"failed{took}: {text}"
     return "evaporated" + (took or " before it began")
+
+
+def failure(task):
+    """(what a failed task ended with, as text; the place where that arose, or "")."""
+    condition = opened(task.result)
+    return _failure(condition), describe(getattr(condition, "position", None)) or ""
 
 
 def _failure(condition):
@@ -289,7 +298,7 @@ def _doing(task):
 
 def _waiting(kernel_task, text, stopped=False):
     """``text``, and what ``kernel_task`` waits for, and where."""
-    place = kernel.reports.where(kernel_task.kernel.frame_of(kernel_task))
+    place = place_of(kernel_task)
     at = f" at {place}" if place else ""
     if stopped:
         return f"{text}, stopped{at}"
@@ -297,10 +306,20 @@ def _waiting(kernel_task, text, stopped=False):
         return f"{text}, prints this"
     if kernel_task.ready:
         return f"{text}, can go on{at}"
+    return f"{text}, waits for {waits_for(kernel_task)}{at}"
+
+
+def place_of(kernel_task):
+    """Where in the user's text ``kernel_task`` is, ``file:line:column``; "" if it is nowhere there."""
+    return kernel.reports.where(kernel_task.kernel.frame_of(kernel_task))
+
+
+def waits_for(kernel_task):
+    """What ``kernel_task``, which is parked, waits for."""
     owner = getattr(kernel_task.why, "__self__", None)
     if isinstance(owner, Branches):
-        return f"{text}, waits for {'its child' if len(owner.tasks) == 1 else f'the branches of {owner.form.upper()}'}{at}"
-    return f"{text}, waits for {cut(kernel_task.describe_why()) or 'a wake-up'}{at}"
+        return "its child" if len(owner.tasks) == 1 else f"the branches of {owner.form.upper()}"
+    return cut(kernel_task.describe_why()) or "a wake-up"
 
 
 def short(value):

@@ -25,9 +25,10 @@ from cramhy_runtime import kernel
 
 from ..cpl import past_plans
 from ..cpl.current import current_task
+from ..cpl.following import follow
 from ..cpl.fluents import Fluent, Net, ValueFluent, tracing_options
 from ..cpl.hooks import on_make_fluent_hook
-from ..cpl.tasks import RECORD, AbstractTask
+from ..cpl.tasks import AbstractTask
 from ..lisp.conditions import Condition, warn
 from ..lisp.data import Cons, DoubleFloat, Symbol, list_from, one, truth
 from ..lisp.objects.generic import generic
@@ -127,15 +128,9 @@ class Recorder:
         self.episode.recorder = None
 
 
-class TracedTasks(list):
-    """What a plan's ``record`` is while it is traced: each task that starts makes its status fluent, which is traced then."""
-
-    def append(self, task):
-        task.status_fluent  # noqa: B018  asking makes it
-        if self.keep:
-            super().append(task)
-
-    keep = False
+def trace_status(task):
+    """Of each task of a traced plan that starts: it makes its status fluent, which is traced then."""
+    task.status_fluent  # noqa: B018  asking makes it
 
 
 class Tracing:
@@ -153,7 +148,7 @@ class Tracing:
         if self.on:
             return
         self.on = True
-        self.globals.update(_living_fluents())
+        self.globals.update(living_fluents())
         on_make_fluent_hook.add(lambda *arguments: self.new_fluent(arguments[0]), "EPISODE-KNOWLEDGE")
         self.observe()
         root = _root_of_current_plan()
@@ -169,7 +164,10 @@ class Tracing:
         self.observe()
 
     def observe(self):
-        past_plans.observer = self if self.on or self.saving is not None else None
+        if self.on or self.saving is not None:
+            past_plans.observe(self)
+        else:
+            past_plans.observe_no_more(self)
 
     # ----------------------------------------------------------------------------------------------------------- fluents
 
@@ -189,19 +187,19 @@ class Tracing:
     def begins(self, task, name):
         if not self.on:
             return
-        if not isinstance(task.record, TracedTasks):
-            tasks = TracedTasks(task.record or ())  # it may be in the middle of its run
-            tasks.keep = truth(RECORD.value)
-            task.record = tasks
+        follow(task, trace_status)
         episode = episode_of(task)
         recorder = episode.recorder = Recorder(episode)
         self.recorders.append(recorder)
         for fluent in sorted(self.globals, key=lambda fluent: fluent.number):
             recorder.watch(fluent)
 
+    def beside(self, task):
+        """Process modules are no plan; their fluents are traced as all others are."""
+
     def made(self, task):
         if self.on:
-            task.status_fluent  # noqa: B018  asking makes it
+            trace_status(task)
 
     def ended(self, task, name):
         recorder = task.__dict__["episode"].recorder if "episode" in task.__dict__ else None
@@ -226,7 +224,7 @@ def _root_of_current_plan():
     return task
 
 
-def _living_fluents():
+def living_fluents():
     """All fluents that are no nets and no task's status, in the order in which they were made."""
     fluents, statuses = [], set()
     for thing in gc.get_objects():

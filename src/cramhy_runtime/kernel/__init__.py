@@ -21,9 +21,9 @@ timer, so the virtual clock jumps there. The wall clock is the same with a pace-
 Where the parts are:
 
 * `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `outside`
-  other threads and calls that block
+  other threads and calls that block; `company` a thread of the system's that serves clients, and its share of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
-* `timers`, `clocks`, `budget` (what checkpoints count), `reports` (what people read), `errors`
+* `timers`, `clocks`, `pace` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`
 * `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
 * `active`     the functions below, which act on the kernel that is active
 
@@ -46,6 +46,7 @@ from .active import (
     interrupt_over,
     now,
     outside_source,
+    pace,
     park,
     post,
     refill,
@@ -57,6 +58,8 @@ from .active import (
     spawn,
     start,
     stop,
+    time_held,
+    time_wanted,
     unpark,
     yield_,
 )
@@ -72,6 +75,7 @@ from .timers import Timer
 __all__ = [
     "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer", "VirtualClock",
     "WaitEnded", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at", "call_every", "checkpoint", "cleanup",
-    "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "park", "post", "refill", "run_blocking", "settle",
-    "shield", "sleep", "slice_over", "spawn", "start", "stop", "unhandled", "unpark", "yield_",
+    "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "pace", "park", "post", "refill",
+    "run_blocking", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled",
+    "unpark", "yield_",
 ]  # fmt: skip

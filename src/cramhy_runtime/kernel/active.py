@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 from .budget import budget
 from .errors import KernelError
+from .pace import Pace, TimeWanted
 from .scheduler import Kernel
 
 _active = None
@@ -197,6 +198,26 @@ def outside_source():
 def run_blocking(fn: Callable[..., T], *args: Any) -> T:
     """See `Kernel.run_blocking`."""
     return (_active or _none()).run_blocking(fn, *args)
+
+
+def pace():
+    """The `Pace` of the active kernel's time; as fast as the machine computes until it is told otherwise."""
+    kernel = _active or _none()
+    if not kernel.clock.virtual:
+        return Pace(kernel)
+    if kernel.clock.pace is None:
+        kernel.clock.pace = Pace(kernel)
+    return kernel.clock.pace
+
+
+def time_wanted():
+    """See `TimeWanted`."""
+    return TimeWanted(_active or _none())
+
+
+def time_held():
+    """See `Kernel.time_held`."""
+    return (_active or _none()).time_held()
 
 
 def interrupt():

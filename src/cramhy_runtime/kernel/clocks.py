@@ -23,11 +23,12 @@ class Bell:
     the very thread that waits. A ring with nobody waiting is kept, so none is lost; two rings are one.
     """
 
-    __slots__ = ("_lock",)
+    __slots__ = ("_lock", "waited")
 
     def __init__(self):
         self._lock = _thread.allocate_lock()
         self._lock.acquire()
+        self.waited = 0.0  # seconds of the wall so far: while nobody in the kernel had anything to do
 
     def ring(self):
         try:
@@ -40,7 +41,9 @@ class Bell:
         if timeout is None or timeout > LONGEST_WAIT:
             timeout = LONGEST_WAIT
         if timeout > 0:
+            began = time.monotonic()
             self._lock.acquire(timeout=timeout)
+            self.waited += time.monotonic() - began
 
 
 class VirtualClock:
@@ -53,18 +56,22 @@ class VirtualClock:
 
     def __init__(self):
         self.time = 0.0
+        self.pace = None  # what holds it back for somebody who watches (see `pace`)
+        self.wanted = 0  # who wants time to pass even while the prompt waits
 
     def now(self):
         """Seconds since the start of the kernel."""
         return self.time
 
-    def go_to(self, when, bell):
-        """Let it be WHEN."""
+    def go_to(self, when, bell=None):
+        """Let it be WHEN; with a pace, after its wait, or earlier."""
+        if self.pace is not None:
+            when = self.pace.reach(self.time, when)
         self.time = max(self.time, when)
 
     def nudge(self, when):
         """Busy tasks used up their slices: time must not stand still for the others because of them."""
-        self.time = max(self.time, when)
+        self.go_to(when)
 
 
 class WallClock:
@@ -74,6 +81,7 @@ class WallClock:
     """
 
     virtual = False
+    wanted = 0
 
     def __init__(self, os_clock=time.monotonic, wait=Bell.wait):
         self._os_clock = os_clock

@@ -5,7 +5,8 @@ and whoever looks for the next task calls it, with the baton. A task that has to
 baton away, blocks, and comes back by a message.
 
 In virtual time the clock stands still as long as a task is outside, for nobody can say how much virtual time its call
-takes. A source that only may send messages (`outside_source`) does not hold the clock, but waiting for it is no deadlock.
+takes; likewise while somebody outside owes an answer (`time_held`). A source that only may send messages
+(`outside_source`) does not hold the clock, but waiting for it is no deadlock.
 """
 
 from _thread import get_ident
@@ -36,8 +37,25 @@ class Outside:
         """
         return OutsideSource(self)
 
+    @property
+    def idle_seconds(self):
+        """Seconds of the wall for which there was nothing to do, so far. May be asked from any thread."""
+        return self._bell.waited
+
+    @property
+    def hears_outside(self):
+        """Whether messages may come from outside, so that whoever waits for something else must not keep the baton."""
+        return self._outside > 0
+
     def count_outside(self, difference):
         self._outside += difference
+
+    def time_held(self):
+        """A context manager: while it is open, virtual time stands still, as if a task were outside. With the baton only."""
+        return TimeHeld(self)
+
+    def count_blocking(self, difference):
+        self._blocking += difference
 
     # ------------------------------------------------------------------ calls that block
 
@@ -104,4 +122,21 @@ class OutsideSource:
 
     def __exit__(self, *_):
         self._kernel.post(lambda: self._kernel.count_outside(-1))
+        return False
+
+
+class TimeHeld:
+    """See `Kernel.time_held`."""
+
+    __slots__ = ("_kernel",)
+
+    def __init__(self, kernel):
+        self._kernel = kernel
+
+    def __enter__(self):
+        self._kernel.count_blocking(1)
+        return self
+
+    def __exit__(self, *_):
+        self._kernel.count_blocking(-1)
         return False

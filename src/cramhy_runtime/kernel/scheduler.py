@@ -27,7 +27,7 @@ from .clocks import Bell, make_clock
 from .endings import PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, TimeLimit
 from .outside import Outside
-from .tasks import DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
+from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
 from .timers import CALLBACK, TimerHeap
 
 ROUND = 0.005  # s of virtual time that pass when every runnable task used up its slice
@@ -49,6 +49,7 @@ class Kernel(Endings, Outside):
         self.backend = make_backend(backend)
         self.time_limit = time_limit
         self._limit = time_limit
+        self.seed = seed
         self._choose = None if seed is None else seed if callable(seed) else lots(seed)
         self._queue = deque()
         self._timers = TimerHeap()
@@ -60,6 +61,7 @@ class Kernel(Endings, Outside):
         self._steps = 0  # hand-overs at this instant
         self._urgent = None  # the main task, when an alarm wakes it ahead of the queue
         self._settlers = []
+        self._watchers = ()  # functions that are called whenever an instant is over
         self._unclaimed = []  # tasks dead of an exception that nobody has looked at yet
         self._blocking = 0
         self._outside = 0
@@ -394,11 +396,16 @@ class Kernel(Endings, Outside):
     def _time_passes(self):
         """Busy tasks have used up this instant, and the others' timers shall not wait for ever."""
         self._streak = self._steps = 0
+        if self._watchers:
+            self._tell_watchers()
         if not self._blocking:
             now, when = self.clock.now(), self._timers.next_time()
             soon = now + ROUND
-            # Not past the next timer: it fires at its time, to the last digit.
-            self.clock.nudge(soon if when is None or when > soon else when)
+            try:
+                # Not past the next timer: it fires at its time, to the last digit.
+                self.clock.nudge(soon if when is None or when > soon else when)
+            except KeyboardInterrupt:  # as in `_wait`: with a pace, a nudge waits, too
+                self.interrupt()
         if self._limit is not None and self.clock.now() > self._limit:
             self._reach_limit()
 
@@ -407,12 +414,14 @@ class Kernel(Endings, Outside):
         if self._unclaimed:
             self._report_unclaimed()
             return
+        if self._watchers and self._tell_watchers():
+            return
         self._steps = 0
         when, limit, clock = self._timers.next_time(), self._limit, self.clock
         blocking = self._blocking and self._patience
         if when is None and not blocking and not self._outside:
             self._alarm(Deadlock("" if self._stopping else reports.deadlock_text(self)), True)
-        elif clock.virtual and (blocking or when is None):
+        elif clock.virtual and (when is None or blocking and not self._time_is_wanted()):
             self._wait(None)
             if self._stopping and not self._inbox:
                 self._patience -= 1
@@ -431,6 +440,36 @@ class Kernel(Endings, Outside):
                 self.clock.go_to(when, self._bell)
         except KeyboardInterrupt:  # without a handler of ours Python raises it right here, in the main thread
             self.interrupt()
+
+    def _time_is_wanted(self):
+        """Whether time passes though a task is outside: only the main task is, at the prompt, and somebody else wants it to pass."""
+        if self._blocking != 1 or self.main.state is not BLOCKED:
+            return False
+        clock = self.clock
+        return clock.wanted > 0 if clock.pace is None else clock.pace.time_is_wanted
+
+    def wait_for_message(self, seconds):
+        """Wait until something comes into the inbox, SECONDS at most; may come back early. Holds up all tasks."""
+        if not self._inbox:
+            self._bell.wait(seconds)
+
+    def watch_instants(self, fn):
+        """Call FN in the scheduler whenever nothing is left to do at this instant, before time goes on. It must not park.
+
+        Then every task is where it will be until something new happens: the moment to look at them. While nothing happens, as at
+        the prompt, it is called now and then.
+        """
+        self._watchers = (*self._watchers, fn)
+
+    def unwatch_instants(self, fn):
+        """Call FN no more."""
+        self._watchers = tuple(watcher for watcher in self._watchers if watcher != fn)
+
+    def _tell_watchers(self):
+        """Returns whether there is something to do now."""
+        for watcher in self._watchers:
+            self._call(watcher)
+        return bool(self._queue or self._inbox)
 
     def _reach_limit(self):
         self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)

@@ -501,9 +501,10 @@ def _called(name, missing):
                     function = getattr(symbol, "function", None)
                     if getattr(function, "__qualname__", None) == name:
                         return shown(symbol), getattr(function, "python", function)
-    # a local function or a lambda expression: only the collector knows it
+    # A local function or a lambda expression: only the collector knows it. It knows weak proxies, too, and isinstance would ask
+    # what they stand for, which may have gone.
     found = next((each for each in gc.get_objects()
-                  if isinstance(each, FunctionType) and each.__qualname__ == name and _takes(each.__code__, missing)), None)
+                  if type(each) is FunctionType and each.__qualname__ == name and _takes(each.__code__, missing)), None)
     short = name.rpartition(".")[2]
     if short.startswith(("<lambda>", "Lfunction")):
         return "The function", found

@@ -20,19 +20,23 @@ from .late import late
 from .packages import Package, find_package, find_package_or_error, intern, keyword, register
 
 
+_WORDS = (("->", "_to_"), ("/=", "_ne"), ("<=", "_le"), (">=", "_ge"), ("=", "_eq"), ("<", "_lt"), (">", "_gt"), ("+", "_plus"),
+          ("*", "_star"), ("/", "_slash"), ("?", "_p"), ("!", "_bang"), ("%", "_"), (".", "_"), ("&", "_and_"), ("-", "_"))
+
+
 def python_name(name):
     """The Python identifier for a Lisp name: ``make-fluent`` → ``make_fluent``, ``string=`` → ``string_eq``."""
     name = name.lower()
     if len(name) > 2 and name[0] == name[-1] == "*":
         name = name[1:-1]  # *package* is the variable `package` for Python
-    for character, word in (("->", "_to_"), ("/=", "_ne"), ("<=", "_le"), (">=", "_ge"), ("=", "_eq"), ("<", "_lt"), (">", "_gt"),
-                            ("+", "_plus"), ("*", "_star"), ("/", "_slash"), ("?", "_p"), ("!", "_bang"), ("%", "_"),
-                            ("-", "_"), (".", "_"), ("&", "_and_")):
-        name = name.replace(character, word)
-    name = "".join(character if f"_{character}".isidentifier() else "_" for character in name)
-    if python_keywords.iskeyword(name):
-        name += "_"
-    return name if name.isidentifier() else f"_{name}"
+    plain = name.replace("-", "_")
+    if "->" in name or not plain.isidentifier():
+        for character, word in _WORDS:
+            name = name.replace(character, word)
+        plain = "".join(character if f"_{character}".isidentifier() else "_" for character in name)
+    if python_keywords.iskeyword(plain):
+        plain += "_"
+    return plain if plain.isidentifier() else f"_{plain}"
 
 
 def lispify(function):

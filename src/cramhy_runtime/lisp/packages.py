@@ -145,6 +145,9 @@ _packages: dict[str, Package] = {}
 on_demand: dict = {}
 """Packages of libraries that come with cramhy → the system that defines each, or a function that makes it; either is called upon when
 somebody asks for the package."""
+finders: list = []
+"""Who is asked for a package that nobody has registered: pairs of a function of its name, which registers it and returns it, or returns
+``None``, and a function that gives the names of all that it could make, for "did you mean"."""
 CURRENT = Symbol("*PACKAGE*")  # that of COMMON-LISP takes its place below
 
 
@@ -244,6 +247,15 @@ def find_package(designator):
             maker()
         else:
             late.load_system(maker)
+    found = _packages.get(name)
+    if found is None:
+        for find, _ in finders:
+            found = found or find(name)
+    return found
+
+
+def registered(name):
+    """The package called ``name`` if there is one by now; nothing is made on demand."""
     return _packages.get(name)
 
 
@@ -275,7 +287,8 @@ def near_names(name, candidates, most=3):
 
 
 def package_names():
-    return list(_packages)
+    """The names and nicknames of all packages that there are or that naming them would make."""
+    return list(dict.fromkeys([*_packages, *on_demand, *(name for _, names in finders for name in names())]))
 
 
 def intern(name, package="COMMON-LISP"):

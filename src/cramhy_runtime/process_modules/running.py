@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 from cramhy_runtime import kernel
 
+from ..cpl import past_plans
 from ..cpl.branches import Branches, nobody_lives
 from ..cpl.ending import end_tasks
 from ..cpl.failure_types import opened
@@ -71,6 +72,7 @@ class _Group:
         self.root.ended = lambda task: self._wake()
 
     def start(self):
+        past_plans.beside(self.root)
         self.root.execute()
 
     def _run(self):

@@ -375,7 +375,11 @@ class Bodies(Matching):
         condition, action = arguments
         unmet = [AND, list_from([CALL, condition]), list_from([NOT, action])]
         goal = list_from([NOT, list_from(unmet)])
-        self.body([goal, *goals], names, context)
+        if known_goal(goal, CONSTRUCTS) is None:  # NOT is traced: a call, which wants a barrier that this clause may not have
+            k = self._rest(goals, names, context)
+            self.body([goal], names, Context(k, self._height()))
+        else:
+            self.body([goal, *goals], names, context)
 
     def _once(self, arguments, goals, names, context):
         self._shared(arguments, goals, names)

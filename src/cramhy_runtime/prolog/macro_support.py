@@ -30,7 +30,7 @@ def collect_fact(collector, fact):
 
 def finish_fact_group(name, extendable, collector):
     defined = facts.define_fact_group(name, extendable, collector.facts, collector.origins)
-    warn_of_misspelled_functors(name, python_list(extendable))
+    warn_of_misspelled_functors(name, python_list(extendable), [clauses.car for clauses in defined or ()])
     return defined
 
 

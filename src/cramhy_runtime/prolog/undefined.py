@@ -59,25 +59,28 @@ def warn_undefined(m, goal):
     warn(warning)
 
 
-def warn_of_misspelled_functors(group, extendable):
-    """Style-warn of functors that the new fact group ``group`` lists as extendable, or has clauses of, where others may be meant.
+def warn_of_misspelled_functors(group, extendable, defined):
+    """Style-warn of functors that the new fact group ``group`` lists as ``extendable``, or has clauses of (``defined``), where others
+    may be meant.
 
     A list may name functors that nobody has defined yet; so may a program say before what it will define. But a name that is
     almost that of a predicate which is there to be extended, or the same in another package, is a slip as a rule, and nothing else
     would tell of it: the clauses would be there, and nobody would ask them.
     """
-    ours = {functor: entry for functor, entry in database.functors.items()
+    known = database.functors
+    alone = [functor for functor in dict.fromkeys([*extendable, *defined]) if functor is not True and functor not in control.CONTROL
+             and not (functor in known and any(other is not group for other in known[functor].groups()))]
+    if not alone:
+        return
+    ours = {functor: entry for functor, entry in known.items()
             if entry.native_group is not None and functor.package is not COMMON_LISP and functor.package.built_in}
     to_extend = [functor for functor, entry in ours.items() if not entry.native]  # nothing but what users give them
-    for functor in dict.fromkeys([*extendable, *(f for f, entry in database.functors.items() if group in entry.groups())]):
-        entry = database.functors.get(functor)
-        if functor is True or functor in control.CONTROL or (entry is not None and any(other is not group for other in entry.groups())):
-            continue
+    for functor in alone:
         twins = [other for other in (ours if functor in extendable else to_extend) if other.name == functor.name]
         meant = twins or (spelled_like(functor, ours) if functor in extendable else [])
         if not meant:
             continue
-        clause = next((clause for clause in entry.clauses if clause.group is group), None) if entry is not None else None
+        clause = next(iter(known[functor].clauses), None) if functor in known else None
         warning = SimpleStyleWarning("Fact group ~a ~a ~s, which no other group defines.", group,
                                      "extends" if functor in extendable else "has clauses of", functor)
         place = describe(clause.position) if clause is not None else None

@@ -88,9 +88,8 @@ class Input:
 class Console:
     """The read-eval-print loop. ``make_session`` is called once the prompt is needed."""
 
-    def __init__(self, make_session, lines=None, commands=False):
+    def __init__(self, make_session, lines=None):
         self.make_session = make_session
-        self.commands = commands
         self.input = lines or Input()
         self.session = None
         self.level = 0
@@ -105,8 +104,6 @@ class Console:
         handle_interrupts()
         conditions.install_debugger(self.debug)
         streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT  # warnings belong to the transcript
-        if self.commands and not commands.listen():
-            print("; Another REPL serves rosservice and its kin already; this one does not.")
         try:
             while True:
                 text = self.read_text(self.session.prompt())
@@ -147,10 +144,11 @@ class Console:
                 return text
 
     def wait_for_line(self, prompt):
-        # In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait.
+        # In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait. In both cases
+        # others who are connected (a server listens) are heard and answered meanwhile.
         if not at_the_prompt():
             return self.wait_for_line_in_a_task(prompt)
-        if self.session.virtual:
+        if self.session.virtual and not kernel.active().hears_outside:
             with session.keyboard_interrupts():
                 kernel.settle()  # Ctrl-C that came too late for the last form is for the prompt
                 return self.input.line(prompt)
@@ -170,8 +168,7 @@ class Console:
         """Evaluate and print every form of ``text``; a line that is a ROS command is carried out."""
         try:
             if commands.is_command(text):
-                output, _ = commands.run_line(text)
-                return streams.CONSOLE_OUTPUT.write(output)
+                return commands.run_line(text, streams.CONSOLE_OUTPUT.write)
             for form, reader in self.session.forms(text):
                 self.show(self.session.evaluate(form, reader))
         except Interruption:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import sys
 
+from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.evaluation import compilation_unit
 from cramhy_runtime.lisp.streams import streams
@@ -31,11 +32,18 @@ def serve(session, lines=None, out=None):
     nothing = streams.StringInputStream("")
     streams.STANDARD_INPUT.value = nothing
     streams.TERMINAL_IO.value = streams.TwoWayStream(nothing, streams.CONSOLE_ERROR)
-    for line in lines:
+    lines = iter(lines)
+    while (line := _next(lines)) is not None:
         if not line.strip():
             continue
         out.write(json.dumps(answer(session, line)) + "\n")
         out.flush()
+
+
+def _next(lines):
+    if kernel.active().hears_outside:  # a server listens: its clients are answered while we wait
+        return kernel.run_blocking(next, lines, None)
+    return next(lines, None)
 
 
 def _standard_input():

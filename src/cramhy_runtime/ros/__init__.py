@@ -1,6 +1,7 @@
 """ROS in the process: a graph of nodes with topics, services and parameters, and roslisp's functions on top of it.
 
-The modules can be used from Python without any Lisp: ``messages`` and ``wire`` (types), ``graph``, ``topics``, ``services``,
-``parameters`` (what the master and the sockets do in ROS 1), ``node``, ``client``, ``logging`` and ``time`` (what roslisp's
-functions do). ``package`` gives them their Lisp names. Importing this package imports none of them.
+The ground can be used from Python without any Lisp program: ``messages`` and ``wire`` (types), ``topics`` and ``services`` (the
+two ends of each), ``names``, ``parameter_tree``, ``graph`` (what the master and the sockets do in ROS 1) and ``rosout``. On it stand
+the folder ``roslisp`` (the functions of the Lisp program's node) and ``command_line`` (the tools). ``package`` gives Lisp its
+names for all this. Importing this package imports none of them.
 """

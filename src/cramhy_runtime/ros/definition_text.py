@@ -1,14 +1,15 @@
-"""The language of ``.msg`` and ``.srv`` files: lines ``TYPE NAME``, constants ``TYPE NAME=VALUE``, comments, ``---``.
+"""The language of ``.msg``, ``.srv`` and ``.action`` files: lines ``TYPE NAME``, constants ``TYPE NAME=VALUE``, comments, ``---``.
 
-Our own copies of the common packages lie in ``definitions/``; further folders that hold ROS packages are named with
-`add_package_directory`, so that a user's own ``my_msgs/msg/Thing.msg`` is found as in a catkin workspace.
-Source: wiki.ros.org/msg; `Header` alone means ``std_msgs/Header``.
+What is no such line is a `DefinitionError` that names file, line and column and tells how it is written. Where the files lie
+is the business of ``definition_files.py``. Source: wiki.ros.org/msg, /srv, and /actionlib for the messages of an action;
+`Header` alone means ``std_msgs/Header``.
 """
 
 from __future__ import annotations
 
+import difflib
 import keyword
-from pathlib import Path
+import re
 
 INTEGERS = {
     "int8": (8, True),
@@ -24,23 +25,35 @@ INTEGERS = {
 }
 """Bits and signedness. `byte` and `char` arrive as 0 … 255 (roslisp.md 5.2)."""
 PRIMITIVES = {*INTEGERS, "float32", "float64", "bool", "string", "time", "duration"}
+OTHER_NAMES = {"int": "int32", "uint": "uint32", "long": "int64", "float": "float32", "double": "float64", "boolean": "bool",
+               "str": "string", "octet": "byte"}  # fmt: skip
+"""What people call some types that have another name here."""
+RESERVED = {"attributes", "constants", "copy", "definition", "field_names", "fields", "initargs", "keywords", "lisp_name", "lisp_symbol",
+            "python_attributes", "ros_type", "values"}  # fmt: skip
+"""Names that mean something in every message class; a field of that name has an underscore after it in Python."""
 
-_directories = [Path(__file__).parent / "definitions"]
+_LINE = re.compile(r"(?P<type>[^\s=]+)(?:\s+(?P<name>[^=]*?))?\s*(?P<constant>=\s*(?P<value>.*))?$")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
+_TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)?)(?P<array>\[(?P<length>[0-9]*)\])?$")
 
 
 class DefinitionError(ValueError):
-    """A line of a definition that is neither a field nor a constant; the text names file and line."""
+    """Something in a definition that cannot be. Its ``problem`` names file, line and column, its ``hint`` what to try."""
+
+    def __init__(self, problem, hint=None):
+        super().__init__(problem if hint is None else f"{problem} {hint}")
+        self.problem, self.hint = problem, hint
 
 
 class Field:
     """One field: ``base`` is its type without brackets; ``length`` is ``None``, ``0`` for ``T[]``, or the n of ``T[n]``.
-    ``attribute`` is the slot's name in Python."""
+    ``attribute`` is the slot's name in Python, ``place`` the line and the column of its type in the file."""
 
-    __slots__ = ("name", "base", "length", "attribute")
+    __slots__ = ("name", "base", "length", "attribute", "place")
 
-    def __init__(self, name, base, length=None):
-        self.name, self.base, self.length = name, base, length
-        self.attribute = name + "_" if keyword.iskeyword(name) else name
+    def __init__(self, name, base, length=None, place=(1, 1)):
+        self.name, self.base, self.length, self.place = name, base, length, place
+        self.attribute = name + "_" if keyword.iskeyword(name) or name in RESERVED else name
 
     @property
     def is_array(self):
@@ -52,7 +65,7 @@ class Field:
 
     @property
     def type(self):
-        """As in the file: ``float64[36]``."""
+        """As in the file, with the package of another message: ``float64[36]``, ``geometry_msgs/Point[]``."""
         return self.base + ("" if self.length is None else "[]" if self.length == 0 else f"[{self.length}]")
 
     def __repr__(self):
@@ -60,98 +73,139 @@ class Field:
 
 
 class Definition:
-    """The fields and constants of one message; ``lines`` is what ``rosmsg show`` prints of it."""
+    """One message. fields: `Field` objects. constants: name → value. constant_lines: as written, without spaces around the
+    equals sign. text: the lines of the file without comments. where: its file."""
 
-    __slots__ = ("fields", "constants", "lines")
+    __slots__ = ("fields", "constants", "constant_lines", "text", "where")
 
-    def __init__(self, fields, constants, lines):
-        self.fields, self.constants, self.lines = fields, constants, lines
+    def __init__(self, where=""):
+        self.fields, self.constants, self.constant_lines, self.text, self.where = [], {}, [], "", where
+
+    @property
+    def lines(self):
+        """What ``rosmsg show`` prints of it: the constants, then the fields."""
+        return [*self.constant_lines, *map(repr, self.fields)]
 
 
-def parse_message(text, package, where="message definition"):
-    """The `Definition` in ``text``; names of other messages are completed with ``package``."""
-    fields, constants, lines = [], {}, []
-    for number, line in enumerate(text.splitlines(), 1):
-        bare = line.split("#", 1)[0].strip()
-        if not bare:
+def parse_message(text, package, where="message definition", first=1):
+    """The `Definition` in ``text``; names of other messages are completed with ``package``. first: the number of its first line."""
+    definition, kept = Definition(where), []
+    for number, line in enumerate(text.splitlines(), first):
+        bare = line.split("#", 1)[0].rstrip()
+        if not bare.strip():
             continue
-        type_name, _, rest = bare.partition(" ")
-        rest = rest.strip()
-        if "=" in rest:
-            if type_name == "string":  # a text constant goes to the end of the line, number signs included
-                rest = line.strip().partition(" ")[2].strip()
-            name, _, value = rest.partition("=")
-            constants[name.strip()] = _constant(type_name, value.strip(), where, number)
-            lines.append(f"{type_name} {name.strip()}={value.strip()}")
-        elif type_name and rest.isidentifier():
-            fields.append(_field(type_name, rest, package, where, number))
-            lines.append(repr(fields[-1]))
+        column = len(bare) - len(bare.lstrip()) + 1
+        match = _LINE.match(bare.lstrip())
+        if match is None or not match["name"] or match["constant"] and not match["value"]:
+            _fail(where, number, column, f'"{bare.strip()}" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).',
+                  "Write for instance  float64 x  or  uint8 RED=1  ; a comment begins with #.")
+        type_name, name = match["type"], match["name"].strip()
+        name_column = column + match.start("name")
+        if not _NAME.match(name):
+            _fail(where, number, name_column, f'"{name}" is not a name for a {"constant" if match["constant"] else "field"}.',
+                  "A name begins with a letter; letters, digits and underscores follow.")
+        base, length = _type(type_name, package, where, number, column)
+        if match["constant"]:
+            if type_name not in PRIMITIVES or type_name in ("time", "duration"):
+                _fail(where, number, column, f"A constant cannot be of type {type_name}.",
+                      "Constants are integers, floats, bools and strings.")
+            value = match["value"].strip()
+            if base == "string":  # a text constant goes to the end of the line, number signs included
+                value = line.partition("=")[2].strip()
+            _no_second(definition, name, where, number, name_column)
+            definition.constants[name] = _constant(base, value, where, number, column + match.start("value"))
+            definition.constant_lines.append(f"{type_name} {name}={value}")
+            kept.append(definition.constant_lines[-1])
         else:
-            raise DefinitionError(
-                f'{where}, line {number}: "{line.strip()}" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).'
-            )
-    return Definition(fields, constants, lines)
+            _no_second(definition, name, where, number, name_column)
+            definition.fields.append(Field(name, base, length, (number, column)))
+            kept.append(f"{type_name} {name}")
+    definition.text = "\n".join(kept)
+    return definition
 
 
 def parse_service(text, package, where="service definition"):
     """The two `Definition` objects, of the request and of the response."""
-    request, separator, response = ("\n" + text).partition("\n---")
-    if not separator:
-        raise DefinitionError(f"{where}: a line of three dashes must separate request and response.")
-    return parse_message(request, package, where), parse_message(response, package, where)
+    return _parts(text, package, where, ("request", "response"))
 
 
-def _field(type_name, name, package, where, number):
-    base, bracket, size = type_name.partition("[")
-    length = None
-    if bracket:
-        if not size.endswith("]") or (size != "]" and not size[:-1].isdigit()):
-            raise DefinitionError(f'{where}, line {number}: "{type_name}" is not a type. Arrays are written T[] or T[3].')
-        length = 0 if size == "]" else int(size[:-1])
+def parse_action(text, package, where="action definition"):
+    """The three `Definition` objects: goal, result and feedback."""
+    return _parts(text, package, where, ("goal", "result", "feedback"))
+
+
+ACTION_PARTS = ("Goal", "Result", "Feedback")
+
+
+def action_messages(name):
+    """The texts of the four messages that carry the parts of the action ``name``, by their names."""
+    return {
+        f"{name}ActionGoal": f"Header header\nactionlib_msgs/GoalID goal_id\n{name}Goal goal",
+        f"{name}ActionResult": f"Header header\nactionlib_msgs/GoalStatus status\n{name}Result result",
+        f"{name}ActionFeedback": f"Header header\nactionlib_msgs/GoalStatus status\n{name}Feedback feedback",
+        f"{name}Action": f"{name}ActionGoal action_goal\n{name}ActionResult action_result\n{name}ActionFeedback action_feedback",
+    }
+
+
+def _parts(text, package, where, names):
+    parts, first = [], 1
+    for part in re.split(r"^[ \t]*---[^\n]*$", text, flags=re.MULTILINE):
+        parts.append((part, first))
+        first += part.count("\n")
+    if len(parts) != len(names):
+        line = parts[len(names)][1] if len(parts) > len(names) else first
+        _fail(where, line, 1, f"Lines of three dashes separate {', '.join(names[:-1])} and {names[-1]}: there must be {len(names) - 1}, "
+              f"not {len(parts) - 1}.", f"Write --- on a line of its own after the fields of the {names[0]}, also when a part is empty.")
+    return tuple(parse_message(part, package, where, first) for part, first in parts)
+
+
+def _fail(where, line, column, problem, hint=None):
+    raise DefinitionError(f"{where}, line {line}, column {column}: {problem}", hint)
+
+
+def _no_second(definition, name, where, number, column):
+    if name in definition.constants or any(field.name == name for field in definition.fields):
+        _fail(where, number, column, f"There already is a field or constant called {name}.", "Each name can be used once in a message.")
+
+
+def _type(type_name, package, where, number, column):
+    match = _TYPE.match(type_name)
+    if match is None or match["length"] and int(match["length"]) == 0:
+        _fail(where, number, column, f'"{type_name}" is not a type.',
+              "Types are written T, T[] or T[3], those of other packages package/T.")
+    base = match["base"]
     if base == "Header":
         base = "std_msgs/Header"
     elif base not in PRIMITIVES and "/" not in base:
         base = f"{package}/{base}"
-    return Field(name, base, length)
+    return base, int(match["length"] or 0) if match["array"] else None
 
 
-def _constant(type_name, value, where, number):
-    try:
-        if type_name in INTEGERS:
-            return int(value, 0)
-        if type_name.startswith("float"):
-            return float(value)
-    except ValueError:
-        raise DefinitionError(f"{where}, line {number}: {value} is not a {type_name}.") from None
+def _constant(type_name, value, where, number, column):
+    if type_name == "string":
+        return value
     if type_name == "bool":
+        if value.lower() not in ("0", "1", "true", "false"):
+            _fail(where, number, column, f"{value} is not a bool.", "Write True or False.")
         return True if value.lower() in ("1", "true") else None
-    return value
+    try:
+        constant = int(value, 0) if type_name in INTEGERS else float(value)
+    except ValueError:
+        return _fail(where, number, column, f"{value} is not a {type_name}.")
+    if type_name in INTEGERS:
+        bits, signed = INTEGERS[type_name]
+        least, most = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if signed else (0, (1 << bits) - 1)
+        if not least <= constant <= most:
+            _fail(where, number, column, f"{value} is not a {type_name}.", f"Its range is {least} to {most}.")
+    return constant
 
 
-def add_package_directory(directory):
-    """Look for ROS packages in the sub-folders of ``directory`` too. Ours come first."""
-    directory = Path(directory)
-    if directory not in _directories:
-        _directories.append(directory)
-
-
-def known_packages():
-    """The names of all packages with definitions."""
-    return sorted(
-        {
-            entry.name
-            for directory in _directories
-            if directory.is_dir()
-            for entry in directory.iterdir()
-            if (entry / "msg").is_dir() or (entry / "srv").is_dir()
-        }
-    )
-
-
-def definition_files(package, kind):
-    """The files of ``package``, of kind ``"msg"`` or ``"srv"``, by the name of what they define."""
-    for directory in _directories:
-        folder = directory / package / kind
-        if folder.is_dir() or (directory / package).is_dir():
-            return {path.stem: path for path in sorted(folder.glob("*." + kind))}
-    return {}
+def unknown_type(field, package, where, candidates):
+    """Signal that the type of ``field`` in the file ``where`` of ``package`` does not exist; ``candidates``: names of those that do."""
+    name = field.base.rpartition("/")[2]
+    written = name if name in OTHER_NAMES or field.base.startswith(package + "/") else field.base
+    near = [OTHER_NAMES[name]] if name in OTHER_NAMES else difflib.get_close_matches(name, [*PRIMITIVES, *candidates], 2, 0.75)
+    hint = "Is the package of that message on ROS_PACKAGE_PATH, or in the workspace's src?"
+    if near:
+        hint = f"Did you mean {' or '.join(near)}?"
+    _fail(where, *field.place, f"There is no type {written}.", hint)

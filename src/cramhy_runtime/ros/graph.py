@@ -5,6 +5,14 @@ they look at what arrives. A *spinning* node, like turtlesim, looks once per tic
 connections wait for `Node.spin_once`. Every other node is served at once: the node of the Lisp program, whose callbacks run
 in tasks of its own, and small tools.
 
+A *hidden* node (``Graph.node("cramhy_view", hidden=True)``) is an observer of ours: a page, a recorder. What it does must not
+change what a program or a command line shows. So it does not count as a subscriber, it makes no log lines that others see, and
+`Graph.visible_nodes`, `visible_topics` and `visible_services`, which every list shown to users is made of, leave it out together
+with the topics and services that nobody else has.
+
+Who wants to know of what comes and goes appends a function to `Graph.on_change`; it is called as ``function(kind, name, there)``
+with the kind ``"node"``, ``"topic"`` or ``"service"``, for visible ones only, by whoever made the change, and must not wait.
+
 There is one active graph per kernel, as there is one roscore per user. Laws: what a tick does is one step for all tasks (law
 4); all waiting goes through the kernel (law 5); a node that ends takes its topics, services and waiting callers along (law 1).
 """
@@ -14,8 +22,11 @@ from __future__ import annotations
 from collections import deque
 
 from .. import kernel
+from . import rosout
 from .names import Naming
-from .parameters import ParameterTree
+from .parameter_tree import ParameterTree
+from .services import Service
+from .topics import NativeSubscription, Publication
 
 _active = None
 
@@ -30,6 +41,7 @@ class Graph:
         self.services = {}
         self.parameters = ParameterTree()
         self.log = deque(maxlen=1000)
+        self.on_change = []
         self.lisp_node = None
         self.debug_levels = {}
         self.before_first_node = []
@@ -40,15 +52,18 @@ class Graph:
         clock = self.kernel.clock
         return clock.epoch + clock.now()
 
-    def node(self, name, namespace="/", spins=False):
+    def node(self, name, namespace="/", spins=False, hidden=False):
         """A new node called ``name``, relative to ``namespace``; one of the same name is shut down first, as ROS does."""
-        return self.add_node(Naming(name, namespace), spins)
+        return self.add_node(Naming(name, namespace), spins, hidden)
 
-    def add_node(self, naming, spins=False):
+    def add_node(self, naming, spins=False, hidden=False):
+        """As `node`, with a `Naming` that is made already."""
         old = self.nodes.get(naming.node_name)
         if old is not None:
             old.shutdown()
-        node = self.nodes[naming.node_name] = Node(self, naming, spins)
+        node = self.nodes[naming.node_name] = Node(self, naming, spins, hidden)
+        if not hidden:
+            self.changed("node", node.name, True)
         return node
 
     def topic(self, name, message_type):
@@ -62,6 +77,28 @@ class Graph:
         self._ports += 1
         return f"127.0.0.1:{40000 + self._ports}"
 
+    # ------------------------------------------------------------------------------------------- what users are shown
+
+    def visible_nodes(self):
+        """The nodes that are not hidden, by name, sorted."""
+        return {name: node for name, node in sorted(self.nodes.items()) if not node.hidden}
+
+    def visible_topics(self):
+        """The topics on which some node that is not hidden publishes or listens, by name, sorted."""
+        return {name: topic for name, topic in sorted(self.topics.items()) if topic.visible}
+
+    def visible_services(self):
+        """The services of nodes that are not hidden, by name, sorted."""
+        return {name: service for name, service in sorted(self.services.items()) if not service.node.hidden}
+
+    def changed(self, kind, name, there):
+        """Tell the observers that something visible has come (``there``) or gone."""
+        for function in list(self.on_change):
+            try:
+                function(kind, name, there)
+            except Exception as problem:  # the node that comes or goes has nothing to do with it
+                kernel.unhandled(kernel.current(), problem)
+
 
 class Topic:
     """A name with the publications and subscriptions of all nodes, in order of registration."""
@@ -72,19 +109,36 @@ class Topic:
         self.name, self.type = name, message_type
         self.publications, self.subscriptions = [], []
 
+    @property
+    def visible(self):
+        """Whether a node that is not hidden publishes on it or listens to it."""
+        return bool(self.visible_publications or self.visible_subscriptions)
+
+    @property
+    def visible_publications(self):
+        return [publication for publication in self.publications if not publication.node.hidden]
+
+    @property
+    def visible_subscriptions(self):
+        return [subscription for subscription in self.subscriptions if not subscription.node.hidden]
+
 
 class Node:
-    """A participant of the graph. ``spins``: it looks at what arrives only in `spin_once`."""
+    """A participant of the graph. ``spins``: it looks at what arrives only in `spin_once`. ``hidden``: users do not see it.
 
-    def __init__(self, graph, naming, spins=False):
-        self.graph, self.naming, self.spins = graph, naming, spins
+    ``publications`` and ``services`` by global name; ``subscriptions`` by global name too, each a list, since a node may listen
+    to a topic with several callbacks.
+    """
+
+    def __init__(self, graph, naming, spins=False, hidden=False):
+        self.graph, self.naming, self.spins, self.hidden = graph, naming, spins, hidden
         self.name = naming.node_name
         self.address = graph.next_address()
         self.publications = {}
         self.subscriptions = {}
         self.services = {}
         self.alive = True
-        self.inbox = []
+        self.inbox = deque()
         self._accepted = []
         self.on_shutdown = []
 
@@ -92,21 +146,24 @@ class Node:
         return f"<node {self.name}>"
 
     def resolve(self, name):
+        """The global name that ``name`` means to this node."""
         return self.naming.resolve(name)
 
-    # --------------------------------------------------------------------------------------------- for nodes in Python
+    def complain(self, text):
+        """An error between this node and another one: it logs it."""
+        rosout.report(self, rosout.ERROR, text)
+
+    # ---------------------------------------------------------------------------------------------------- topics
 
     def advertise(self, name, message_type, latch=False):
         """Publish on ``name`` from now on; returns the `Publication`. Subscribers that are there are connected at once."""
-        from .topics import Publication
-
         name = self.resolve(name)
         publication = self.publications.get(name)
         if publication is None:
-            publication = self.publications[name] = Publication(self, name, message_type, latch)
             topic = self.graph.topic(name, message_type)
-            topic.publications.append(publication)
-            for subscription in topic.subscriptions:
+            publication = self.publications[name] = Publication(self, name, message_type, latch)
+            self._join(topic, topic.publications, publication)
+            for subscription in list(topic.subscriptions):
                 publication.connect(subscription)
         return publication
 
@@ -115,29 +172,28 @@ class Node:
         publication = self.publications.pop(name, None)
         if publication is None:
             return False
-        self.graph.topics[name].publications.remove(publication)
-        publication.connections.clear()
-        self._forget_topic(name)
+        for subscription in list(publication.connections):
+            publication.disconnect(subscription)
+        topic = self.graph.topics[name]
+        self._leave(topic, topic.publications, publication)
         return True
 
     def subscribe(self, name, message_type, callback, queue=None):
         """Have ``callback(message)`` called for every message on ``name``: in `spin_once` of a spinning node, else at once.
 
-        It must not wait. ``queue``: how many messages may wait for the spin; older ones are dropped.
+        It must not wait. ``queue``: how many messages may wait for the spin; older ones are dropped. Returns the subscription.
         """
-        from .topics import NativeSubscription
-
         subscription = NativeSubscription(self, self.resolve(name), message_type, callback, queue)
         self.add_subscription(subscription)
         return subscription
 
     def add_subscription(self, subscription):
         """Register ``subscription`` and connect it; returns the spinning publishers that must accept it first."""
-        self.subscriptions[subscription.name] = subscription
+        self.subscriptions.setdefault(subscription.name, []).append(subscription)
         topic = self.graph.topic(subscription.name, subscription.type)
-        topic.subscriptions.append(subscription)
+        self._join(topic, topic.subscriptions, subscription)
         waiting = []
-        for publication in topic.publications:
+        for publication in list(topic.publications):
             if publication.node.spins:
                 publication.node.inbox.append(lambda publication=publication: publication.connect(subscription))
                 waiting.append(publication.node)
@@ -146,22 +202,49 @@ class Node:
         return waiting
 
     def unsubscribe(self, name):
-        """Drop the subscription to the global name ``name``."""
-        subscription = self.subscriptions.pop(name, None)
-        if subscription is not None:
+        """Drop the subscriptions to the global name ``name``, or one of them: a subscription instead of its name."""
+        if isinstance(name, str):
+            gone = self.subscriptions.pop(name, ())
+        else:
+            subscription, name = name, name.name
+            rest = [other for other in self.subscriptions.get(name, ()) if other is not subscription]
+            gone = () if len(rest) == len(self.subscriptions.get(name, ())) else (subscription,)
+            if rest:
+                self.subscriptions[name] = rest
+            else:
+                self.subscriptions.pop(name, None)
+        for subscription in gone:
             subscription.close()
             topic = self.graph.topics[name]
-            topic.subscriptions.remove(subscription)
             for publication in topic.publications:
                 publication.disconnect(subscription)
-            self._forget_topic(name)
+            self._leave(topic, topic.subscriptions, subscription)
+
+    def _join(self, topic, ends, end):
+        news = not (self.hidden or topic.visible)
+        ends.append(end)
+        if news:
+            self.graph.changed("topic", topic.name, True)
+
+    def _leave(self, topic, ends, end):
+        ends.remove(end)
+        if not topic.publications and not topic.subscriptions:
+            del self.graph.topics[topic.name]
+        if not (self.hidden or topic.visible):
+            self.graph.changed("topic", topic.name, False)
+
+    # -------------------------------------------------------------------------------------------------- services
 
     def serve(self, name, service_type, handler):
         """Offer the service ``name``; ``handler(request)`` returns the response or raises `services.Refusal`."""
-        from .services import Service
+        return self.add_service(Service(self, self.resolve(name), service_type, handler))
 
-        service = Service(self, self.resolve(name), service_type, handler)
+    def add_service(self, service):
+        """Offer ``service``, in the place of one that has the same name; returns it."""
+        self.withdraw(service.name)
         self.services[service.name] = self.graph.services[service.name] = service
+        if not self.hidden:
+            self.graph.changed("service", service.name, True)
         return service
 
     def withdraw(self, name):
@@ -170,15 +253,19 @@ class Node:
         if service is not None:
             if self.graph.services.get(name) is service:
                 del self.graph.services[name]
+                if not self.hidden:
+                    self.graph.changed("service", name, False)
             service.close()
 
+    # -------------------------------------------------------------------------------------------- spinning, ending
+
     def spin_once(self):
-        """Handle everything that arrived since the last time, in order of arrival."""
+        """Handle everything that arrived since the last time, in order of arrival; what arrives meanwhile waits for the next."""
         inbox = self.inbox
-        if inbox:
-            self.inbox = []
-            for callback in inbox:
-                callback()
+        for _ in range(len(inbox)):
+            if not inbox:  # the node was shut down
+                return
+            inbox.popleft()()
 
     def wait_for_spin(self, why):
         """Park the current task until this spinning node has finished its next tick."""
@@ -211,15 +298,12 @@ class Node:
         self.tick_done()
         if self.graph.nodes.get(self.name) is self:
             del self.graph.nodes[self.name]
+            if not self.hidden:
+                self.graph.changed("node", self.name, False)
         if self.graph.lisp_node is self:
             self.graph.lisp_node = None
         for function in self.on_shutdown:
             function()
-
-    def _forget_topic(self, name):
-        topic = self.graph.topics[name]
-        if not topic.publications and not topic.subscriptions:
-            del self.graph.topics[name]
 
 
 def active():

@@ -5,7 +5,8 @@ from __future__ import annotations
 from ..lisp.data import Symbol, python_list, truth
 from ..lisp.faces import define_face
 from ..lisp.packages import symbol_name
-from . import logging, message_building, node, services, time, topics, utilities
+from . import message_building, messages
+from .roslisp import logging, node, services, time, topics, utilities
 
 
 def _path(spec):
@@ -14,19 +15,92 @@ def _path(spec):
     return tuple(name.removesuffix("-VAL") for name in names)
 
 
-_paths: dict = {}
+class _CallSite:
+    """What ``make-message`` says of a message at one place of the program: its field paths, turned into Python once.
+
+    ``makers`` has for each class a function of the values that makes the message directly, without default parts that would be
+    replaced; or `message_building.make_message` with the specs does it, in the cases that need care: a field that is not there, or
+    given twice, or inside of a part that is given as a whole.
+    """
+
+    __slots__ = ("paths", "specs", "makers")
+
+    def __init__(self, paths):
+        self.paths = paths  # held, so that its id is not given to another list
+        self.specs = [_path(spec) for spec in python_list(paths)]
+        self.makers = {}
+
+    def maker(self, designator):
+        cls = messages.message_class(designator)
+        maker = self.makers.get(cls)
+        if maker is None:
+            maker = _direct_maker(cls, self.specs) or self._careful_maker(cls)
+            self.makers[cls] = maker
+        if designator.__class__ is str:
+            self.makers[designator] = maker
+        return maker
+
+    def _careful_maker(self, cls):
+        return lambda *values: message_building.make_message(cls, list(zip(self.specs, values)))
+
+
+def _direct_maker(cls, specs):
+    """A function of the values that makes a message of ``cls`` by calls of classes, or ``None`` when the specs are not that plain."""
+    tree = {}
+    for number, spec in enumerate(specs):
+        space = tree
+        for name in reversed(spec[1:]):
+            space = space.setdefault(name, {})
+            if space.__class__ is not dict:
+                return None
+        if space.setdefault(spec[0], number) != number:
+            return None
+    scope = {}
+
+    def call(part, space):
+        arguments = []
+        for name, below in space.items():
+            field = next((field for field in part.fields if field.name.upper() == name), None)
+            if field is None:
+                return None
+            if below.__class__ is int:
+                value = f"v{below}"
+            else:
+                inner = None if field.is_array or field.primitive else messages.message_class_exact(field.base)
+                value = inner and call(inner, below)
+                if value is None:
+                    return None
+            arguments.append(f"{field.attribute}={value}")
+        name = f"c{len(scope)}"
+        scope[name] = part
+        return f"{name}({', '.join(arguments)})"
+
+    text = call(cls, tree)
+    return text and eval(f"lambda {', '.join(f'v{number}' for number in range(len(specs)))}: {text}", scope)
+
+
+MOST_SITES = 10_000  # a form typed at the REPL is a place of its own, which nobody comes back to
+_sites: dict = {}
+
+
+def _site(paths):
+    site = _sites.get(id(paths))
+    if site is None or site.paths is not paths:
+        if len(_sites) >= MOST_SITES:
+            _sites.clear()
+        site = _sites[id(paths)] = _CallSite(paths)
+    return site
 
 
 def _specs(paths, values):
-    # ``paths`` is a constant of the program, so it is turned into Python once
-    known = _paths.get(id(paths))
-    if known is None or known[0] is not paths:
-        known = _paths[id(paths)] = (paths, [_path(spec) for spec in python_list(paths)])
-    return list(zip(known[1], values))
+    return list(zip(_site(paths).specs, values))
 
 
 def build_message(designator, paths, *values):
-    return message_building.make_message(designator, _specs(paths, values))
+    """``make-message``: ``paths`` is a constant of the program, one list of field specs per call in the text."""
+    site = _site(paths)
+    maker = site.makers.get(designator) if designator.__class__ is str else None
+    return (maker or site.maker(designator))(*values)
 
 
 def build_request(designator, paths, *values):
@@ -34,15 +108,22 @@ def build_request(designator, paths, *values):
 
 
 def build_publisher_message(publication, paths, *values):
-    return message_building.make_message(topics.publication_type(publication), _specs(paths, values))
+    return build_message(topics.publication_type(publication), paths, *values)
 
 
 def changed_message(message, paths, *values):
     return message_building.modify_message_copy(message, _specs(paths, values))
 
 
+_symbol_paths = {}
+
+
 def message_field(message, path):
-    return message_building.get_field(message, _path(path))
+    """The field that ``with-fields`` binds; a plan reads five in a tick, so the path of a symbol is made once."""
+    names = _symbol_paths.get(path) if isinstance(path, Symbol) else _path(path)
+    if names is None:
+        names = _symbol_paths[path] = _path(path)
+    return message_building.get_field(message, names)
 
 
 def log_enabled(level, topic):

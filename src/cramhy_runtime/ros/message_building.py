@@ -8,14 +8,14 @@ last to the first, so of two values for one field the first one counts (roslisp.
 from __future__ import annotations
 
 from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
+from ..lisp.condition_types import Error, SimpleError
 from ..lisp.data import Cons, Symbol, list_from, python_list
 from ..lisp.objects.classes import make_instance
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.objects.slots import MissingSlot
 from ..lisp.packages import COMMON_LISP, sym, symbol_name
 from ..lisp.printer.printer import princ_to_string
-from . import messages
+from . import messages, type_texts
 from .messages import RosMessage, lisp_attribute
 
 
@@ -49,7 +49,11 @@ def instance(cls, initargs):
 
 
 def _bad_initargs(cls, initargs):
-    return make_instance(cls, *initargs)  # the error is the one that every class gives
+    def advise(problem):
+        problem.hint = _fields_hint(cls)
+
+    # the error is the one that every class gives
+    return conditions.handler_bind([(Error, advise)], lambda: make_instance(cls, *initargs))
 
 
 def modify_message_copy(message, specs):
@@ -93,7 +97,21 @@ def _attribute(target, name, whole):
 
 def _no_field(name, target):
     dump = princ_to_string(_as_deep_list(target))
-    return conditions.error(SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}"))
+    problem = SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}")
+    if isinstance(target, RosMessage):
+        problem.hint = _fields_hint(type(target))
+    return conditions.error(problem)
+
+
+def _fields_hint(cls):
+    """What to try when a field is not there: those that there are. A request is called by the name of its service, as the user does."""
+    name = cls.ros_type
+    for part, called in (("Request", "{}"), ("Response", "The response of {}")):
+        service = name.removesuffix(part)
+        if service != name and messages.service_type_exact(service) is not None:
+            name = called.format(service)
+    fields = [field.name for field in cls.fields]
+    return f"{name} has {'the fields ' + ' '.join(fields) if fields[1:] else 'the field ' + fields[0] if fields else 'no fields'}."
 
 
 def _as_deep_list(value):
@@ -202,17 +220,22 @@ def _shown_type(designator):
 
 def ros_datatype(designator):
     """``"turtlesim/Pose"`` for a class symbol, instance, or service symbol."""
-    if isinstance(designator, RosMessage):
-        return designator.ros_type
-    found = messages.named(designator) if isinstance(designator, Symbol) else messages.message_class(designator)
-    if found is None:
-        return no_applicable_method("ROSLISP-MSG-PROTOCOL:ROS-DATATYPE", 2, designator)
+    found = _type_of(designator, "ROS-DATATYPE")
     return found.ros_type if isinstance(found, type) else found.name
 
 
+def _type_of(designator, function):
+    if isinstance(designator, RosMessage):
+        return type(designator)
+    found = messages.named(designator) if isinstance(designator, Symbol) else messages.message_class(designator)
+    return found if found is not None else no_applicable_method(f"ROSLISP-MSG-PROTOCOL:{function}", 2, designator)
+
+
+def md5sum(designator):
+    """The md5 sum of a class symbol, instance, or service symbol, as ROS has it."""
+    return type_texts.md5_of(_type_of(designator, "MD5SUM"))
+
+
 def message_definition(designator):
-    """The text of the definition, one line per field or constant."""
-    found = messages.named(designator) if isinstance(designator, Symbol) else designator
-    if isinstance(found, messages.ServiceType):
-        return "\n".join([*found.request.definition.lines, "---", *found.response.definition.lines]) + "\n"
-    return "\n".join(_constants_class(designator).definition.lines) + "\n"
+    """The text of the definition without its comments, followed by those of all messages that it is made of."""
+    return type_texts.definition_text(_type_of(designator, "MESSAGE-DEFINITION"))

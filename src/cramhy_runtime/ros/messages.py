@@ -8,6 +8,8 @@ Source: roslisp.md 5.
 
 from __future__ import annotations
 
+import functools
+from difflib import get_close_matches
 from inspect import Parameter, Signature
 
 from ..lisp import conditions
@@ -15,8 +17,11 @@ from ..lisp.condition_types import CaseFailure, SimpleError
 from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
 from ..lisp.objects.classes import find_class_or_error
 from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.packages import Package, find_package, intern, register, string_designator, sym
-from . import definition_text
+from ..lisp import packages
+from ..lisp.packages import Package, delete_package, intern, register, registered, string_designator, sym
+from ..lisp.systems import systems
+from . import definition_files
+from .definition_text import DefinitionError
 
 
 class RosMessage:
@@ -35,6 +40,7 @@ class RosMessage:
     attributes: dict = {}
     initargs: dict = {}
     keywords = ()
+    lisp_symbol = None
     definition = None
 
     def __repr__(self):
@@ -66,6 +72,7 @@ _messages: dict[str, type] = {}
 _services: dict[str, ServiceType] = {}
 _by_symbol: dict[object, object] = {}
 _loaded: dict[str, tuple] = {}
+_reading: list[str] = []
 _listeners = []
 _warned = set()
 
@@ -74,28 +81,54 @@ DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", 
 
 def load_package(package):
     """Define all messages and services of the ROS package; returns their Python classes and `ServiceType` objects, or
-    ``None`` when there is no such package."""
-    if package not in _loaded:
-        messages = definition_text.definition_files(package, "msg")
-        services = definition_text.definition_files(package, "srv")
-        if not messages and not services:
+    ``None`` when there is no such package. A broken definition is an error, after which nothing is defined."""
+    found = _loaded.get(package)
+    if found is None:
+        folder = definition_files.package_folder(package)
+        if folder is None:
             return None
-        classes = _loaded[package] = ([], [])
-        for name, path in messages.items():
-            definition = definition_text.parse_message(path.read_text(), package, str(path))
-            classes[0].append(_define_message(package, name, definition, "MSG", f"{package}/{name}"))
-        for name, path in services.items():
-            parts = definition_text.parse_service(path.read_text(), package, str(path))
-            request, response = (
-                _define_message(package, f"{name}-{half}", part, "SRV", f"{package}/{name}{half.title()}")
-                for half, part in zip(("request", "response"), parts)
-            )
-            symbol = intern(name.upper(), lisp_package(package, "SRV"))
-            service = _services[f"{package}/{name}"] = _by_symbol[symbol] = ServiceType(f"{package}/{name}", request, response, symbol)
-            classes[1].append(service)
+        definitions = _read(package, folder)
+        found = _loaded[package] = ([], [])
+        _define_package(package, definitions, *found)
         for listener in _listeners:
-            listener(package, *classes)
-    return _loaded[package]
+            listener(package, *found)
+    return found
+
+
+def _read(package, folder):
+    _reading.append(package)
+    try:
+        return definition_files.read_package(package, folder)
+    except DefinitionError as problem:
+        return _signal_broken(problem, package, folder)
+    finally:
+        _reading.remove(package)
+
+
+class BrokenDefinition(SimpleError):
+    """The `DefinitionError` of a package's file as Lisp sees it."""
+
+    lisp_name = "ROSLISP::DEFINITION-ERROR"
+
+
+def _signal_broken(problem, package, folder):
+    condition = BrokenDefinition("~a", problem.problem)
+    condition.hint = problem.hint
+    retry = (sym("RETRY"), lambda: _read(package, folder), f"Read the definitions of {package} again.")
+    return conditions.restart_case([retry], lambda: conditions.error(condition))
+
+
+def _define_package(package, definitions, classes, services):
+    for name, definition in definitions.messages.items():
+        classes.append(_define_message(package, name, definition, "MSG", f"{package}/{name}"))
+    for name, parts in definitions.services.items():
+        request, response = (
+            _define_message(package, f"{name}-{half}", part, "SRV", f"{package}/{name}{half.title()}")
+            for half, part in zip(("request", "response"), parts)
+        )
+        symbol = intern(name.upper(), lisp_package(package, "SRV"))
+        service = _services[f"{package}/{name}"] = _by_symbol[symbol] = ServiceType(f"{package}/{name}", request, response, symbol)
+        services.append(service)
 
 
 def on_load(listener):
@@ -114,8 +147,13 @@ class MessagePackage(Package):
 
     @property
     def external(self):
-        if self.ros_package not in _loaded:
-            load_package(self.ros_package)
+        if self.ros_package not in _loaded and self.ros_package not in _reading:
+            try:
+                load_package(self.ros_package)
+            except BaseException:
+                if self.ros_package not in _loaded:
+                    _forget_lisp_packages(self.ros_package)  # who looks through all packages does not stumble over a broken one
+                raise
         return self._external
 
     @external.setter
@@ -125,7 +163,58 @@ class MessagePackage(Package):
 
 def lisp_package(package, kind):
     """The Lisp package ``TURTLESIM-MSG`` or ``TURTLESIM-SRV`` of a ROS package; made when it is not there."""
-    return find_package(f"{package.upper()}-{kind}") or register(MessagePackage(package, kind))
+    return registered(f"{package.upper()}-{kind}") or register(MessagePackage(package, kind))
+
+
+def _forget_lisp_packages(package):
+    _reading.append(package)
+    for kind in ("MSG", "SRV"):
+        home = registered(f"{package.upper()}-{kind}")
+        if home is not None:
+            for user in list(home.used_by):
+                user.unuse_package(home)
+            delete_package(home)
+    _reading.remove(package)
+
+
+def find_lisp_package(name):
+    """The Lisp package ``MY_MSGS-MSG`` when there is a ROS package that has such definitions, made now; else ``None``."""
+    package, _, kind = name.rpartition("-")
+    package = package.lower()
+    folder = definition_files.package_folder(package) if kind in ("MSG", "SRV") else None
+    if folder is None or not definition_files.has_kind(folder, kind.lower()):
+        return None
+    return lisp_package(package, kind)
+
+
+def find_message_system(name):
+    """Whether ``name`` is ``my_msgs-msg`` or ``my_msgs-srv``, of a ROS package that has such definitions; they are read now."""
+    package, _, kind = name.rpartition("-")
+    if kind not in ("msg", "srv") or not package:
+        return False
+    folder = definition_files.package_folder(package)
+    if folder is None or not definition_files.has_kind(folder, kind):
+        return False
+    load_package(package)
+    return True
+
+
+def message_systems():
+    """The names of all systems of messages and services, as one would load them."""
+    for package in definition_files.known_packages():
+        folder = definition_files.package_folder(package)
+        yield from (f"{package}-{kind}" for kind in ("msg", "srv") if definition_files.has_kind(folder, kind))
+
+
+@functools.cache
+def our_lisp_packages():
+    """The names of the Lisp packages of all messages and services that come with cramhy."""
+    return [f"{folder.name.upper()}-{kind}" for folder in sorted(definition_files.OURS.iterdir()) for kind in ("MSG", "SRV")
+            if definition_files.has_kind(folder, kind.lower())]  # fmt: skip
+
+
+packages.finders.append((find_lisp_package, our_lisp_packages))
+systems.provide_systems_on_demand(find_message_system, message_systems)
 
 
 def _define_message(package, name, definition, kind, ros_type):
@@ -171,7 +260,7 @@ def _deferred_initializer(cls, fields):
 
 def _initializer(cls, fields):
     """An ``__init__`` with one parameter per field, in the order of the definition; parts are made when they are needed."""
-    scope = {"_unsupplied": UNSUPPLIED, "_part": _part_class}
+    scope = {"_unsupplied": UNSUPPLIED, "_part": part_class}
     parameters, body = ["self"], []
     for field in fields:
         default = _default(field)
@@ -189,7 +278,8 @@ def _initializer(cls, fields):
     return initializer
 
 
-def _part_class(ros_type):
+def part_class(ros_type):
+    """The class of the type of a field; an error when there is none."""
     return message_class_exact(ros_type) or conditions.error(
         SimpleError(
             "~a",
@@ -309,14 +399,28 @@ def topic_class(designator):
         problem = (
             f"Case mismatch for message type {text}, did you mean {other.ros_type}?" if other is not None else f"No datatype {text} known"
         )
-        return conditions.error(SimpleError("~a", problem))
+        complaint = SimpleError("~a", problem)
+        if other is None:
+            complaint.hint = _types_hint("rosmsg", _messages, text)
+        return conditions.error(complaint)
     return found
+
+
+def _types_hint(tool, table, text):
+    """What to try when ``table`` has no type ``text``, though it has others of that package, which ``tool`` lists."""
+    package = text.lower().partition("/")[0]
+    names = {name.lower(): name for name in table if name.startswith(package + "/")}
+    near = get_close_matches(text.lower(), names, 1, 0.8)
+    if near:
+        return f"Did you mean {names[near[0]]}?"
+    return f"{tool} package {package}, typed at the prompt, lists those that there are."
 
 
 def service_type(designator):
     """The `ServiceType` of a symbol ``turtlesim-srv:Spawn``, a string in any case, or one itself."""
     if isinstance(designator, ServiceType):
         return designator
+    advice = None
     if isinstance(designator, (str, LispString)):
         text = str(designator)
         found = _services.get(text)
@@ -331,9 +435,10 @@ def service_type(designator):
         designator = found or intern(name, lisp_package(text.partition("/")[0].lower(), "SRV"))
         if found is not None:
             return found
+        advice = _types_hint("rossrv", _services, text)
     found = named(designator)
     if not isinstance(found, ServiceType):
-        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERVICE-RESPONSE-TYPE", len(_services), designator)
+        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERVICE-RESPONSE-TYPE", len(_services), designator, advice=advice)
     return found
 
 

@@ -10,6 +10,12 @@ from __future__ import annotations
 import string
 
 from ..lisp import conditions
+from ..lisp.data import Symbol, one
+from ..lisp.dynamic import binding
+from ..lisp.packages import KEYWORD
+from ..lisp.printer.print_controls import PACKAGE
+from ..lisp.reader.dispatch_macros import READ_EVAL
+from ..lisp.reader.reader_functions import read_from_string
 
 _LETTERS = set(string.ascii_letters)
 _NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
@@ -106,14 +112,24 @@ def split_arguments(arguments):
     return [str(argument) for argument in arguments]
 
 
-def read_private_value(text):
-    """The value of ``_p:=text``: a number when it reads as one, else the raw text (roslisp.md 3.3)."""
+def plain_value(text):
+    """What the tools of ROS and roscpp take ``text`` for when nobody says its type: an integer, a number, true or false, else a text."""
     for kind in (int, float):
         try:
-            value = kind(text)
+            return kind(text.replace("_", "?"))  # Python would read 1_000 as a number
         except ValueError:
-            continue
-        return value if text.strip().lower().lstrip("+-") not in ("nan", "inf", "infinity") else text
-    if len(text) > 1 and text[0] == text[-1] == '"':
-        return text[1:-1]
-    return text
+            pass
+    return {"true": True, "false": False}.get(text.lower(), text)
+
+
+def read_private_value(text):
+    """The value of ``_p:=text``, read by the Lisp reader: a number or another object as it is, a symbol and what cannot be read as text.
+
+    Nothing is evaluated, and no symbol is made that a program would see. Source: roslisp.md 3.3.
+    """
+    try:
+        with binding(READ_EVAL, None), binding(PACKAGE, KEYWORD):
+            value = one(read_from_string(text))
+    except Exception:  # not the text of a Lisp object: an address, a path, a word with a colon
+        return text
+    return text if value is None or value is True or isinstance(value, Symbol) else value

@@ -12,21 +12,9 @@ from ..lisp.faces import define_face
 from ..lisp.objects.classes import register_class
 from ..lisp.objects.generic_errors import no_applicable_method_error
 from ..lisp.printer.printer import define_printer
-from . import (
-    definition_text,
-    graph,
-    logging,
-    message_building,
-    message_printing,
-    messages,
-    node,
-    parameters,
-    services,
-    time,
-    topics,
-    utilities,
-)
+from . import graph, message_building, message_printing, messages
 from .messages import RosMessage
+from .roslisp import clock, logging, master, node, parameters, printing, services, time, topics, utilities
 
 
 class FieldReader:
@@ -85,18 +73,17 @@ def define_message_symbols(package, classes, service_types):
 
 
 messages.on_load(define_message_symbols)
-for _package in definition_text.known_packages():
-    for _kind in ("msg", "srv"):
-        if definition_text.definition_files(_package, _kind):
-            messages.lisp_package(_package, _kind.upper())
+for _name in "std_msgs std_srvs geometry_msgs rosgraph_msgs turtlesim".split():
+    for _kind in ("MSG", "SRV"):
+        messages.find_lisp_package(f"{_name.upper()}-{_kind}")  # those of the course are there from the start, the others on demand
 
 MSG_PROTOCOL = define_face(
     "ROSLISP-MSG-PROTOCOL",
     functions={
         message_building: "ros-message-to-list list-to-ros-message symbol-codes symbol-code code-symbols code-symbol ros-datatype "
-        "message-definition"
+        "message-definition md5sum"
     },
-    export="ros-message serialize deserialize md5sum serialization-length service-request-type service-response-type",
+    export="ros-message serialize deserialize serialization-length service-request-type service-response-type",
 )
 
 ROSLISP_UTILS = define_face("ROSLISP-UTILS", export="spin-until loop-at-most-every tokens until-timeout")
@@ -106,18 +93,21 @@ define_face("ROSLISP-QUEUE", export="queue")
 
 ROSLISP = define_face(
     "ROSLISP",
+    use=["COMMON-LISP"],
     imports={
         "ROSLISP-MSG-PROTOCOL": "ros-message symbol-codes symbol-code code-symbols code-symbol",
         "ROSLISP-UTILS": "loop-at-most-every spin-until",
     },
     functions={
-        node: "start-ros-node shutdown-ros-node node-status make-uri fully-qualified-name print-status standalone-exec-debug-hook",
+        master: "make-uri",
+        node: "start-ros-node shutdown-ros-node node-status fully-qualified-name print-status standalone-exec-debug-hook",
         topics: "advertise unadvertise publish subscribe unsubscribe num-subscribers",
         services: "call-service wait-for-service make-service-client register-service-fn call-persistent-service close-persistent-service "
         "persistent-service-ok",
         parameters: "get-param set-param has-param delete-param list-params",
         logging: "set-debug-level debug-level print-debug-levels",
-        time: "ros-time spin-until-ros-time-valid wait-duration",
+        clock: "ros-time",
+        time: "spin-until-ros-time-valid wait-duration",
         message_building: "make-response msg-slot-value read-ros-message",
         message_printing: "pprint-ros-message",
     },
@@ -133,12 +123,16 @@ ROSLISP = define_face(
     "set-debug-levels setf-msg store-message-in tcp top with-fields with-parallel-thread with-ros-node *current-ros-package*",
 )
 
+for _name in ("EMPTY", "SETBOOL", "TRIGGER"):  # the original uses the package of std_srvs, whose files need not be read for that
+    ROSLISP.import_symbol(messages.lisp_package("std_srvs", "SRV").intern(_name))
+
 ROSLISP_UTILITIES = define_face(
     "ROSLISP-UTILITIES",
+    use=["COMMON-LISP"],
     functions={
         utilities: "startup-ros shutdown-ros lispify-ros-name rosify-lisp-name lispify-ros-underscore-name rosify-underscores-lisp-name"
     },
     export="register-ros-init-function register-ros-cleanup-function",
 )
 
-__all__ = ["ROSLISP", "ROSLISP_UTILITIES", "FieldReader", "RosMessage", "graph"]
+__all__ = ["ROSLISP", "ROSLISP_UTILITIES", "FieldReader", "RosMessage", "graph", "printing"]

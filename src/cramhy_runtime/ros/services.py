@@ -1,25 +1,23 @@
-"""Services: a request, a response, and a caller who waits for it.
+"""The ground of services: a request, a response, and somebody who is told the answer.
 
-A spinning node such as turtlesim serves a request in its next tick, so the caller parks until then. The services of the Lisp
-program run one at a time in the task ``ROSLisp event loop``. A call that nobody can answer is a ``ros-rpc-error``, which is no
-``error``; a server that refuses gives a simple error with the server's text (roslisp.md 7).
+A `Service` belongs to a node. That of a spinning node, such as turtlesim, serves a request in its next tick; any other serves it
+at once; the services of the Lisp program (``roslisp/services.py``) queue for a task of their own. There are two ways to call:
+
+* `exchange` is for tasks: it parks until there is an answer.
+* `start_call` is for code that must not wait: callbacks, timers, and what outside threads `kernel.post` (the bridge to other
+  processes calls this way). It returns the `Call` at once, and ``when_done(call)`` is called when the call is over.
+
+Every call ends, exactly once, in one of three ways: with a ``response``, with the ``failure`` text of a server that refused, or
+``lost``, because the server went away. What a handler raises besides `Refusal` is told to the caller and reported (law 3).
+Source: roslisp.md 7, wiki.ros.org/Services.
 """
 
 from __future__ import annotations
 
-from collections import deque
-
 from .. import kernel
 from ..lisp import conditions
-from ..lisp.condition_types import Error, SimpleError, SimpleTypeError, shown
-from ..lisp.data import LispString, Symbol
-from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.packages import sym, symbol_name
-from ..lisp.printer.printer import princ_to_string
-from . import messages, wire
-from .errors import ServiceCallError, ServiceError, ros_error, rpc_error
-from .message_building import get_field, instance
-from .messages import RosMessage
+from ..lisp.condition_types import Error
+from . import wire
 
 
 class Refusal(Exception):
@@ -34,14 +32,23 @@ class Service:
     def __init__(self, node, name, service_type, handler):
         self.node, self.name, self.type, self.handler = node, name, service_type, handler
         self.pending = set()
+        self.closed = False
+
+    def respond(self, call):
+        """The response to ``call``; what is raised is the failure."""
+        return self.handler(call.request)
 
     def close(self):
         """The server goes away: whoever waits for an answer gets none."""
+        self.closed = True
         for call in list(self.pending):
             call.finish(lost=True)
 
     def submit(self, call):
         """Take ``call``; it is answered now, or later in a spin of the node."""
+        if self.closed:
+            call.finish(lost=True)
+            return
         self.pending.add(call)
         if self.node.spins:
             self.node.inbox.append(call.serve)
@@ -50,303 +57,61 @@ class Service:
 
 
 class Call:
-    """One request on its way; ``failure`` is the server's text when it refused, ``lost`` that it gave no answer."""
+    """One request on its way. When ``done``: ``failure`` is the server's text if it refused, ``lost`` that it gave no answer,
+    else ``response`` is the answer. ``when_done`` is called with the call. ``caller``: see `start_call`."""
 
-    __slots__ = ("service", "request", "task", "done", "response", "failure", "lost")
+    __slots__ = ("service", "request", "when_done", "caller", "done", "response", "failure", "lost")
 
-    def __init__(self, service, request, task):
-        self.service, self.request, self.task = service, request, task
+    def __init__(self, service, request, when_done, caller=None):
+        self.service, self.request, self.when_done, self.caller = service, request, when_done, caller
         self.done = self.lost = False
         self.response = self.failure = None
 
     def serve(self):
+        """Have the handler answer."""
         if self.done:
             return
         try:
-            response = self.service.handler(self.request)
-            self.finish(wire.transmit(response))
+            response = wire.transmit(self.service.respond(self))
         except Refusal as refusal:
             self.finish(failure=str(refusal))
+        except Exception as problem:  # the caller shall not wait for ever because a handler is broken
+            kernel.unhandled(kernel.current(), problem)
+            self.finish(failure=f"error processing request: {problem}")
+        else:
+            self.finish(response)
 
     def finish(self, response=None, failure=None, lost=False):
-        self.service.pending.discard(self)
-        self.response, self.failure, self.lost, self.done = response, failure, lost, True
-        if self.task is not None:
-            kernel.unpark(self.task)
-
-    def wait(self):
-        """Park until there is an answer."""
-        while not self.done:
-            kernel.park(f"the answer of service {self.service.name}")
-        return self
-
-
-class LispService(Service):
-    """A service of the Lisp program. Requests are handled one after the other in the node's event loop task."""
-
-    def submit(self, call):
-        self.pending.add(call)
-        loop = event_loop(self.node)
-        if loop.task is kernel.current():  # a callback that calls a service of its own node; the original waits for itself
-            self.answer(call)
-        else:
-            loop.queue.append((self, call))
-            kernel.unpark(loop.task)
-
-    def answer(self, call):
-        """Run the callback and finish ``call``, whatever the callback does."""
-        from . import logging
-
-        def refuse(condition):
-            call.finish(failure=f"service cannot process request: {condition.report()}")
-
-        def fail(condition):
-            logging.log_text(
-                logging.ERROR,
-                ("ROSLISP", "SERVICE", "TCP"),
-                f"Error processing request {princ_to_string(call.request)}:\n {condition.report()}",
-            )
-            call.finish(failure=f"error processing request: {condition.report()}")
-
-        def run():
-            response = self.handler(call.request)
-            if not isinstance(response, RosMessage) or response.ros_type != self.type.response.ros_type:
-                expected = self.type.response.lisp_name.replace("::", ":")
-                return conditions.error(
-                    SimpleError(
-                        "~a",
-                        f"The callback of service {self.name} must return a {expected} (see make-response), "
-                        f"but it returned {princ_to_string(response)}.",
-                    )
-                )
-            call.finish(wire.transmit(response))
-
-        try:
-            conditions.handler_case([(ServiceError, refuse), (Error, fail)], run)
-        finally:
-            if not call.done:
-                call.finish(lost=True)
-
-
-class EventLoop:
-    """The task that serves the services of the Lisp program."""
-
-    def __init__(self, node):
-        self.queue = deque()
-        owner = node.graph.kernel
-        self.task = owner.spawn(self._run, name="ROSLisp event loop", parent=owner.main)
-        node.on_shutdown.append(lambda: self.task.cancel("the node was shut down"))
-
-    def _run(self):
-        while True:
-            while self.queue:
-                service, call = self.queue.popleft()
-                service.answer(call)
-            kernel.park("a request for a service of the node")
-
-
-def event_loop(node):
-    """The event loop of the Lisp program's node; started by its first service."""
-    found = getattr(node, "event_loop", None)
-    if found is None:
-        found = node.event_loop = EventLoop(node)
-    return found
-
-
-# ------------------------------------------------------------------------------------------------------------------ clients
+        """End the call; the first end counts."""
+        if not self.done:
+            self.service.pending.discard(self)
+            self.response, self.failure, self.lost, self.done = response, failure, lost, True
+            self.when_done(self)
 
 
 def exchange(service, request):
-    """Send ``request`` to the `Service` and wait; the finished `Call`."""
-    answer = Call(service, wire.transmit(request), kernel.current())
-    service.submit(answer)
-    return answer.wait()
+    """Send ``request`` to the `Service` and park until it is answered; the finished `Call`."""
+    task = kernel.current()
+    call = Call(service, wire.transmit(request), lambda _: kernel.unpark(task))
+    service.submit(call)
+    while not call.done:
+        kernel.park(f"the answer of service {service.name}")
+    return call
 
 
-def call(service, request):
-    """Send ``request`` to the `Service` and wait; the response, or the client's error."""
-    if request.ros_type != service.type.request.ros_type:
-        return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
-    answer = exchange(service, request)
-    if answer.lost:
-        return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
-    if answer.failure is not None:
-        return ros_error("service-call to ~a with request ~a failed with message: ~a", service.node.address, request, answer.failure)
-    return answer.response
+def start_call(service, request, when_done, caller=None):
+    """Send ``request`` to the `Service` and return the `Call`, without waiting. To be called with the baton, in a task or not.
 
-
-def lookup(here, name):
-    """The offered `Service` with the global name ``name``; with none, the master's ``ros-rpc-error``."""
-    while True:
-        service = here.graph.services.get(name)
-        if service is not None:
-            return service
-        rpc_error(f"lookupService {name}", -1, "no provider")
-
-
-class ServiceClient:
-    """What ``make-service-client`` returns: a name and a type to call again and again."""
-
-    lisp_name = "ROSLISP::SERVICE-CLIENT"
-
-    def __init__(self, name, service_type):
-        self.name, self.type = name, service_type
-
-
-def make_service_client(service_name, service_type):
-    """A client for `call_service` and `wait_for_service`; both arguments are strings."""
-    for name, value in (("SERVICE-NAME", service_name), ("SERVICE-TYPE", service_type)):
-        if not isinstance(value, (str, LispString)):
-            return conditions.error(
-                SimpleTypeError(
-                    "~a",
-                    f"The value of ROSLISP::{name} is {shown(value)}, which is not of type STRING.",
-                    datum=value,
-                    expected_type="STRING",
-                )
-            )
-    return ServiceClient(str(service_name), messages.service_type(service_type))
-
-
-def call_service(service, *rest_args):
-    """Call a service: ``name type . request`` or ``client . request``; returns the response.
-
-    The request is keywords and values, or exactly one request object.
+    when_done: a function of the finished call; it is called in whatever task serves the request, or in none, and must not wait.
+    It may run before this function returns. caller: a client of another process; it has a set ``at_end`` of functions that are called
+    when it has gone, so that a service can end what it began for it. A request that cannot be sent (a wrong type in a field) is a
+    failed call.
     """
-    from . import node
+    call = Call(service, request, when_done, caller)
 
-    here = node.require_node()
-    if isinstance(service, ServiceClient):
-        name, service_type, arguments = service.name, service.type, rest_args
-    elif not isinstance(service, (str, LispString)):
-        return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args, advice='A service is named by a string, such as '
-                                    '"/clear". Has the variable been set that holds it?')
-    elif not rest_args:
-        return conditions.error(
-            SimpleError(
-                "~a",
-                "Error while parsing arguments to DESTRUCTURING-BIND:\n  too few elements in\n    ()\n  to satisfy "
-                "lambda list\n    (SERVICE-TYPE &REST REQUEST-ARGS):\n  at least 1 expected, but got 0",
-            )
-        )
-    else:
-        name, service_type, arguments = str(service), messages.service_type(rest_args[0]), rest_args[1:]
-    request = _request(service_type, arguments)
-    return call(lookup(here, here.resolve(name)), request)
+    def submit():
+        call.request = wire.transmit(request)
+        service.submit(call)
 
-
-def _request(service_type, arguments):
-    if len(arguments) == 1 and isinstance(arguments[0], RosMessage):
-        return arguments[0]
-    return instance(service_type.request, arguments)
-
-
-def wait_for_service(service, timeout=None):
-    """T as soon as the service is offered, NIL when ``timeout`` seconds have passed; asks every 0.1 s."""
-    from . import node
-
-    here = node.require_node()
-    name = service.name if isinstance(service, ServiceClient) else str(service)
-    if not name.startswith(("/", "~")):
-        name = here.naming.namespace + name  # what the master makes of it; remappings are not looked at here
-    deadline = None if timeout is None else kernel.now() + float(timeout)
-    while name not in here.graph.services:
-        if deadline is not None and kernel.now() >= deadline:
-            return None
-        pause = 0.1 if deadline is None else min(0.1, deadline - kernel.now())
-        kernel.park(f"service {name} to be offered", kernel.now() + pause)
-    return True
-
-
-# ------------------------------------------------------------------------------------------------------------------ servers
-
-
-def register_service_fn(service_name, function, service_type):
-    """Offer a service: ``function`` gets the request and returns the response; 1."""
-    from . import node
-
-    here = node.require_node()
-    kind = messages.service_type(service_type)
-    name = here.resolve(str(service_name))
-    existing = here.services.get(name)
-    if existing is not None:
-        return ros_error("Cannot create service ~a as it already exists with info ~a", name, existing)
-    if isinstance(function, Symbol):
-        function = function.function
-    service = LispService(here, name, kind, function)
-    here.services[name] = here.graph.services[name] = service
-    event_loop(here)
-    return 1
-
-
-def register_service(service_name, symbol):
-    """What the macro ``register-service`` calls: the callback is the function that the service symbol names."""
-    return register_service_fn(service_name, symbol.function, symbol)
-
-
-# ------------------------------------------------------------------------------------------------------ persistent services
-
-
-class PersistentService:
-    """A service client that keeps its connection (``make-instance 'persistent-service``)."""
-
-    lisp_name = "ROSLISP::PERSISTENT-SERVICE"
-    initargs = {"SERVICE-NAME": "service_name", "SERVICE-TYPE": "service_type"}
-
-    def __init__(self, service_name, service_type):
-        from . import node
-
-        self.service_name, self.service_type = service_name, service_type
-        self.type = messages.service_type(service_type)
-        self.connection = None
-        self.connect(node.require_node())
-
-    def connect(self, here):
-        self.connection = lookup(here, here.resolve(str(self.service_name)))
-
-
-def call_persistent_service(service, *request):
-    """Call through the open connection. A failure is a ``service-call-error`` with the restart ``reconnect``."""
-    from . import node
-
-    here = node.require_node()
-    message = _request(service.type, request)
-    while True:
-        connection = service.connection
-        if connection is not None and here.graph.services.get(connection.name) is connection:
-            answer = exchange(connection, message)
-            if not answer.lost and answer.failure is None:
-                return answer.response
-            problem = answer.failure or "The server closed the connection."
-        else:
-            problem = "The connection is closed."
-        failure = ServiceCallError(message=problem)
-        conditions.restart_case(
-            [
-                (
-                    sym("ROSLISP::RECONNECT"),
-                    lambda: service.connect(here),
-                    "Try reconnecting and call the service again.",
-                )
-            ],
-            lambda failure=failure: conditions.error(failure),
-        )
-
-
-def close_persistent_service(service):
-    """Close the connection."""
-    service.connection = None
-
-
-def persistent_service_ok(service):
-    """T while the connection is open and the server there."""
-    connection = service.connection
-    return True if connection is not None and connection.node.graph.services.get(connection.name) is connection else None
-
-
-def call_named(service_name, service_symbol, return_field, *request):
-    """What functions made by ``def-service-call`` do: call, and return the response or one field of it."""
-    response = call_service(service_name, service_symbol, *request)
-    if return_field is None:
-        return response
-    return get_field(response, (symbol_name(return_field),))
+    conditions.handler_case([(Error, lambda problem: call.finish(failure=str(problem)))], submit)
+    return call

@@ -2,7 +2,8 @@
 
 A message may hold anything; its types are looked at when it is sent. `transmit` gives the object that a receiver gets: a
 fresh one, with integers cut to their bits, reals as double-floats (a ``float32`` rounded to 32 bits), booleans as T or NIL,
-strings of Latin-1 characters. Errors are those of roslisp, signalled in the task of the sender (roslisp.md 5.2).
+strings of Latin-1 characters. Errors are those of roslisp, signalled in the task of the sender (roslisp.md 5.2). Where in the message
+the wrong value is, their hint says; it is looked for only then.
 """
 
 from __future__ import annotations
@@ -10,18 +11,38 @@ from __future__ import annotations
 import math
 
 from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
-from ..lisp.data import Cons, DoubleFloat, LispString, Symbol
+from ..lisp.condition_types import SimpleError, TypeError_
+from ..lisp.data import Character, Cons, DoubleFloat, LispString, Symbol
 from ..lisp.numbers.arithmetic import is_real, single
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.packages import intern
 from ..lisp.printer.printer import prin1_to_string
 from . import messages
-from .definition_text import INTEGERS
+from .definition_text import INTEGERS, Field
+
+on_misfit = []
+"""Called with the text that roslisp logs before it signals that something is no message; its log, further up, is in this list."""
 
 POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
     intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
 ]
+
+
+class Misfit(Exception):
+    """A value cannot be sent. ``signal``: a function of the hint that signals the error of roslisp for it."""
+
+    def __init__(self, signal):
+        super().__init__()
+        self.signal = signal
+
+
+def _misfit(value, expected, context=""):
+    def signal(hint):
+        condition = TypeError_(value, expected)
+        condition.context, condition.hint = context, hint
+        return conditions.error(condition)
+
+    return Misfit(signal)
 
 
 def as_float(value):
@@ -33,9 +54,17 @@ def as_float(value):
     return float(value)
 
 
+def ros_text(text):
+    """``text`` as a message holds it: ROS has one byte for a character, so one with others than Latin-1 goes in as its bytes in UTF-8.
+
+    `message_json` lets it out as it was.
+    """
+    return text if text.isascii() or max(text) <= "\xff" else text.encode("utf-8", "replace").decode("latin-1")
+
+
 def lisp_float(value):
     """A float as a receiver gets it: a double-float, or a symbol when it is not finite."""
-    if value - value == 0.0:
+    if math.isfinite(value):
         return DoubleFloat(value)
     if value != value:
         return NOT_A_NUMBER
@@ -43,16 +72,16 @@ def lisp_float(value):
 
 
 def _real(value):
-    if is_real(value):
+    if value.__class__ is int or is_real(value):
         return value
     if isinstance(value, Symbol) and value in NONFINITE:
         return as_float(value)
-    return conditions.type_error(value, "REAL", "\nwhen binding SB-KERNEL::X")
+    raise _misfit(value, "REAL", "\nwhen binding SB-KERNEL::X")
 
 
 def _float64(value):
-    if value.__class__ is DoubleFloat and value - value == 0.0:
-        return value
+    if value.__class__ is float and math.isfinite(value):
+        return DoubleFloat(value)
     return lisp_float(float(_real(value)))
 
 
@@ -65,7 +94,7 @@ def _integer(bits, signed):
 
     def convert(value):
         if value.__class__ is not int:
-            return conditions.type_error(None if value is False else value, "INTEGER")
+            raise _misfit(None if value is False else value, "INTEGER")
         value &= mask
         return value - mask - 1 if signed and value & sign else value
 
@@ -80,12 +109,12 @@ def _string(value):
     if value is None:
         return ""
     if not isinstance(value, (str, LispString)):
-        return conditions.type_error(value, "STRING")
+        raise _misfit(value, "STRING")
     text = str(value)
     if not text.isascii():
         for character in text:
             if ord(character) > 255:
-                return conditions.type_error(ord(character), "(UNSIGNED-BYTE 8)")
+                raise _misfit(ord(character), "(UNSIGNED-BYTE 8)")
     return text
 
 
@@ -110,17 +139,16 @@ def _part(base):
     def convert(value):
         if isinstance(value, messages.RosMessage):
             if value.ros_type == base:
-                return transmit(value)
-            return conditions.type_error(value, messages.message_class_exact(base).lisp_name.replace("::", ":"))
-        from . import logging
+                cls = value.__class__
+                return (_transmitters.get(cls) or _transmitter(cls))(value)
+            raise _misfit(value, messages.message_class_exact(base).lisp_name.replace("::", ":"))
+        raise Misfit(lambda hint: no_message(value, hint))
 
-        logging.log_text(
-            logging.ERROR,
-            ("ROSLISP",),
-            f"Hmm... unexpectedly asked for serialization length of {prin1_to_string(value)}.  Most likely "
-            "because the aforementioned object was found some place where a (nonprimitive) ros message was expected.",
-        )
-        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, value)
+    def no_message(value, hint):
+        for complain in on_misfit:
+            complain(f"Hmm... unexpectedly asked for serialization length of {prin1_to_string(value)}.  Most likely "
+                     "because the aforementioned object was found some place where a (nonprimitive) ros message was expected.")
+        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, value, advice=hint)
 
     return convert
 
@@ -129,8 +157,10 @@ def _array(field, convert):
     def convert_all(value):
         if value is None:
             value = []
-        elif isinstance(value, (Cons, str, LispString)) or not hasattr(value, "__iter__"):
-            return conditions.type_error(value, "VECTOR")
+        elif isinstance(value, (str, LispString)):
+            value = map(Character, str(value))  # a vector of characters
+        elif isinstance(value, (Cons, dict)) or not hasattr(value, "__iter__"):
+            raise _misfit(value, "VECTOR")
         result = [convert(element) for element in value]
         if field.length and len(result) != field.length:
             return conditions.error(
@@ -145,35 +175,92 @@ def _array(field, convert):
     return convert_all
 
 
-def _converter(field):
-    convert = _primitives.get(field.base) or _part(field.base)
-    return _array(field, convert) if field.is_array else convert
+_transmitters: dict[type, object] = {}
+_READY = {
+    "float64": "{0} if {0}.__class__ is Double and isfinite({0}) else {1}({0})",
+    "float32": "Double(single({0})) if {0}.__class__ in floats and -3e38 < {0} < 3e38 else {1}({0})",
+    "bool": "{0} if {0} is True or {0} is None else {1}({0})",
+    "string": "{0} if {0}.__class__ is str and {0}.isascii() else {1}({0})",
+}
+"""What is written out for a field whose value usually can be sent as it is; for the others the converter is called."""
 
 
-_converters: dict[type, list] = {}
-
-
-def _converters_of(cls):
-    found = _converters.get(cls)
-    if found is None:
-        found = _converters[cls] = [(field.attribute, _converter(field)) for field in cls.fields]
-    return found
+def _transmitter(cls):
+    """Write out, compile and keep the function that transmits messages of class ``cls``."""
+    scope = {"new": cls.__new__, "cls": cls, "Double": DoubleFloat, "floats": (DoubleFloat, float), "isfinite": math.isfinite}
+    scope["single"] = single
+    lines = ["def transmitted(message):", "    result = new(cls)"]
+    for field in cls.fields:
+        name, convert = field.attribute, f"convert_{field.attribute}"
+        converter = _converter(field)
+        scope[convert] = _array(field, converter) if field.is_array else converter
+        template = "{1}({0})" if field.is_array else _READY.get(field.base, "{1}({0})")
+        lines += [f"    value = message.{name}", f"    result.{name} = {template.format('value', convert)}"]
+    exec("\n".join([*lines, "    return result"]), scope)  # written out once per type: it is on the path of every message
+    _transmitters[cls] = scope["transmitted"]
+    return scope["transmitted"]
 
 
 def transmit(message):
     """The fresh object that a receiver of ``message`` gets. Signals the type errors of serialisation."""
     cls = message.__class__
-    return cls(*[convert(getattr(message, name)) for name, convert in _converters.get(cls) or _converters_of(cls)])
+    try:
+        return (_transmitters.get(cls) or _transmitter(cls))(message)
+    except Misfit as problem:
+        signal = problem.signal
+    path, kind, value = _misplaced(message)
+    held, limit = prin1_to_string(value), 60
+    held = held if len(held) <= limit else held[:limit] + "..."
+    fault = "has characters that are not Latin-1" if kind == "string" and isinstance(value, (str, LispString)) else f"is no {kind}"
+    return signal(f"{message.ros_type}: {path} holds {held}, which {fault}.")
+
+
+def _converter(field):
+    return _primitives.get(field.base) or _part(field.base)
+
+
+def _misplaced(message):
+    """Where in MESSAGE the first value is that cannot be sent: its path as ROS writes it, the type it should have, the value."""
+    for field in message.fields:
+        value = getattr(message, field.attribute)
+        parts = [(field.name, value)]
+        if field.is_array:
+            try:
+                elements = _array(Field(field.name, field.base, 0), lambda element: element)(value)
+            except Misfit:
+                return field.name, field.type, value
+            parts = [(f"{field.name}[{index}]", element) for index, element in enumerate(elements)]
+        for path, part in parts:
+            try:
+                _converter(field)(part)
+            except Misfit:
+                if not isinstance(part, messages.RosMessage) or part.ros_type != field.base:
+                    return path, field.base, part
+                rest, kind, wrong = _misplaced(part)
+                return f"{path}.{rest}", kind, wrong
+    raise AssertionError("every value can be sent")
+
+
+_copiers: dict[type, object] = {}
+
+
+def _copier(cls):
+    """Write out, compile and keep the function that copies messages of class ``cls``."""
+    scope = {"new": cls.__new__, "cls": cls, "fresh": fresh}
+    lines = ["def copied(message):", "    result = new(cls)"]
+    for field in cls.fields:
+        value = f"message.{field.attribute}"
+        if field.is_array:
+            value = f"{value}[:]" if field.primitive else f"[fresh(each) for each in {value}]"
+        elif not field.primitive:
+            value = f"fresh({value})"
+        lines.append(f"    result.{field.attribute} = {value}")
+    exec("\n".join([*lines, "    return result"]), scope)
+    _copiers[cls] = scope["copied"]
+    return scope["copied"]
 
 
 def fresh(message):
     """One more copy of an object that `transmit` gave: what another receiver gets."""
-    return message.__class__(*[_fresh_value(value) for value in message.values()])
-
-
-def _fresh_value(value):
-    if isinstance(value, messages.RosMessage):
-        return fresh(value)
-    if value.__class__ is list:
-        return [_fresh_value(element) for element in value]
-    return value
+    cls = message.__class__
+    return (_copiers.get(cls) or _copier(cls))(message)

@@ -6,51 +6,89 @@ A component may be any real: integers, ratios and singles become doubles, a sing
 
 from __future__ import annotations
 
-from fractions import Fraction
+import math
 
-from cramhy_runtime.lisp.numbers.arithmetic import single
-from cramhy_runtime.lisp.conditions import SimpleTypeError, error, type_error
-from cramhy_runtime.lisp.data import DoubleFloat
-from cramhy_runtime.lisp.objects.generic_errors import no_applicable_method
+from cramhy_runtime.lisp.collections.arrays import aref
 from cramhy_runtime.lisp.collections.vectors import LispArray
+from cramhy_runtime.lisp.condition_types import TypeError_, shown_with
+from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, SimpleTypeError, error, type_error
+from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.lisp.numbers.arithmetic import is_real, single
+from cramhy_runtime.lisp.numbers.irrational import too_large_for
+from cramhy_runtime.lisp.objects.generic_errors import no_applicable_method
+from cramhy_runtime.lisp.packages import ensure_package, sym
+
+ensure_package("CL-TRANSFORMS")
 
 
-def real(value, context=""):
-    """The real ``value`` as a Python float at double precision."""
+def real(value, parameter=None):
+    """The real ``value``, given for ``parameter``, as a Python float at double precision."""
     kind = value.__class__
     if kind is DoubleFloat:
         return float(value)
     if kind is float:
         return single(value)
-    if kind is int or kind is Fraction:
-        return float(value)
-    return type_error(value, "REAL", context)
+    if kind is int or is_real(value):
+        try:
+            return float(value)
+        except OverflowError:
+            return too_large_for(value, "DOUBLE-FLOAT")
+    return type_error(value, "REAL", "" if parameter is None else _binding(parameter))
 
 
-def float_argument(value, name):
+def _binding(parameter):
+    """The end of a type-error's text: which parameter the value was for."""
+    return f"\nwhen binding {shown_with(sym(f'CL-TRANSFORMS::{parameter}'), 'COMMON-LISP')}"
+
+
+def wrong_type(value, expected, parameter, hint=None):
+    """Signal a type-error: ``value`` was given for ``parameter``, which must be of the type ``expected``."""
+    condition = TypeError_(value, expected)
+    condition.context, condition.hint = _binding(parameter), hint
+    return error(condition)
+
+
+def float_argument(value, parameter):
     """A parameter that must be a float: integers are refused, as in the original."""
-    if not isinstance(value, float):
-        return type_error(value, "FLOAT", f"\nwhen binding CL-TRANSFORMS::{name}")
-    return value
+    if isinstance(value, float):
+        return value
+    return wrong_type(value, "FLOAT", parameter, f"An angle must be a float: write {value}.0." if value.__class__ is int else None)
+
+
+def sine_and_cosine(angle):
+    """Both of an angle in radians, plain floats; of an infinite one they are an error, as in Lisp."""
+    try:
+        return math.sin(angle), math.cos(angle)
+    except ValueError:
+        return error(FloatingPointInvalidOperation())
+
+
+def array_elements(array):
+    """The elements of a Lisp vector, or ``None`` if ``array`` is not one. Strings hold no numbers and do not count."""
+    if isinstance(array, list):
+        return array
+    if isinstance(array, LispArray) and len(array.dimensions) == 1:
+        return array.active()
+    return None
 
 
 def elements(array, size):
     """The elements of a Lisp vector of ``size`` numbers, or ``None`` if ``array`` is not one."""
-    if isinstance(array, list):
-        items = array
-    elif isinstance(array, LispArray) and len(array.dimensions) == 1:
-        items = array.active()
-    else:
-        return None
-    return items if len(items) == size else None
+    items = array_elements(array)
+    return items if items is not None and len(items) == size else None
+
+
+def element(array, index):
+    """Element ``index`` of a Lisp array, with the errors of ``aref``; ``None`` if it is not an array."""
+    return aref(array, index) if isinstance(array, (list, LispArray)) else None
 
 
 def check_type(value, cls, parameter):
     """Signal the error of ``check-type`` unless ``value`` is of the class."""
     if isinstance(value, cls):
         return value
-    name = cls.lisp_name.rpartition("::")[2]
-    return error(SimpleTypeError("The value of CL-TRANSFORMS::~A is ~S, which is not of type ~A.", parameter, value, name,
+    name, package = sym(cls.lisp_name), cls.lisp_name.partition("::")[0]
+    return error(SimpleTypeError("The value of ~S is ~S, which is not of type ~A.", sym(f"{package}::{parameter}"), value, name,
                                  datum=value, expected_type=name))
 
 
@@ -58,7 +96,7 @@ def instance(value, cls, parameter):
     """Signal a type-error unless ``value`` is of the class: a declared parameter or slot."""
     if isinstance(value, cls):
         return value
-    return type_error(value, cls.lisp_name, f"\nwhen binding CL-TRANSFORMS::{parameter}")
+    return wrong_type(value, sym(cls.lisp_name), parameter)
 
 
 def component(index):
@@ -78,3 +116,15 @@ def component(index):
 def no_method(function, *arguments):
     """Signal that a generic function has no method for ``arguments``."""
     return no_applicable_method(f"CL-TRANSFORMS:{function.upper()}", None, *arguments)
+
+
+def slot_reader(name, *classes, package="CL-TRANSFORMS"):
+    """The function that reads the slot ``name`` of objects of ``classes``; it is generic in the original."""
+    attribute = name.replace("-", "_")
+
+    def read(obj):
+        return getattr(obj, attribute) if isinstance(obj, classes) else no_applicable_method(f"{package}:{name.upper()}", None, obj)
+
+    read.__name__ = attribute
+    read.__doc__ = f"The {name} of a {' or '.join(cls.__name__.lower() for cls in classes)}."
+    return read

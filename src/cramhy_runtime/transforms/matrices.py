@@ -4,38 +4,39 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.conditions import error, type_error
-from cramhy_runtime.lisp.data import DoubleFloat
 from cramhy_runtime.lisp.collections.vectors import LispArray
+from cramhy_runtime.lisp.conditions import error
+from cramhy_runtime.lisp.data import DoubleFloat
 
-from .coercion import instance, real
+from .coercion import instance, real, wrong_type
 from .poses import Pose, Transform, make_transform, pose_to_transform
-from .quaternions import Quaternion
-from .vectors import Vector3, normalize_vector
+from .quaternions import Quaternion, general, quaternion
+from .vectors import Vector3, normalize_vector, point
 
 
 def _matrix(rows):
-    return LispArray((len(rows), len(rows[0])), [item for row in rows for item in row])
+    return LispArray((len(rows), len(rows[0]) if rows else 0), [item for row in rows for item in row])
 
 
 def _rows(matrix):
     """The rows of a Lisp matrix."""
     if not isinstance(matrix, LispArray) or len(matrix.dimensions) != 2:
-        return type_error(matrix, "(ARRAY * (* *))", "\nwhen binding CL-TRANSFORMS::MATRIX")
+        return wrong_type(matrix, "(ARRAY * (* *))", "MATRIX")
     items, width = matrix.active(), matrix.dimensions[1]
-    return [items[start:start + width] for start in range(0, len(items), width)]
+    return [items[start:start + width] for start in range(0, len(items), width or 1)]
 
 
-def _square(matrix, size):
+def _square(matrix, size, at_least=False):
     rows = _rows(matrix)
-    if len(rows) != size or len(rows[0]) != size:
-        return error("The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(~D ~D)) failed: the matrix is ~D by ~D.",
-                     size, size, len(rows), len(rows[0]) if rows else 0)
-    return rows
+    height, width = matrix.dimensions
+    if (height, width) == (size, size) or at_least and min(height, width) >= size:
+        return rows
+    return error("The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(~D ~D)) failed: the matrix is ~D by ~D.",
+                 size, size, height, width)
 
 
-def _rotation_rows(q):
-    x, y, z, w = q.components
+def _rotation_rows(components):
+    x, y, z, w = components
     return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
             [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
@@ -44,34 +45,38 @@ def _rotation_rows(q):
 def quaternion_to_matrix(q):
     """The 3 by 3 rotation matrix."""
     instance(q, Quaternion, "Q")
-    return _matrix([[DoubleFloat(item) for item in row] for row in _rotation_rows(q)])
+    return _matrix([[DoubleFloat(item) for item in row] for row in _rotation_rows(q.components)])
 
 
 def matrix_to_quaternion(matrix):
-    """The rotation of a 3 by 3 matrix, which is taken to be orthonormal."""
-    rows = [[real(item) for item in row[:3]] for row in _rows(matrix)[:3]]
+    """The rotation of a matrix, whose first 3 by 3 elements are taken to be orthonormal."""
+    return _quaternion_of([[real(item) for item in row[:3]] for row in _square(matrix, 3, at_least=True)[:3]])
+
+
+def _quaternion_of(rows):
     trace = rows[0][0] + rows[1][1] + rows[2][2] + 1
     if trace > 1e-6:
         s = 0.5 / math.sqrt(trace)
-        return Quaternion((rows[2][1] - rows[1][2]) * s, (rows[0][2] - rows[2][0]) * s, (rows[1][0] - rows[0][1]) * s, 0.25 / s)
+        return quaternion(((rows[2][1] - rows[1][2]) * s, (rows[0][2] - rows[2][0]) * s, (rows[1][0] - rows[0][1]) * s, 0.25 / s))
     i = max(range(3), key=lambda index: rows[index][index])
     j, k = (i + 1) % 3, (i + 2) % 3
     s = 2 * math.sqrt(1 + rows[i][i] - rows[j][j] - rows[k][k])
     components = [0.0, 0.0, 0.0, (rows[k][j] - rows[j][k]) / s]
     components[i] = 0.25 * s
     components[j], components[k] = (rows[j][i] + rows[i][j]) / s, (rows[k][i] + rows[i][k]) / s
-    return Quaternion(*components)
+    return quaternion(tuple(components))
 
 
 def transform_to_matrix(transform):
     """The 4 by 4 matrix; its last row is three singles and an integer, as in the original."""
     instance(transform, Transform, "TRANSFORM")
     rows = [[*map(DoubleFloat, row), DoubleFloat(moved)]
-            for row, moved in zip(_rotation_rows(transform.rotation), transform.translation)]
+            for row, moved in zip(_rotation_rows(general(transform.rotation)), point(transform.translation))]
     return _matrix([*rows, [0.0, 0.0, 0.0, 1]])
 
 
 def pose_to_matrix(pose):
+    """The 4 by 4 matrix of a pose."""
     instance(pose, Pose, "POSE")
     return transform_to_matrix(pose_to_transform(pose))
 
@@ -99,4 +104,4 @@ invert_rot_matrix = transpose_rot_matrix
 def column_vectors_to_quaternion(x, y, z):
     """The rotation whose matrix has the directions of three vectors as its columns."""
     columns = [normalize_vector(instance(v, Vector3, name)).components for v, name in ((x, "X"), (y, "Y"), (z, "Z"))]
-    return matrix_to_quaternion(_matrix([list(row) for row in zip(*columns)]))
+    return _quaternion_of(list(zip(*columns)))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.data import DoubleFloat, truth
+from cramhy_runtime.lisp.data import DoubleFloat, lisp_list, truth
 from cramhy_runtime.lisp.faces import define_face
+from cramhy_runtime.lisp.objects.classes import class_name
+from cramhy_runtime.lisp.objects.open_functions import open_to_methods
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.lisp.printer.print_controls import PRINT_ESCAPE
 from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, write
+from cramhy_runtime.lisp.types.types import define_type
 
 from . import matrices, poses, quaternions, vectors
 
@@ -32,17 +35,25 @@ CL_TRANSFORMS = define_face(
     export="3d-vector quaternion pose twist wrench point gen-quaternion quaternion-coefficient",
     internal="norm",
 )
-for _name in ("TRANSLATION", "ROTATION", "ORIGIN", "ORIENTATION"):
-    CL_TRANSFORMS.intern(_name).setf_function = getattr(poses, f"set_{_name.lower()}")
+for _name in "X Y Z W TRANSLATION ROTATION ORIGIN ORIENTATION".split():
+    open_to_methods(CL_TRANSFORMS.intern(_name).function, f"CL-TRANSFORMS::{_name}", "(obj)", None)
+open_to_methods(poses.reference_transform, "CL-TRANSFORMS::REFERENCE-TRANSFORM", "(pose)", None)
+open_to_methods(poses.transform, "CL-TRANSFORMS::TRANSFORM", "(tr x)", None, None)
 
 
-def head(name, stream):
-    """Write ``#<`` and the class name, with its package where the current one does not see it."""
+def _define_type(name, *specifier):
+    define_type(CL_TRANSFORMS.intern(name), lambda form, environment: lisp_list(*specifier))
+
+
+_define_type("POINT", sym("OR"), sym("CL-TRANSFORMS::3D-VECTOR"), lisp_list(sym("VECTOR"), sym("*"), 3))
+_define_type("GEN-QUATERNION", sym("OR"), sym("CL-TRANSFORMS::QUATERNION"), lisp_list(sym("VECTOR"), sym("*"), 4), sym("REAL"))
+_define_type("QUATERNION-COEFFICIENT", sym("OR"), sym("FLOAT"))
+
+
+def head(obj, stream):
+    """Write ``#<`` and the name of the object's class, with its package where the current one does not see it."""
     stream.write("#<")
-    if truth(PRINT_ESCAPE.value):
-        write(sym(name), stream, escape=True)
-    else:
-        stream.write(name.rpartition("::")[2])
+    write(class_name(type(obj)), stream, escape=truth(PRINT_ESCAPE.value))
 
 
 def numbers(components, kind, stream):
@@ -51,14 +62,14 @@ def numbers(components, kind, stream):
 
 
 def _print_vector(obj, stream):
-    head(obj.lisp_name, stream)
+    head(obj, stream)
     stream.write(" ")
     numbers(obj.components, DoubleFloat, stream)
     stream.write(">")
 
 
 def _print_quaternion(obj, stream):
-    head(obj.lisp_name, stream)
+    head(obj, stream)
     stream.write(" ")
     numbers(obj.components, obj.kind, stream)
     stream.write(">")
@@ -68,7 +79,7 @@ def parts_printer(*parts):
     """A printer for an object with parts: each on a line of its own, three spaces from the margin wherever the object stands."""
 
     def print_parts(obj, stream):
-        head(obj.lisp_name, stream)
+        head(obj, stream)
         stream.write(" ")
         for attribute, label in parts:
             stream.write("\n   " + label)

@@ -10,33 +10,39 @@ from cramhy_runtime.lisp.conditions import error, warn, wrong_argument_count
 from cramhy_runtime.lisp.data import truth
 from cramhy_runtime.lisp.packages import keyword
 
-from .coercion import elements, instance, no_method
-from .quaternions import Quaternion, inverse, multiply, normalize, normalized, rotated, yaw
-from .vectors import Vector3, make_3d_vector, point
+from .coercion import array_elements, instance, no_method, slot_reader
+from .quaternions import TOLERANCE, Quaternion, general, inverse, multiply, normalize, normalized, quaternion, rotated, unit, yaw
+from .vectors import Vector3, make_3d_vector, point, vector
 
 _WARN, _NO_WARN = keyword("WARN"), keyword("NO-WARN")
 
 
 class Transform:
-    """A change of coordinates: turn by ``rotation``, then move by ``translation``."""
+    """A change of coordinates: turn by ``rotation``, then move by ``translation``. A rotation of another length is normalised."""
 
     lisp_name = "CL-TRANSFORMS::TRANSFORM"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
 
     def __init__(self, translation=None, rotation=None):
         self.translation = Vector3() if translation is None else translation
-        self.rotation = Quaternion() if rotation is None else rotation
+        self.rotation = Quaternion() if rotation is None else unit(rotation)
+
+    def __repr__(self):
+        return f"#<TRANSFORM {self.translation!r} {self.rotation!r}>"
 
 
 class Pose:
-    """A place and a direction: ``origin`` and ``orientation``, a unit quaternion."""
+    """A place and a direction: ``origin`` and ``orientation``. An orientation of another length is normalised."""
 
     lisp_name = "CL-TRANSFORMS::POSE"
     initargs = {"ORIGIN": "origin", "ORIENTATION": "orientation"}
 
     def __init__(self, origin=None, orientation=None):
         self.origin = Vector3() if origin is None else origin
-        self.orientation = Quaternion() if orientation is None else orientation
+        self.orientation = Quaternion() if orientation is None else unit(orientation)
+
+    def __repr__(self):
+        return f"#<POSE {self.origin!r} {self.orientation!r}>"
 
 
 class Twist:
@@ -58,26 +64,20 @@ class Wrench:
     __init__ = Twist.__init__
 
 
-def _slot_reader(name, *classes):
-    def read(obj):
-        return getattr(obj, name) if isinstance(obj, classes) else no_method(name, obj)
-
-    def write(value, obj):
-        setattr(instance(obj, classes[0], "OBJECT") if not isinstance(obj, classes) else obj, name, value)
-        return value
-
-    read.__name__ = name
-    read.__doc__ = f"The {name} of {' or '.join(cls.__name__.lower() for cls in classes)}."
-    return read, write
-
-
-translation, set_translation = _slot_reader("translation", Transform, Twist, Wrench)
-rotation, set_rotation = _slot_reader("rotation", Transform, Twist, Wrench)
-origin, set_origin = _slot_reader("origin", Pose)
-orientation, set_orientation = _slot_reader("orientation", Pose)
+translation = slot_reader("translation", Transform, Twist, Wrench)
+rotation = slot_reader("rotation", Transform, Twist, Wrench)
+origin = slot_reader("origin", Pose)
+orientation = slot_reader("orientation", Pose)
 
 
 # --------------------------------------------------------------------------------------------------------------- transforms
+
+
+def unchecked_transform(translation, rotation):
+    """A transform whose rotation is taken as it is."""
+    made = Transform.__new__(Transform)
+    made.translation, made.rotation = translation, rotation
+    return made
 
 
 def make_transform(translation, rotation, *, validate_args=_WARN):
@@ -91,14 +91,16 @@ def make_transform(translation, rotation, *, validate_args=_WARN):
         rotation = normalize(rotation)
         if validate_args is _WARN:
             warn("Normalized rotation component to ~a", rotation)
-    return Transform(translation, rotation)
+    return unchecked_transform(translation, rotation)
 
 
 def make_identity_transform():
+    """The transform that changes nothing."""
     return Transform()
 
 
 def copy_transform(transform, *, translation=None, rotation=None):
+    """A transform like ``transform`` with parts replaced."""
     instance(transform, Transform, "TRANSFORM")
     return make_transform(transform.translation if translation is None else translation,
                           transform.rotation if rotation is None else rotation)
@@ -107,9 +109,16 @@ def copy_transform(transform, *, translation=None, rotation=None):
 def transform_inv(trans):
     """The transform back."""
     instance(trans, Transform, "TRANS")
-    turned_back = inverse(trans.rotation.components)
-    moved_back = tuple(-component for component in point(trans.translation))
-    return make_transform(Vector3(*rotated(turned_back, moved_back)), Quaternion(*turned_back))
+    turned_back = inverse(general(trans.rotation))
+    tx, ty, tz = point(trans.translation)
+    return _computed(rotated(turned_back, (-tx, -ty, -tz)), turned_back)
+
+
+def moved(trans, components):
+    """The components of a point, a tuple, after the transform."""
+    vx, vy, vz = rotated(general(trans.rotation), components)
+    tx, ty, tz = point(trans.translation)
+    return tx + vx, ty + vy, tz + vz
 
 
 def transform_star(*transforms):
@@ -117,13 +126,19 @@ def transform_star(*transforms):
     if not transforms:
         return wrong_argument_count(0)
     result = transforms[-1]
-    for outer in reversed(transforms[:-1]):
+    for outer in transforms[-2::-1]:
         instance(outer, Transform, "TRANSFORM")
         instance(result, Transform, "TRANSFORM")
-        turned = rotated(outer.rotation.components, point(result.translation))
-        moved = Vector3(*(a + b for a, b in zip(point(outer.translation), turned)))
-        result = make_transform(moved, Quaternion(*multiply(outer.rotation.components, result.rotation.components)))
+        result = _computed(moved(outer, point(result.translation)), multiply(general(outer.rotation), general(result.rotation)))
     return result
+
+
+def _computed(translation, rotation):
+    """The transform of component tuples; when many products have made the rotation drift, with the warning of `make_transform`."""
+    qx, qy, qz, qw = rotation
+    if -TOLERANCE < qx * qx + qy * qy + qz * qz + qw * qw - 1 < TOLERANCE:
+        return unchecked_transform(vector(translation), quaternion(rotation))
+    return make_transform(vector(translation), quaternion(rotation))
 
 
 def transform_diff(transform_to, transform_from):
@@ -134,8 +149,7 @@ def transform_diff(transform_to, transform_from):
 def transform_point(trans, p):
     """The coordinates of the point ``p`` after the transform."""
     instance(trans, Transform, "TRANS")
-    turned = rotated(trans.rotation.components, point(p, "P"))
-    return Vector3(*(a + b for a, b in zip(point(trans.translation), turned)))
+    return vector(moved(trans, point(p, "P")))
 
 
 def transform(tr, x):
@@ -144,31 +158,41 @@ def transform(tr, x):
         return transform_point(tr, x)
     if isinstance(x, Pose):
         return transform_pose(tr, x)
-    if isinstance(x, list):
-        if elements(x, 3) is None:
-            return error("The assertion (= 3 (LENGTH CL-TRANSFORMS::P)) failed with (LENGTH CL-TRANSFORMS::P) = ~S.", len(x))
-        return transform_point(tr, x)
-    return no_method("transform", tr, x)
+    items = array_elements(x)
+    if items is None:
+        return no_method("transform", tr, x)
+    if len(items) != 3:
+        return error("The assertion (= 3 (LENGTH CL-TRANSFORMS::P)) failed with (LENGTH CL-TRANSFORMS::P) = ~S.", len(items))
+    return transform_point(tr, items)
 
 
 # -------------------------------------------------------------------------------------------------------------------- poses
 
 
+def unchecked_pose(origin, orientation):
+    """A pose whose orientation is of unit length already."""
+    made = Pose.__new__(Pose)
+    made.origin, made.orientation = origin, orientation
+    return made
+
+
 def make_pose(origin, orientation):
-    """A pose; an orientation that is not of unit length is normalised silently."""
-    return Pose(origin, orientation if normalized(orientation) else normalize(orientation))
+    """A pose at a point, in metres; an orientation that is not of unit length is normalised silently."""
+    return unchecked_pose(origin, unit(orientation))
 
 
 def make_identity_pose():
+    """The pose at the origin that looks along x."""
     return Pose()
 
 
 def make_2d_pose(x, y, theta):
-    """The pose at (x, y, 0) with heading ``theta``, a float in radians."""
-    return Pose(make_3d_vector(x, y, 0), yaw(theta))
+    """The pose at (x, y, 0), in metres, with heading ``theta``, a float in radians."""
+    return unchecked_pose(make_3d_vector(x, y, 0), yaw(theta))
 
 
 def copy_pose(pose, *, origin=None, orientation=None):
+    """A pose like ``pose`` with parts replaced."""
     instance(pose, Pose, "POSE")
     return make_pose(pose.origin if origin is None else origin, pose.orientation if orientation is None else orientation)
 
@@ -177,15 +201,17 @@ def reference_transform(pose):
     """The transform with the components of a pose; a transform is its own."""
     if isinstance(pose, Transform):
         return pose
-    return Transform(pose.origin, pose.orientation) if isinstance(pose, Pose) else no_method("reference-transform", pose)
+    return pose_to_transform(pose) if isinstance(pose, Pose) else no_method("reference-transform", pose)
 
 
 def pose_to_transform(pose):
+    """The transform from the coordinates of ``pose`` to those that it is given in."""
     instance(pose, Pose, "POSE")
-    return Transform(pose.origin, pose.orientation)
+    return unchecked_transform(pose.origin, pose.orientation)
 
 
 def transform_to_pose(transform):
+    """The pose with the components of a transform."""
     instance(transform, Transform, "TRANSFORM")
     return make_pose(transform.translation, transform.rotation)
 
@@ -193,33 +219,40 @@ def transform_to_pose(transform):
 def transform_pose(tr, p):
     """The pose ``p`` after the transform ``tr``."""
     instance(tr, Transform, "TR")
-    return transform_to_pose(transform_star(tr, pose_to_transform(p)))
+    moved = transform_star(tr, pose_to_transform(p))
+    return unchecked_pose(moved.translation, moved.rotation)
 
 
 # ------------------------------------------------------------------------------------------------------- twists and wrenches
 
 
 def make_twist(translation, rotation):
+    """A twist: linear velocity in m/s and angular velocity in rad/s, two vectors."""
     return Twist(translation, rotation)
 
 
 def make_identity_twist():
+    """The twist of what stands still."""
     return Twist()
 
 
 def copy_twist(twist, *, translation=None, rotation=None):
+    """A twist like ``twist`` with parts replaced."""
     return _copy(twist, Twist, "TWIST", translation, rotation)
 
 
 def make_wrench(translation, rotation):
+    """A wrench: force in N and torque in N m, two vectors."""
     return Wrench(translation, rotation)
 
 
 def make_identity_wrench():
+    """The wrench of what nothing pulls or turns."""
     return Wrench()
 
 
 def copy_wrench(wrench, *, translation=None, rotation=None):
+    """A wrench like ``wrench`` with parts replaced."""
     return _copy(wrench, Wrench, "WRENCH", translation, rotation)
 
 

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.numbers.arithmetic import is_real, single
-from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, error, type_error
+from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, SimpleError, error
 from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, list_from
-from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.lisp.numbers.arithmetic import is_real, single
+from cramhy_runtime.lisp.packages import keyword, sym
 
-from .coercion import check_type, component, elements, float_argument, instance, no_method, real
-from .vectors import Vector3, point
+from .coercion import check_type, component, element, elements, float_argument, instance, no_method, real, sine_and_cosine, wrong_type
+from .vectors import Vector3, point, vector
 
 TOLERANCE = 1e-6
 """How far the squared norm of a unit quaternion may be from 1."""
@@ -37,7 +37,14 @@ class Quaternion:
         return iter(self.components)
 
     def __repr__(self):
-        return "#<QUATERNION ({}d0 {}d0 {}d0 {}d0)>".format(*self.components)
+        return "#<QUATERNION ({} {} {} {})>".format(*map(self.kind, self.components))
+
+
+def quaternion(components):
+    """The quaternion with four plain Python floats, which are not coerced."""
+    made = Quaternion.__new__(Quaternion)
+    made.components = components
+    return made
 
 
 def general(q):
@@ -48,15 +55,18 @@ def general(q):
         return (0.0, 0.0, 0.0, real(q))
     items = elements(q, 4)
     if items is None:
-        return type_error(q, "CL-TRANSFORMS:GEN-QUATERNION")
+        hint = "The place comes first, then the rotation." if isinstance(q, Vector3) else None
+        return wrong_type(q, sym("CL-TRANSFORMS::GEN-QUATERNION"), "Q", hint)
     return tuple([real(item) for item in items])
 
 
 def _made(components, *sources):
     """A quaternion of ``components``: of singles if no source has a double, as the original's arithmetic gives."""
-    result = Quaternion(*components)
-    if not any(_has_double(source) for source in sources):
-        result.kind = float
+    result = quaternion(components)
+    for source in sources:
+        if source.__class__ is Quaternion and source.kind is DoubleFloat or _has_double(source):
+            return result
+    result.kind = float
     return result
 
 
@@ -66,16 +76,26 @@ def _has_double(source):
     return any(isinstance(item, DoubleFloat) for item in elements(source, 4) or [source])
 
 
+def _numbers(q):
+    """The components as Lisp sees them, for functions whose result has the type of the inputs."""
+    if isinstance(q, Quaternion):
+        return [q.kind(component) for component in q.components]
+    general(q)
+    return [0.0, 0.0, 0.0, q] if is_real(q) else elements(q, 4)
+
+
 def make_quaternion(x, y, z, w):
     """A quaternion with components coerced to doubles; it is not normalised."""
-    return Quaternion(real(x), real(y), real(z), real(w))
+    return quaternion((real(x), real(y), real(z), real(w)))
 
 
 def make_identity_rotation(type_template=None):
+    """The rotation (0 0 0 1). The argument changes nothing, as in the original."""
     return Quaternion()
 
 
 def copy_quaternion(q, *, x=None, y=None, z=None, w=None):
+    """A copy of ``q`` with components replaced."""
     old = instance(q, Quaternion, "Q").components
     return Quaternion(*(before if new is None else real(new) for before, new in zip(old, (x, y, z, w))))
 
@@ -84,9 +104,9 @@ def w(obj):
     """The w of a quaternion or array; a number is its own."""
     if isinstance(obj, Quaternion):
         return obj.component(3)
-    items = elements(obj, 4)
-    if items is not None:
-        return items[3]
+    found = element(obj, 3)
+    if found is not None:
+        return found
     return obj if is_real(obj) else no_method("w", obj)
 
 
@@ -111,17 +131,17 @@ def q_star(*args):
     if not args:
         return 1.0
     product = general(args[-1])
-    for q in reversed(args[:-1]):
+    for q in args[-2::-1]:
         product = multiply(general(q), product)
     return _made(product, *args)
 
 
 def inverse(components):
-    """The inverse of a component tuple."""
-    square = sum(component * component for component in components)
+    """The inverse of a component tuple: the conjugate divided by the squared norm."""
+    qx, qy, qz, qw = components
+    square = qx * qx + qy * qy + qz * qz + qw * qw
     if square == 0.0:
         return error(FloatingPointInvalidOperation())
-    qx, qy, qz, qw = components
     return (-qx / square, -qy / square, -qz / square, qw / square)
 
 
@@ -134,52 +154,67 @@ def q_plus(*args):
     """``q+``: the sum; without arguments the number 0.0."""
     if not args:
         return 0.0
-    return _made([sum(parts) for parts in zip(*(general(q) for q in args))], *args)
+    return _made(tuple(map(sum, zip(*map(general, args)))), *args)
 
 
 def q_minus(q1, *args):
     """``q-``: the difference; one argument is negated."""
-    first = general(q1)
+    components = general(q1)
     if not args:
-        return _made([-component for component in first], q1)
+        return _made(tuple([-component for component in components]), q1)
     for q in args:
-        first = [a - b for a, b in zip(first, general(q))]
-    return _made(first, q1, *args)
+        components = tuple([a - b for a, b in zip(components, general(q))])
+    return _made(components, q1, *args)
 
 
 def q_dot(q1, q2):
-    """The sum of the four products."""
-    return DoubleFloat(sum(a * b for a, b in zip(general(q1), general(q2))))
+    """The sum of the four products; a double for quaternions, of the type of the inputs for arrays and reals."""
+    return sum(a * b for a, b in zip(_numbers(q1), _numbers(q2)))
 
 
 def q_scale(q, scalar):
-    factor = real(scalar)
-    return Quaternion(*(component * factor for component in general(q)))
+    """All components times the real ``scalar``."""
+    factor = real(scalar, "SCALAR")
+    return quaternion(tuple([component * factor for component in general(q)]))
 
 
 def squared_norm(q):
-    return DoubleFloat(sum(component * component for component in general(q)))
+    """The sum of the squares of the components."""
+    return q_dot(q, q)
 
 
 def q_norm(q):
-    return DoubleFloat(math.sqrt(squared_norm(q)))
+    """The root of the sum of the squares of the components."""
+    square = q_dot(q, q)
+    return DoubleFloat(math.sqrt(square)) if isinstance(square, DoubleFloat) else math.sqrt(square)
 
 
 def normalized(q):
-    """Whether the norm of ``q`` is 1, nearly."""
-    return abs(sum(component * component for component in general(q)) - 1) < TOLERANCE
+    """Whether the squared norm of ``q`` is 1, nearly."""
+    qx, qy, qz, qw = general(q)
+    return -TOLERANCE < qx * qx + qy * qy + qz * qz + qw * qw - 1 < TOLERANCE
 
 
 def is_normalized(q):
+    """T if the squared norm of ``q`` is within 1e-6 of 1, else NIL."""
     return True if normalized(q) else None
 
 
 def normalize(q):
     """The unit quaternion for the same rotation; one without length is an error."""
-    norm = math.sqrt(sum(component * component for component in general(q)))
+    components = general(q)
+    norm = math.sqrt(sum(component * component for component in components))
     if norm < TOLERANCE:
-        return error("Attempted to normalize quaternion ~a with norm ~a", q, DoubleFloat(norm))
-    return _made([component / norm for component in general(q)], q)
+        problem = SimpleError("Attempted to normalize quaternion ~a with norm ~a", q, DoubleFloat(norm))
+        problem.hint = ("A message that nobody filled in has the orientation (0 0 0 0), which is no rotation; "
+                        "(make-identity-rotation) is the one that turns nothing.")
+        return error(problem)
+    return _made(tuple([component / norm for component in components]), q)
+
+
+def unit(q):
+    """``q`` itself when it is of unit length, else normalised, silently."""
+    return q if normalized(q) else normalize(q)
 
 
 # ---------------------------------------------------------------------------------------------------------------- rotations
@@ -188,38 +223,36 @@ def normalize(q):
 def axis_angle_to_quaternion(axis, angle):
     """The rotation by ``angle`` (a float, radians) about ``axis``, which is normalised first."""
     float_argument(angle, "ANGLE")
-    components = point(axis, "AXIS")
-    square = sum(component * component for component in components)
-    if abs(square - 1) >= TOLERANCE:
+    ax, ay, az = point(axis, "AXIS")
+    square = ax * ax + ay * ay + az * az
+    if not -TOLERANCE < square - 1 < TOLERANCE:
         if square == 0.0:
             return error("Can't normalize ~a", axis)
         factor = 1 / math.sqrt(square)
-        components = tuple(component * factor for component in components)
+        ax, ay, az = ax * factor, ay * factor, az * factor
     half = float(angle) / 2
-    sine, cosine = math.sin(half), math.cos(half)
+    sine, cosine = sine_and_cosine(half)
     if not isinstance(angle, DoubleFloat):  # a single gives the sine of a single
         sine, cosine = single(sine), single(cosine)
-    return Quaternion(*(component * sine for component in components), cosine)
+    return quaternion((ax * sine, ay * sine, az * sine, cosine))
 
 
 def quaternion_to_axis_angle(q):
     """Values: the vector part, which is not of unit length, and the angle in [0, 2 pi]."""
     qx, qy, qz, qw = general(q)
-    return MultipleValues((Vector3(qx, qy, qz), DoubleFloat(2 * math.acos(max(-1.0, min(1.0, qw))))))
+    return MultipleValues((vector((qx, qy, qz)), DoubleFloat(2 * math.acos(max(-1.0, min(1.0, qw))))))
 
 
 def euler_to_quaternion(*, ax=0.0, ay=0.0, az=0.0):
     """The rotation by roll ``ax``, then pitch ``ay``, then yaw ``az`` about the fixed axes, in radians."""
 
     def halves(angle):
-        half = real(angle) / 2
-        if isinstance(angle, DoubleFloat):
-            return math.sin(half), math.cos(half)
-        return single(math.sin(half)), single(math.cos(half))
+        sine, cosine = sine_and_cosine(real(angle) / 2)
+        return (sine, cosine) if isinstance(angle, DoubleFloat) else (single(sine), single(cosine))
 
     (sx, cx), (sy, cy), (sz, cz) = halves(ax), halves(ay), halves(az)
-    return Quaternion(sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz, cx * cy * sz - sx * sy * cz,
-                      cx * cy * cz + sx * sy * sz)
+    return quaternion((sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz, cx * cy * sz - sx * sy * cz,
+                       cx * cy * cz + sx * sy * sz))
 
 
 def quaternion_to_euler(q, *, just_values=None):
@@ -245,9 +278,12 @@ def get_yaw(q):
     return DoubleFloat(math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz))
 
 
+_Z = Vector3(0.0, 0.0, 1.0)
+
+
 def yaw(angle):
     """The rotation by ``angle`` (a float, radians) about z. `get_yaw` is the way back."""
-    return axis_angle_to_quaternion(Vector3(0.0, 0.0, 1.0), angle)
+    return axis_angle_to_quaternion(_Z, angle)
 
 
 def rotated(components, v):
@@ -266,7 +302,7 @@ def rotate(q, v, *, normalize=keyword("CHECK")):
             return error("The assertion (CL-TRANSFORMS:IS-NORMALIZED CL-TRANSFORMS::Q) failed with CL-TRANSFORMS::Q = ~S.", q)
     elif normalize is True:
         q = globals()["normalize"](q)
-    return Vector3(*rotated(general(q), point(v)))
+    return vector(rotated(general(q), point(v)))
 
 
 def angle_between_quaternions(q1, q2):
@@ -276,15 +312,26 @@ def angle_between_quaternions(q1, q2):
 
 
 def normalize_angle(angle):
-    """The same angle in [-pi, pi]; one that is there already is returned untouched."""
-    value = float(angle)
+    """The same angle, in radians, in [-pi, pi]; one that is there already is returned untouched.
+
+    In the original an angle that is so large that 2 pi vanishes in it is an endless loop, and an infinite one, too.
+    """
+    value = real(angle)
     if -math.pi <= value < math.pi:
         return angle
+    if abs(value) > _MANY_TURNS:
+        if math.isinf(value):
+            return error(FloatingPointInvalidOperation())
+        value = math.remainder(value, 2 * math.pi)
     while value < math.pi:
         value += 2 * math.pi
     while value > math.pi:
         value -= 2 * math.pi
     return DoubleFloat(value)
+
+
+_MANY_TURNS = 1e5
+"""Angles beyond this, in radians, are normalised in one step; those within turn by turn, which gives the original's last digits."""
 
 
 def slerp(q1, q2, ratio):
@@ -294,11 +341,11 @@ def slerp(q1, q2, ratio):
     """
     a = check_type(q1, Quaternion, "Q1").components
     b = check_type(q2, Quaternion, "Q2").components
-    share, product = real(ratio), sum(p * q for p, q in zip(a, b))
+    share, product = real(ratio, "RATIO"), sum(p * q for p, q in zip(a, b))
     if product < 0:
         b, product = tuple(-component for component in b), -product
     if product < 1 - TOLERANCE:
         angle = math.atan2(math.sqrt(1 - product * product), product)
         first, second = (math.sin((1 - share) * angle) / math.sin(angle), math.sin(share * angle) / math.sin(angle))
-        return Quaternion(*(first * p + second * q for p, q in zip(a, b)))
-    return normalize(Quaternion(*((1 - share) * p + share * q for p, q in zip(a, b))))
+        return quaternion(tuple([first * p + second * q for p, q in zip(a, b)]))
+    return normalize(quaternion(tuple([(1 - share) * p + share * q for p, q in zip(a, b)])))

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 
+from cramhy_runtime.lisp.conditions import DivisionByZero, error, wrong_argument_count
+from cramhy_runtime.lisp.data import Cons, DoubleFloat
 from cramhy_runtime.lisp.numbers.arithmetic import is_real
-from cramhy_runtime.lisp.conditions import DivisionByZero, error, type_error, wrong_argument_count
-from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.lisp.packages import sym
 
-from .coercion import check_type, component, elements, instance, no_method, real
+from .coercion import check_type, component, element, elements, instance, no_method, real, wrong_type
 
 
 class Vector3:
@@ -34,22 +35,32 @@ class Vector3:
         return "#<3D-VECTOR ({}d0 {}d0 {}d0)>".format(*self.components)
 
 
+def vector(components):
+    """The vector with three plain Python floats, which are not coerced."""
+    made = Vector3.__new__(Vector3)
+    made.components = components
+    return made
+
+
 def point(value, parameter="V"):
     """The three components of a point as plain floats."""
     if isinstance(value, Vector3):
         return value.components
     items = elements(value, 3)
     if items is None:
-        return type_error(value, "CL-TRANSFORMS:POINT", f"\nwhen binding CL-TRANSFORMS::{parameter}")
-    return tuple([real(item) for item in items])
+        hint = "A list is no point; a vector such as #(1 2 3) is, or (make-3d-vector 1 2 3)." if isinstance(value, Cons) else None
+        return wrong_type(value, sym("CL-TRANSFORMS::POINT"), parameter, hint)
+    x, y, z = items
+    return real(x), real(y), real(z)
 
 
 def make_3d_vector(x, y, z):
-    """A vector; components are coerced to double-floats."""
-    return Vector3(real(x), real(y), real(z))
+    """A vector of three reals, in metres where it is a place; components are coerced to double-floats."""
+    return vector((real(x), real(y), real(z)))
 
 
 def make_identity_vector():
+    """The vector (0 0 0)."""
     return Vector3()
 
 
@@ -61,12 +72,13 @@ def copy_3d_vector(v, *, x=None, y=None, z=None):
 
 def _reader(index, letter):
     def read(obj):
-        if hasattr(obj, "components"):  # a vector or a quaternion
+        if obj.__class__ is Vector3:
+            return DoubleFloat(obj.components[index])
+        if hasattr(obj, "components"):  # a quaternion, or a vector of another kind
             return obj.component(index)
-        for size in (3, 4):
-            items = elements(obj, size)
-            if items is not None:
-                return items[index]
+        found = element(obj, index)
+        if found is not None:
+            return found
         return 0.0 if is_real(obj) else no_method(letter, obj)
 
     read.__name__ = letter
@@ -77,76 +89,84 @@ def _reader(index, letter):
 x, y, z = _reader(0, "x"), _reader(1, "y"), _reader(2, "z")
 
 
-def _fold(vecs, operation):
-    if not vecs:
-        return wrong_argument_count(0)
-    if len(vecs) == 1:
-        return vecs[0]
-    total = point(vecs[0])
-    for other in vecs[1:]:
-        total = [operation(a, b) for a, b in zip(total, point(other))]
-    return Vector3(*total)
-
-
 def v_plus(*vecs):
-    """``v+``: the sum; a single argument is returned as it is."""
-    return _fold(vecs, lambda a, b: a + b)
+    """``v+``: the sum of points; a single argument is returned as it is."""
+    if len(vecs) < 2:
+        return vecs[0] if vecs else wrong_argument_count(0)
+    ax, ay, az = point(vecs[0])
+    for other in vecs[1:]:
+        bx, by, bz = point(other)
+        ax, ay, az = ax + bx, ay + by, az + bz
+    return vector((ax, ay, az))
 
 
 def v_minus(*vecs):
-    """``v-``: the first less the others; a single argument is returned unchanged, not negated."""
-    return _fold(vecs, lambda a, b: a - b)
+    """``v-``: the first point less the others; a single argument is returned unchanged, not negated."""
+    if len(vecs) < 2:
+        return vecs[0] if vecs else wrong_argument_count(0)
+    ax, ay, az = point(vecs[0])
+    for other in vecs[1:]:
+        bx, by, bz = point(other)
+        ax, ay, az = ax - bx, ay - by, az - bz
+    return vector((ax, ay, az))
 
 
 def v_star(v, scalar):
-    """``v*``: the vector (first) scaled by a number."""
-    factor = real(scalar, "\nwhen binding CL-TRANSFORMS::SCALAR")
-    return Vector3(*(component * factor for component in point(v)))
+    """``v*``: the point ``v`` (first) scaled by a real."""
+    factor = real(scalar, "SCALAR")
+    vx, vy, vz = point(v)
+    return vector((vx * factor, vy * factor, vz * factor))
 
 
 def v_star_pairwise(v_1, v_2):
-    return Vector3(*(a * b for a, b in zip(point(v_1), point(v_2))))
+    """``v*-pairwise``: the products of the components."""
+    (ax, ay, az), (bx, by, bz) = point(v_1, "V-1"), point(v_2, "V-2")
+    return vector((ax * bx, ay * by, az * bz))
 
 
 def v_slash_pairwise(v_1, v_2):
-    divisors = point(v_2)
-    if 0.0 in divisors:
+    """``v/-pairwise``: the quotients of the components; a zero in ``v_2`` is a division by zero."""
+    (ax, ay, az), (bx, by, bz) = point(v_1, "V-1"), point(v_2, "V-2")
+    if not (bx and by and bz):
         return error(DivisionByZero())
-    return Vector3(*(a / b for a, b in zip(point(v_1), divisors)))
+    return vector((ax / bx, ay / by, az / bz))
 
 
 def v_inv(v):
-    """The vector in the other direction."""
+    """The vector in the other direction. Zeros become -0.0d0."""
     return v_star(v, -1)
 
 
-def _numbers(v):
-    """Components for functions whose result has the type of the inputs."""
-    return tuple(DoubleFloat(component) for component in v.components) if isinstance(v, Vector3) else point(v) and elements(v, 3)
+def _numbers(v, parameter):
+    """The components as Lisp sees them, for functions whose result has the type of the inputs."""
+    if isinstance(v, Vector3):
+        return [v.component(index) for index in range(3)]
+    point(v, parameter)
+    return elements(v, 3)
 
 
 def dot_product(v_1, v_2):
-    """The scalar product; integers for integer arrays, doubles for vectors."""
+    """The scalar product of two points; an integer for integer arrays, a double for vectors."""
     if isinstance(v_1, Vector3) and isinstance(v_2, Vector3):
-        a, b = v_1.components, v_2.components
-        return DoubleFloat(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
-    return sum(a * b for a, b in zip(_numbers(v_1), _numbers(v_2)))
+        (ax, ay, az), (bx, by, bz) = v_1.components, v_2.components
+        return DoubleFloat(ax * bx + ay * by + az * bz)
+    return sum(a * b for a, b in zip(_numbers(v_1, "V-1"), _numbers(v_2, "V-2")))
 
 
 def cross_product(v_1, v_2):
     """The right-handed vector product."""
-    (ax, ay, az), (bx, by, bz) = point(v_1), point(v_2)
-    return Vector3(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+    (ax, ay, az), (bx, by, bz) = point(v_1, "V-1"), point(v_2, "V-2")
+    return vector((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
 
 
 def v_norm(v):
-    """The length."""
+    """The length of a point; a double for vectors, a single for arrays of integers."""
     square = dot_product(v, v)
     return DoubleFloat(math.sqrt(square)) if isinstance(square, DoubleFloat) else math.sqrt(square)
 
 
 def v_dist(v_1, v_2):
-    """The distance of two points."""
+    """The distance of two points, a double."""
     for v in (v_1, v_2):
         if not isinstance(v, Vector3) and elements(v, 3) is None:
             return no_method("x", v)
@@ -155,17 +175,17 @@ def v_dist(v_1, v_2):
 
 def normalize_vector(v):
     """The vector of length 1 in the same direction; a zero vector is a division by zero."""
-    components = point(v)
-    length = math.sqrt(sum(component * component for component in components))
+    vx, vy, vz = point(v)
+    length = math.sqrt(vx * vx + vy * vy + vz * vz)
     if length == 0.0:
         return error(DivisionByZero())
     factor = 1 / length
-    return Vector3(*(component * factor for component in components))
+    return vector((vx * factor, vy * factor, vz * factor))
 
 
 def interpolate_vector(v_0, v_1, ratio):
-    """``v_0`` + ``ratio`` (``v_1`` - ``v_0``); the ratio is not limited."""
-    check_type(v_0, Vector3, "V-0")
-    check_type(v_1, Vector3, "V-1")
-    share = real(ratio)
-    return Vector3(*(a + share * (b - a) for a, b in zip(v_0.components, v_1.components)))
+    """``v_0`` + ``ratio`` (``v_1`` - ``v_0``) of two 3d-vectors; the ratio, a real, is not limited to [0, 1]."""
+    ax, ay, az = check_type(v_0, Vector3, "V-0").components
+    bx, by, bz = check_type(v_1, Vector3, "V-1").components
+    share = real(ratio, "RATIO")
+    return vector((ax + share * (bx - ax), ay + share * (by - ay), az + share * (bz - az)))

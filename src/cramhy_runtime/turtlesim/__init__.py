@@ -1,5 +1,21 @@
 """turtlesim in the process: the simulator of the course, tick by tick as the C++ one computes it.
 
-``world`` is the kinematics, ``canvas`` the paper with the pen's lines and the colour sensor, ``node`` the ROS node,
-``teleop`` the arrow keys. Importing this package imports none of them.
+==================  ========================================================================================
+``world``           a turtle: kinematics, walls, teleports, pen
+``measures``        how large the paper and the metre are
+``canvas, ink``     the paper in pixels, with the lines and the colour sensor; the same lines as vectors
+``node``            the simulator: topics, services, parameters, ticks, observers
+``roscpp``          what all executables have in common: command line, log, loggers
+``teleop``          the arrow keys
+``draw_square``     the demonstration that drives squares
+``mimic``           the turtle that does what another one does
+``executables``     all of these by the names that ``rosrun`` and ``roslaunch`` know
+``drawing``         fourteen turtles as vector paths
+``sprites``         the same in pixels
+``stills, replay``  pictures of the window, as it is and as it came about; ``history`` is what a replay shows
+``pictures``        which kind of picture a file gets
+``package``         the Lisp package TURTLESIM
+==================  ========================================================================================
+
+Importing this package imports none of them.
 """

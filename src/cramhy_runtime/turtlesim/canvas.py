@@ -9,52 +9,80 @@ Lines are kept until somebody looks: a run that nobody watches does not wait for
 
 from __future__ import annotations
 
-import math
+from math import ceil, floor, hypot, inf
 
-SIZE = 500
-METRE = 45
-"""Pixels per metre: the height of the turtle's picture."""
+from .ink import Ink
+from .measures import METRE, SIZE
+
 _CENTRE = 0.5 - 2.0**-7  # of a pixel, from its corner; a little less than half, which decides about centres on the border
-_MOST_PENDING = 512
+_LEVEL = 1e-12
+_LAST, _ROW = SIZE - 1, SIZE * 3
+_MOST_LINES = 512
 
 
 class Canvas:
-    """The path image. Coordinates are pixels, x to the right and y down; colours are (r, g, b)."""
+    """The path image. Coordinates are metres on the screen, x to the right and y down; colours are (r, g, b).
+
+    ``clears`` counts how often the paper was filled, ``background`` is with what. ``news`` is ``None``, or a list that gets every
+    line as it is kept, for those who follow the pens tick by tick (`Turtlesim.observe`).
+    """
 
     def __init__(self, background=(69, 86, 255)):
-        self._pixels = bytearray(bytes(background) * (SIZE * SIZE))
-        self._pending = []
-        self.background = tuple(background)
-        self.version = 0
+        self._pixels = bytearray()
+        self.news = None
+        self.clears = -1
+        self.clear(background)
 
     def clear(self, background):
         """Fill everything with ``background``."""
-        self._pending.clear()
         self.background = tuple(background)
-        self._pixels[:] = bytes(background) * (SIZE * SIZE)
-        self.version += 1
+        self._pixels[:] = bytes(self.background) * (SIZE * SIZE)
+        self._lines, self._drawn = [], 0
+        self._ink = Ink()
+        self.clears += 1
+        if self.news:
+            self.news.clear()
 
     def line(self, x0, y0, x1, y1, colour, width):
         """Draw a line; a width of 0 is a width of 1."""
-        self._pending.append((x0, y0, x1, y1, colour, width))
-        self.version += 1
-        if len(self._pending) > _MOST_PENDING:
+        line = (x0, y0, x1, y1, colour, width)
+        self._lines.append(line)
+        if self.news is not None:
+            self.news.append(line)
+        if len(self._lines) > _MOST_LINES:
             self.flush()
+            self._ink.take(self._lines)
+            self._lines, self._drawn = [], 0
 
     def flush(self):
         """Draw the lines that were kept."""
-        pending, self._pending = self._pending, []
-        for line in pending:
-            self._draw(*line)
+        lines, begin = self._lines, self._drawn
+        self._drawn = len(lines)
+        for index in range(begin, len(lines)):
+            self._draw(*lines[index])
+
+    def strokes(self):
+        """All that was drawn since the last clear, as `Ink.strokes` tells it: for who was not there to see it."""
+        return self._all_ink().strokes()
+
+    def polylines(self):
+        """The same as `Ink.polylines`, for pictures without pixels."""
+        return self._all_ink().polylines()
+
+    def _all_ink(self):
+        ink = self._ink.copy()
+        ink.take(self._lines)
+        return ink
 
     def pixel(self, x, y):
-        """The colour at (x, y), rounded to the nearest pixel, halves up; outside of the paper the nearest pixel on it."""
-        if self._pending:
+        """The colour at (x, y) metres, at the nearest pixel, halves up; outside of the paper the nearest pixel on it."""
+        if self._drawn < len(self._lines):
             self.flush()
         if x != x or y != y:
             return self.background
-        column = min(max(math.floor(min(max(x, 0.0), SIZE) + 0.5), 0), SIZE - 1)
-        row = min(max(math.floor(min(max(y, 0.0), SIZE) + 0.5), 0), SIZE - 1)
+        x, y = x * METRE, y * METRE
+        column = (floor(x + 0.5) if x > 0.0 else 0) if x < _LAST else _LAST
+        row = (floor(y + 0.5) if y > 0.0 else 0) if y < _LAST else _LAST
         start = (row * SIZE + column) * 3
         return tuple(self._pixels[start : start + 3])
 
@@ -64,84 +92,54 @@ class Canvas:
         return bytes(self._pixels)
 
     def _draw(self, x0, y0, x1, y1, colour, width):
+        x0, y0, x1, y1 = x0 * METRE, y0 * METRE, x1 * METRE, y1 * METRE
         along_x, along_y = x1 - x0, y1 - y0
-        length = math.hypot(along_x, along_y)
-        if not length < math.inf:  # infinite or not a number: nowhere on the paper
+        length = hypot(along_x, along_y)
+        if not length < inf:  # infinite or not a number: nowhere on the paper
             return
         if length:
             along_x, along_y = along_x / length, along_y / length
         else:
             along_x, along_y = 1.0, 0.0
-        half = max(width, 1) / 2
-        reach = half * (abs(along_x) + abs(along_y))
-        top = max(math.ceil(min(y0, y1) - reach - _CENTRE), 0)
-        bottom = min(math.floor(max(y0, y1) + reach - _CENTRE), SIZE - 1)
+        half = (width or 1) / 2
+        across_x, across_y = abs(along_x), abs(along_y)
+        reach = half * (across_x + across_y) + _CENTRE
+        top, bottom = (y0 - reach, y1 + reach) if y0 < y1 else (y1 - reach, y0 + reach)
+        bottom -= 2 * _CENTRE
+        top, bottom = ceil(top) if top > 0.0 else 0, floor(bottom) if bottom < _LAST else _LAST
         paint, pixels = bytes(colour), self._pixels
-        for row in range(top, bottom + 1):
-            across = row + _CENTRE - y0
-            # Both conditions are linear in x: -half <= u <= length + half along the line, -half <= v <= half beside it.
-            low, high = -math.inf, math.inf
-            for slope, offset, least, most in (
-                (along_x, across * along_y, -half, length + half),
-                (-along_y, across * along_x, -half, half),
-            ):
-                if slope > 1e-12:
-                    low, high = max(low, (least - offset) / slope), min(high, (most - offset) / slope)
-                elif slope < -1e-12:
-                    low, high = max(low, (most - offset) / slope), min(high, (least - offset) / slope)
-                elif not least <= offset <= most:
-                    low, high = 1.0, 0.0
-            if low > high:
-                continue
-            left = max(math.ceil(max(x0 + low, -1.0) - _CENTRE), 0)
-            right = min(math.floor(min(x0 + high, SIZE + 1.0) - _CENTRE), SIZE - 1)
+        if across_x < _LEVEL or across_y < _LEVEL:
+            left, right = (x0, x1) if x0 < x1 else (x1, x0)
+            left, right = left - half - _CENTRE, right + half - _CENTRE
+            left, right = ceil(left) if left > 0.0 else 0, floor(right) if right < _LAST else _LAST
             if left <= right:
-                start = (row * SIZE + left) * 3
-                pixels[start : start + 3 * (right - left + 1)] = paint * (right - left + 1)
-
-
-SHELLS = [(46, 125, 50), (178, 102, 34), (0, 121, 107), (142, 36, 170), (198, 40, 40), (93, 64, 55)]
-"""Colours of the turtles, in order of spawning."""
-
-
-def picture(canvas, turtles):
-    """A Pillow image of the window: the paper, and on it every turtle as (x, y in pixels, heading in radians, number)."""
-    from PIL import Image
-
-    image = Image.frombytes("RGB", (SIZE, SIZE), canvas.rgb())
-    for x, y, heading, number in turtles:
-        if abs(x) < 10 * SIZE and abs(y) < 10 * SIZE:
-            _draw_turtle(image, x, y, heading, SHELLS[number % len(SHELLS)])
-    return image
-
-
-def _draw_turtle(image, x, y, heading, shell):
-    """Our own turtle, 45 pixels long, seen from above, head in the direction of ``heading``."""
-    from PIL import ImageDraw
-
-    pen = ImageDraw.Draw(image)
-    cosine, sine = math.cos(heading), -math.sin(heading)
-
-    def blob(forward, sideways, radius_x, radius_y, colour):
-        outline = []
-        for step in range(24):
-            angle = step * math.pi / 12
-            u, v = forward + radius_x * math.cos(angle), sideways + radius_y * math.sin(angle)
-            outline.append((x + u * cosine - v * sine, y + u * sine + v * cosine))
-        pen.polygon(outline, fill=colour)
-
-    skin = tuple(min(255, part + 70) for part in shell)
-    for forward in (9, -10):
-        for sideways in (-13, 13):
-            blob(forward, sideways, 5, 4, skin)
-    blob(18, 0, 6, 5, skin)
-    blob(-19, 0, 4, 2, skin)
-    blob(0, 0, 15, 13, shell)
-    blob(0, 0, 9, 7, tuple(min(255, part + 30) for part in shell))
-    for sideways in (-2, 2):
-        blob(20, sideways, 1, 1, (0, 0, 0))
-
-
-def save_png(path, canvas, turtles=()):
-    """Write the window as a PNG file."""
-    picture(canvas, turtles).save(path, "PNG")
+                paint *= right - left + 1
+                for start in range((top * SIZE + left) * 3, (bottom * SIZE + left) * 3 + 1, _ROW):
+                    pixels[start : start + len(paint)] = paint
+            return
+        # A pixel at (u, v) from the start is painted when it lies within the length and within the width of the line:
+        # -half <= along_x u + along_y v <= length + half, and -half <= along_x v - along_y u <= half. In a row v is fixed,
+        # so each of the two leaves an interval of u, from_end to to_end and from_side to to_side, that moves on from row to row.
+        slope, tilt = along_y / along_x, along_x / along_y
+        v, origin = top + _CENTRE - y0, x0 - _CENTRE
+        from_end, to_end = -half / along_x + origin, (length + half) / along_x + origin
+        if from_end > to_end:
+            from_end, to_end = to_end, from_end
+        from_side, to_side = origin - half / across_y, origin + half / across_y
+        start = top * _ROW
+        for row in range(bottom - top + 1):
+            w = v + row
+            turned, shifted = slope * w, tilt * w
+            left, side = from_end - turned, from_side + shifted
+            if side > left:
+                left = side
+            right, side = to_end - turned, to_side + shifted
+            if side < right:
+                right = side
+            if left <= right and left <= _LAST and right >= 0.0:
+                first = ceil(left) if left > 0.0 else 0
+                count = (floor(right) if right < _LAST else _LAST) - first + 1
+                if count > 0:
+                    place = start + 3 * first
+                    pixels[place : place + 3 * count] = paint * count
+            start += _ROW

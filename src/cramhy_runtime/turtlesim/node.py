@@ -2,28 +2,27 @@
 
 It spins once per tick of 16 ms: first the commands and requests that arrived, then one update of every turtle in the order of
 their names. So a response comes before the update of its tick, and of several commands within a tick the last one counts.
-The first tick only looks at the time. What nobody subscribes to is not computed. The log, which the original prints in a
-terminal of its own, is in `Turtlesim.lines` and on ``/rosout``. Source: turtlesim.md 3, 4, 8.
+The first tick only looks at the time. What nobody subscribes to is not computed. Source: turtlesim.md 3, 4, 8.
 """
 
 from __future__ import annotations
 
-import math
-import sys
+from weakref import WeakKeyDictionary
 
 from .. import kernel
+from ..lisp import conditions
 from ..lisp.data import DoubleFloat
-from ..ros import graph, logging, wire
+from ..ros import graph, rosout, wire
 from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.names import check_graph_name
 from ..ros.services import Refusal
-from . import canvas
-from .canvas import METRE, Canvas
-from .world import CENTRE, TICK, Turtle
+from .canvas import Canvas
+from .history import History
+from .measures import CENTRE, DRAWINGS, EXTENT
+from .roscpp import Program
+from .world import TICK, Turtle
 
 BACKGROUND = (("background_r", 69), ("background_g", 86), ("background_b", 255))
-LABELS = {logging.INFO: " INFO", logging.WARN: " WARN", logging.ERROR: "ERROR"}
-MOST_LINES = 10_000
 _double = DoubleFloat
 
 
@@ -50,7 +49,7 @@ class Inhabitant:
         node = self.simulator.node
         for publication in (self.pose, self.colour):
             node.unadvertise(publication.name)
-        node.unsubscribe(self.commands.name)
+        node.unsubscribe(self.commands)
         for service in self.services:
             node.withdraw(service.name)
 
@@ -85,31 +84,35 @@ class Inhabitant:
             self.colour.send(simulator.colour_type(*self.turtle.colour()))
 
 
-class Turtlesim:
-    """The simulator. ``node`` is its ROS node, ``turtles`` the turtles by name, ``canvas`` the paper, ``lines`` its log."""
+class Turtlesim(Program):
+    """``turtlesim_node``. ``turtles`` are the turtles by name, ``canvas`` the paper; `Program` has the rest.
 
-    def __init__(self, name="turtlesim", namespace="/", echo=None):
-        self.graph = graph.active()
-        self.node = self.graph.node(name, namespace, spins=True)
-        self.node.simulator = self
-        self.echo = echo
-        self.lines = []
+    ``observers`` are functions that look on, tick by tick (`observe`).
+    """
+
+    name = "turtlesim"
+
+    def __init__(self, name=None, namespace="/", arguments=(), echo=None):
+        super().__init__(name, namespace, arguments, spins=True, echo=echo)
         self.pose_type, self.colour_type = message_class_exact("turtlesim/Pose"), message_class_exact("turtlesim/Color")
         self.canvas = Canvas()
         self.inhabitants = {}
         self.counter = self.spawned = 0
         self.started = False
-        logging.join_rosout(self.node)
+        self.observers = ()
+        self.history = None
         for parameter, value in BACKGROUND:
             full = self.node.resolve("~" + parameter)
             if not self.graph.parameters.has(full):
                 self.graph.parameters.set(full, value)
         self._clear()
         self._offer_services()
-        self.log(logging.INFO, f"Starting turtlesim with node name {self.node.name}")
+        self.log(rosout.INFO, f"Starting turtlesim with node name {self.node.name}")
         self.spawn("", CENTRE, CENTRE, 0.0)
         self.timer = kernel.call_every(TICK, self.tick)
         self.node.on_shutdown.append(self.timer.cancel)
+        for callback in _expecting.get(self.graph, ()):
+            callback(self)
 
     @property
     def turtles(self):
@@ -124,15 +127,61 @@ class Turtlesim:
             self.started = True
             return
         now = kernel.now()
+        talkative = self.loggers.talkative
         for inhabitant in self.inhabitants.values():
             turtle = inhabitant.turtle
             if not turtle.at_rest:
                 turtle.update(now)
             if inhabitant.pose.connections or inhabitant.colour.connections:
                 inhabitant.publish()
+            if talkative:
+                self.log(rosout.DEBUG, f"[{self.node.resolve(turtle.name)}]: pos_x: {turtle.x:f} pos_y: {turtle.y:f} "
+                                        f"theta: {turtle.heading:f}")
             if turtle._segment is not None:
                 turtle.draw()
+        if self.observers:
+            self._show()
         node.tick_done()
+
+    def observe(self, callback):
+        """Have ``callback(simulator, strokes)`` called at the end of every tick, after all updates; it must not wait.
+
+        strokes: a list of what the pens drew in this tick, ``(x1, y1, x2, y2, (r, g, b), width)``, in metres of the world (y up) and
+        pixels of width, in order of drawing; the list is the callback's to keep, empty when nothing was drawn. When
+        ``simulator.canvas.clears`` has grown since the call before, the paper was first filled with ``simulator.canvas.background``, and
+        the strokes are those since then. ``simulator.turtles`` are the turtles by name: `Turtle.pose`, ``pen_on``, ``pen_colour``,
+        ``pen_width``, ``number`` (which drawing: `drawing.shapes`). What was drawn before the first call: ``simulator.canvas.strokes()``.
+        Without observers none of this is computed. One that raises an error is reported and called no more.
+        """
+        if self.canvas.news is None:
+            self.canvas.news = []
+        self.observers = (*self.observers, callback)
+
+    def unobserve(self, callback):
+        """Call ``callback`` no more; one that does not observe is no error."""
+        self.observers = tuple(each for each in self.observers if each != callback)
+        if not self.observers:
+            self.canvas.news = None
+
+    def keep_history(self):
+        """Remember from now on what happens, for `replay`; the `History`, the same one when it is asked for again."""
+        if self.history is None:
+            self.history = History(self)
+        return self.history
+
+    def _show(self):
+        news = self.canvas.news
+        strokes = []
+        if news:
+            strokes = [(x1, EXTENT - y1, x2, EXTENT - y2, colour, width) for x2, y2, x1, y1, colour, width in news
+                       if (x1 + y1 + x2 + y2) * 0.0 == 0.0]  # a line to nowhere is no stroke
+            news.clear()
+        for observer in self.observers:
+            try:
+                observer(self, list(strokes))
+            except Exception as problem:  # the turtles have nothing to do with it, and it would come again 62 times a second
+                self.unobserve(observer)
+                kernel.unhandled(kernel.current(), problem)
 
     def spawn(self, name, x, y, heading):
         """A new turtle at world coordinates; an empty name stands for the next free ``turtleN``. Returns the name."""
@@ -140,73 +189,49 @@ class Turtlesim:
             while True:
                 self.counter += 1
                 name = f"turtle{self.counter}"
-                if name not in self.inhabitants:
+                if not self._taken(name):
                     break
-        elif name in self.inhabitants:
-            self.log(logging.ERROR, f"A turtled named [{name}] already exists")
+        elif self._taken(name):
+            self.log(rosout.ERROR, f"A turtled named [{name}] already exists")
             raise Refusal("")
         complaint = check_graph_name(name)
         if complaint:
-            self.log(logging.ERROR, f"Exception thrown while processing service call: {complaint}")
+            self.log(rosout.ERROR, f"Exception thrown while processing service call: {complaint}")
             raise Refusal(complaint)
-        turtle = Turtle(name, self.spawned, x, y, heading, self.canvas, lambda text: self.log(logging.WARN, text))
+        turtle = Turtle(name, self.spawned % DRAWINGS, x, y, heading, self.canvas, lambda text: self.log(rosout.WARN, text))
         self.spawned += 1
         self.inhabitants[name] = Inhabitant(self, turtle)
         self.inhabitants = dict(sorted(self.inhabitants.items()))  # updates go in the order of names
-        self.log(logging.INFO, f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{heading:f}]")
+        self.log(rosout.INFO, f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{heading:f}]")
         return name
+
+    def _taken(self, name):
+        """Whether a turtle has the name, or one that means the same (``/turtle1``): the two would share their topics."""
+        full = self.node.resolve(name)
+        return any(self.node.resolve(other) == full for other in self.inhabitants)
 
     def kill(self, name):
         """Remove a turtle; its trail stays."""
         if name not in self.inhabitants:
-            self.log(logging.ERROR, f"Tried to kill turtle [{name}], which does not exist")
+            self.log(rosout.ERROR, f"Tried to kill turtle [{name}], which does not exist")
             raise Refusal("")
-        self.inhabitants.pop(name).leave()
+        self.inhabitants[name].leave()
+        self.inhabitants = {other: inhabitant for other, inhabitant in self.inhabitants.items() if other != name}
 
     def clear(self):
         """Fill the paper with the background, as the parameters are now."""
-        self.log(logging.INFO, "Clearing turtlesim.")
+        self.log(rosout.INFO, "Clearing turtlesim.")
         self._clear()
 
     def reset(self):
         """One turtle in the centre, clean paper."""
-        self.log(logging.INFO, "Resetting turtlesim.")
+        self.log(rosout.INFO, "Resetting turtlesim.")
         for inhabitant in self.inhabitants.values():
             inhabitant.leave()
         self.inhabitants = {}
-        self.counter = self.spawned = 0
+        self.counter = 0
         self.spawn("", CENTRE, CENTRE, 0.0)
         self._clear()
-
-    def picture(self):
-        """A Pillow image of the window."""
-        return canvas.picture(self.canvas, self._sprites())
-
-    def save_png(self, path):
-        """Write the window as a PNG file."""
-        canvas.save_png(path, self.canvas, self._sprites())
-
-    def _sprites(self):
-        return [
-            (turtle.x * METRE, turtle.y * METRE, turtle.heading, turtle.number)
-            for turtle in self.turtles.values()
-            if math.isfinite(turtle.x) and math.isfinite(turtle.y) and math.isfinite(turtle.heading)
-        ]
-
-    def shutdown(self):
-        """Close the simulator."""
-        self.node.shutdown()
-
-    def log(self, level, text):
-        """A log line as roscpp prints it, and a message on ``/rosout``."""
-        stamp = self.graph.now()
-        line = f"[{LABELS[level]}] [{int(stamp)}.{int(stamp % 1 * 1e9):09d}]: {text}"
-        if len(self.lines) >= MOST_LINES:
-            del self.lines[: MOST_LINES // 2]
-        self.lines.append(line)
-        logging.rosout(self.node, level, text)
-        if self.echo is not None:
-            print(line, file=sys.stderr if self.echo is True else self.echo)
 
     def _clear(self):
         colour = []
@@ -220,8 +245,6 @@ class Turtlesim:
     def _offer_services(self):
         empty = service_type_exact("std_srvs/Empty")
         spawn, kill = service_type_exact("turtlesim/Spawn"), service_type_exact("turtlesim/Kill")
-        loggers, set_level = service_type_exact("roscpp/GetLoggers"), service_type_exact("roscpp/SetLoggerLevel")
-        logger = message_class_exact("roscpp/Logger")
 
         def do(action, kind):
             def handler(_):
@@ -241,18 +264,38 @@ class Turtlesim:
         self.node.serve("reset", empty, do(self.reset, empty))
         self.node.serve("spawn", spawn, spawn_turtle)
         self.node.serve("kill", kill, kill_turtle)
-        self.node.serve("~get_loggers", loggers, lambda _: loggers.response(loggers=[logger(name="ros.turtlesim", level="info")]))
-        self.node.serve("~set_logger_level", set_level, lambda _: set_level.response())
 
 
-def start_turtlesim(name="turtlesim", namespace="/", echo=None):
-    """Start the simulator in the active kernel. ``echo``: True prints its log to stderr, a stream there."""
-    return Turtlesim(name, namespace, echo)
+_expecting = WeakKeyDictionary()  # graph -> functions that get every simulator that starts
 
 
-def running_simulator(name="/turtlesim"):
-    """The simulator whose node has that name in the active graph, or ``None``."""
-    return getattr(graph.active().nodes.get(name), "simulator", None)
+def simulators():
+    """The simulators that run in the active graph, in the order of their start."""
+    return [node.program for node in graph.active().nodes.values() if isinstance(getattr(node, "program", None), Turtlesim)]
+
+
+def each_simulator(callback):
+    """Have ``callback(simulator)`` called for each simulator of the active graph: those that run at once, others when they start."""
+    _expecting.setdefault(graph.active(), []).append(callback)
+    for simulator in simulators():
+        callback(simulator)
+
+
+def start_turtlesim(name=None, namespace="/", echo=None):
+    """Start the simulator in the active graph; see `Program`."""
+    return Turtlesim(name, namespace, echo=echo)
+
+
+def running_simulator():
+    """The simulator whose node is ``/turtlesim``, else the one that runs longest, or ``None``."""
+    running = simulators()
+    return next((each for each in running if each.node.name == "/turtlesim"), running[0] if running else None)
+
+
+def needed_simulator():
+    """The `running_simulator`; that there is none is a simple error."""
+    return running_simulator() or conditions.error(
+        'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).')
 
 
 def start_with_first_node(echo=None):

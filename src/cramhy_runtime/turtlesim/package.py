@@ -1,30 +1,33 @@
 """The Lisp package TURTLESIM: what one does at the simulator's window, from the REPL.
 
-The original has a window and a terminal for the arrow keys; ``(turtlesim:press :up)`` presses one, ``(turtlesim:save-paper
-"turtle.png")`` writes what the window would show.
+The original has a window and a terminal for the arrow keys; ``(turtlesim:press :up)`` presses one, ``(turtlesim:save-picture
+"turtle.png")`` writes what the window would show, and after ``(turtlesim:record)`` the same for ``"turtle.gif"`` shows how it came about.
+What only some sessions need is imported when it is called for: a session begins in a third of a second.
 """
 
 from __future__ import annotations
 
 from ..lisp import conditions
+from ..lisp.data import Symbol
 from ..lisp.faces import define_face
 from ..lisp.packages import string_designator
 from ..lisp.streams.streams import STANDARD_OUTPUT
 from ..ros import graph
-from .node import running_simulator, start_turtlesim
+from .node import Turtlesim, needed_simulator, running_simulator
 from .teleop import KEYS, NAMED_KEYS, Teleop
 
 
-def _simulator():
-    return running_simulator() or conditions.error(
-        'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).'
-    )
+def _name(designator):
+    """What a string or a symbol names: names in ROS have small letters and underscores."""
+    name = string_designator(designator)
+    return name.lower().replace("-", "_") if isinstance(designator, Symbol) else name
 
 
-def start():
-    """Start the simulator, if none is running."""
-    if running_simulator() is None:
-        start_turtlesim()
+def start(*arguments):
+    """Start a simulator with the words of a command line, strings; without any: ``/turtlesim``, if no simulator is running. T."""
+    if arguments or running_simulator() is None:
+        Turtlesim(arguments=list(map(str, arguments)))
+    return True
 
 
 def press(key, turtle="turtle1"):
@@ -32,22 +35,65 @@ def press(key, turtle="turtle1"):
     name = string_designator(key).lower()
     if NAMED_KEYS.get(name, name.upper()) not in KEYS:
         return conditions.error("~s is not a key that moves the turtle. Keys: :up :down :left :right.", key)
-    nodes = graph.active().nodes
-    teleop = getattr(nodes.get("/teleop_turtle"), "teleop", None)
-    if teleop is None or teleop.turtle != turtle:
+    turtle = _name(turtle)
+    teleop = getattr(graph.active().nodes.get("/teleop_turtle"), "program", None)
+    if not isinstance(teleop, Teleop) or teleop.turtle != turtle:
         teleop = Teleop(turtle)
     return True if teleop.press(name if name in NAMED_KEYS else name.upper()) else None
 
 
-def save_paper(path):
-    """Write the window, paper and turtles, as a PNG file; returns the path."""
-    _simulator().save_png(str(path))
+def draw_square(*arguments):
+    """Start ``draw_square``, which resets the world and drives squares until the node ``/draw_square`` ends; T.
+
+    The arguments are the words of its command line, strings.
+    """
+    from .draw_square import DrawSquare
+
+    DrawSquare(arguments=list(map(str, arguments)))
+    return True
+
+
+def mimic(leader="turtle1", follower="turtle2", *arguments):
+    """Start ``mimic``: the turtle ``follower`` does what ``leader`` does, both names (``"turtlesim1/turtle1"``); T."""
+    from .mimic import Mimic
+
+    Mimic(_name(leader), _name(follower), arguments=list(map(str, arguments)))
+    return True
+
+
+def stop(name):
+    """End the program whose node has that name, ``"draw_square"`` or ``"turtle_mimic"``; T, or NIL when it does not run."""
+    name = _name(name)
+    program = getattr(graph.active().nodes.get(name if name.startswith("/") else f"/{name}"), "program", None)
+    if program is None:
+        return None
+    program.shutdown()
+    return True
+
+
+def save_picture(path, *, speed=None):
+    """Write a picture; returns the path. ``.png`` and ``.svg`` show the window as it is, ``.gif`` and ``.replay.svg`` what has happened
+    since ``(turtlesim:record)``, ``speed`` times as fast as it was."""
+    from . import pictures
+
+    pictures.save(str(path), speed=speed)
     return path
+
+
+def record():
+    """Remember from now on what happens, for ``(turtlesim:save-picture "x.gif")``; T."""
+    from . import pictures
+
+    pictures.keep_history()
+    return True
 
 
 def log():
     """Print the simulator's log, which the original prints in its own terminal."""
-    STANDARD_OUTPUT.value.write("".join(line + "\n" for line in _simulator().lines))
+    STANDARD_OUTPUT.value.write("".join(line + "\n" for line in needed_simulator().lines))
 
 
-TURTLESIM = define_face("TURTLESIM", functions={"start": start, "press": press, "save-paper": save_paper, "log": log})
+TURTLESIM = define_face("TURTLESIM", use=["COMMON-LISP"], shadow="log", functions={
+    "start": start, "press": press, "draw-square": draw_square, "mimic": mimic, "stop": stop, "log": log,
+    "record": record, "save-picture": save_picture, "save-paper": save_picture,
+})

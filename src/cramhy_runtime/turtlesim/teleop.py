@@ -1,43 +1,46 @@
 """The arrow keys: ``turtle_teleop_key``. Each key that counts publishes one command, and nothing stops the turtle but time.
 
 Keys are recognised by the last byte of what the terminal sends, so the capitals A to D work too. The scales are read once,
-from ``/scale_linear`` and ``/scale_angular``. Source: turtlesim.md 10.
+from ``/scale_linear`` and ``/scale_angular``. `Teleop` is the program; a terminal prints `BANNER` and hands `Teleop.feed` the bytes that
+are typed, in any portions. Source: turtlesim.md 10.
 """
 
 from __future__ import annotations
 
-from ..ros import graph
 from ..ros.messages import message_class_exact
+from .roscpp import Program
 
+BANNER = "Reading from keyboard\n---------------------------\nUse arrow keys to move the turtle. 'q' to quit.\n"
 KEYS = {"A": (1, 0), "B": (-1, 0), "C": (0, -1), "D": (0, 1)}
 NAMED_KEYS = {"up": "A", "down": "B", "right": "C", "left": "D"}
 
 
-class Teleop:
-    """The node ``/teleop_turtle``, which drives ``turtle``."""
+class Teleop(Program):
+    """The node ``/teleop_turtle``, which drives ``turtle``; its command line may send it to another (``turtle1/cmd_vel:=x/cmd_vel``)."""
 
-    def __init__(self, turtle="turtle1", name="teleop_turtle", namespace="/"):
-        here = graph.active()
+    name = "teleop_turtle"
+
+    def __init__(self, turtle="turtle1", name=None, namespace="/", arguments=(), echo=None):
+        super().__init__(name, namespace, arguments, echo=echo)
         self.turtle = turtle
-        self.node = here.node(name, namespace)
-        self.node.teleop = self
         self.twist = message_class_exact("geometry_msgs/Twist")
         self.publication = self.node.advertise(f"{turtle}/cmd_vel", self.twist)
         self.linear = self._scale("scale_linear")
         self.angular = self._scale("scale_angular")
-        self.running = True
 
     def _scale(self, parameter):
-        tree, name = self.node.graph.parameters, self.node.resolve(parameter)
-        return float(tree.get(name)) if tree.has(name) else 2.0
+        try:
+            return float(self.graph.parameters.get(self.node.resolve(parameter)))
+        except (KeyError, TypeError, ValueError):  # not set, or no number: roscpp keeps what the program began with
+            return 2.0
 
     def press(self, key):
         """One key: ``"up"``, ``"down"``, ``"left"``, ``"right"``, ``"q"``, or the byte it ends in. True when it moved the turtle."""
         key = NAMED_KEYS.get(key, key)
         if key == "q":
-            self.quit()
+            self.shutdown()
             return False
-        if key not in KEYS or not self.running:
+        if key not in KEYS or not self.alive:
             return False
         forward, turn = KEYS[key]
         message = self.twist()
@@ -45,12 +48,10 @@ class Teleop:
         self.publication.publish(message)
         return True
 
-    def type(self, text):
-        """Keys as the terminal sends them, escape sequences included."""
-        for character in text:
-            self.press(character)
-
-    def quit(self):
-        """Leave the graph."""
-        self.running = False
-        self.node.shutdown()
+    def feed(self, data):
+        """Bytes as the terminal sends them, escape sequences included. Whether the program still runs: ``q`` ends it."""
+        for byte in data:
+            self.press(chr(byte))
+            if not self.alive:
+                return False
+        return True

@@ -12,7 +12,7 @@ import math
 import struct
 
 from ..lisp.numbers.arithmetic import single
-from .canvas import METRE, SIZE
+from .measures import EXTENT
 
 _five_singles = struct.Struct("<5f")
 _cos, _sin, _floor, _sqrt = math.cos, math.sin, math.floor, math.sqrt
@@ -22,9 +22,6 @@ TICK = 0.016
 COMMAND_LIFETIME = 1.0
 PI = 3.14159265
 TWO_PI = 2.0 * PI
-EXTENT = single((SIZE - 1) / METRE)
-"""Width and height of the world in metres: 11.088889122009277."""
-CENTRE = single(EXTENT / 2)
 DEFAULT_PEN = (179, 184, 255)
 
 
@@ -99,10 +96,7 @@ class Turtle:
         if not -PI <= heading < PI:  # in this range the wrap of the original does nothing
             heading = _wrap(heading)
         if forward or sideways:
-            try:
-                cosine, sine = _cos(heading), _sin(heading)
-            except ValueError:
-                cosine = sine = math.nan
+            cosine, sine = _direction(heading)
             x = old_x + (cosine * forward - sine * sideways) * TICK
             y = old_y - (cosine * sideways + sine * forward) * TICK
         else:
@@ -138,7 +132,7 @@ class Turtle:
 
     def colour(self):
         """The colour of the paper under the centre of the turtle."""
-        return self.canvas.pixel(self.x * METRE, self.y * METRE)
+        return self.canvas.pixel(self.x, self.y)
 
     def _teleport(self):
         teleports, self.teleports = self.teleports, []
@@ -148,13 +142,22 @@ class Turtle:
                 self.x, self.y, self.heading = x, max(0.0, EXTENT - y), heading
             else:
                 self.heading += heading
-                self.x += _cos(self.heading) * x
-                self.y -= _sin(self.heading) * x
+                cosine, sine = _direction(self.heading)
+                self.x += cosine * x
+                self.y -= sine * x
             if self.pen_on:
                 self._line(old_x, old_y, self.x, self.y)
 
     def _line(self, old_x, old_y, x, y):
-        self.canvas.line(x * METRE, y * METRE, old_x * METRE, old_y * METRE, self.pen_colour, self.pen_width)
+        self.canvas.line(x, y, old_x, old_y, self.pen_colour, self.pen_width)
+
+
+def _direction(heading):
+    """Cosine and sine, as C++ has them: not a number where Python has an error."""
+    try:
+        return _cos(heading), _sin(heading)
+    except ValueError:
+        return math.nan, math.nan
 
 
 def _wrap(heading):

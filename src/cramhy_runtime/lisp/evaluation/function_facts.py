@@ -12,7 +12,7 @@ import inspect
 import linecache
 
 from ..conditions import Condition
-from ..data import Cons, Symbol, list_from
+from ..data import Cons, DoubleFloat, Keyword, Symbol, lisp_list, list_from
 from ..dynamic import binding
 from ..objects.methods import shape_items
 from ..packages import COMMON_LISP_USER, is_symbol, sym, symbol_name
@@ -58,7 +58,8 @@ def from_signature(function):
         if marker is not None and marker != state:
             items.append(sym(marker))
             state = marker
-        items.append(Symbol(parameter.name.strip("_").replace("_", "-").upper()))
+        name, default = Symbol(parameter.name.strip("_").replace("_", "-").upper()), parameter.default
+        items.append(lisp_list(name, default) if default.__class__ in (int, float, DoubleFloat, Keyword) else name)
     return list_from(items)
 
 

@@ -13,8 +13,10 @@ an object is first printed, so that the same run prints the same bytes (law 5). 
 from __future__ import annotations
 
 import weakref
+from contextlib import contextmanager
 from fractions import Fraction
 
+from ... import kernel
 from ..collections.vectors import LispArray
 from ..conditions import PrintNotReadable, error
 from ..data import UNSUPPLIED, Character, Cons, DoubleFloat, Keyword, LispString, MultipleValues, Symbol
@@ -202,6 +204,32 @@ def printer_for(cls):
 _addresses: dict = {}
 _next_address = 0x1001000000
 _TAGS = {"list": 0x7, "function": 0xB, "instance": 0x3}
+_NOBODY = object()
+_looks_on = _NOBODY  # the task that does
+
+
+@contextmanager
+def looking_on():
+    """While the block runs, what this task prints gets no addresses: an object that has none yet shows as ``#<POINT {?}>``.
+
+    Addresses, and numbers in names of tasks, are given in the order in which they are asked for; so who only looks on at a program
+    would else change what the program prints. Other tasks print as ever: what is looked at may be printed by a method that waits.
+    """
+    global _looks_on
+    before, _looks_on = _looks_on, _this_task()
+    try:
+        yield
+    finally:
+        _looks_on = before
+
+
+def _this_task():
+    return None if kernel.active() is None else kernel.current()
+
+
+def only_looked_at():
+    """Whether what is printed now is for somebody who only looks on (`looking_on`)."""
+    return _looks_on is not _NOBODY and _looks_on is _this_task()
 
 
 def address(obj):
@@ -213,6 +241,8 @@ def address(obj):
     known = _addresses.get(key)
     if known is not None:
         return known[0]
+    if only_looked_at():
+        return "?"
     _next_address += 0x40
     kind = (
         "list" if isinstance(obj, Cons) else "function" if callable(obj) and not isinstance(obj, type) else "instance"

@@ -69,12 +69,13 @@ class Readtable:
         return self._scanner or self._compile()
 
     def _compile(self):
+        read_comment = late.read_comment  # first of all: whoever names it for the first time fills the tables with the standard syntax
         white = _set(self.whitespace)
         escapes = _set(self.single_escapes | self.multiple_escapes)
         ending = _set(set(self.macros) - self.non_terminating)
         begin = f"[^{white}{escapes}{ending}{_set(self.non_terminating)}]"
         skip = f"[{white}]+"
-        if self.macros.get(";") is late.read_comment:
+        if self.macros.get(";") is read_comment:
             skip += r"|;[^\n]*"
         within = f"[^{white}{escapes}{ending}]"
         escape = f"[{escapes}]" if escapes else "(?!)"

@@ -11,7 +11,7 @@ from ..files.files import lisp_path
 from ..packages import is_symbol, keyword, string_designator, sym, symbol_name
 from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import STANDARD_OUTPUT
-from . import systems
+from . import search_folders, systems
 from .loader import folder_of_load
 from .system_definitions import Component, OPERATIONS, Operation, PERFORM, System, TestOp, component_name, define_system
 
@@ -182,7 +182,7 @@ def initialize_source_registry(*parameters):
     """``asdf:initialize-source-registry``: look below the folders of ``(:tree ...)`` and ``(:directory ...)`` too."""
     for entry in (parameters[0].cdr or ()) if parameters and isinstance(parameters[0], Cons) else ():
         if isinstance(entry, Cons) and symbol_name(entry.car) in ("TREE", "DIRECTORY"):
-            systems.extra_folders.append(str(entry.cdr.car))
+            search_folders.extra_folders.append(str(entry.cdr.car))
     return None
 
 

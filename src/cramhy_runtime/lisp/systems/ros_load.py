@@ -34,6 +34,30 @@ def ros_package_path(package):
     return str(folder) + "/"
 
 
+def rospack(command="", *arguments):
+    """``(ros-load:rospack "find" "package")``: the lines that this command of the shell prints, as a list. Only ``find`` is there."""
+    if command != "find" or len(arguments) != 1:
+        return error("(ros-load:rospack \"find\" package) is all that rospack does from within a program; the shell's command does more.")
+    return list_from([ros_package_path(arguments[0]).rstrip("/")])
+
+
+def asdf_paths_to_add(package):
+    """The folders ``asdf`` below a ROS package in which systems used to lie: a list of one, or of none."""
+    folder = ros_package_path(package) + "asdf/"
+    return list_from([folder] if os.path.isdir(folder) else [])
+
+
+def asdf_ros_search(system):
+    """The file that defines ``system``, as a string, or nil."""
+    found = systems.find_asd(string_designator(system).lower())
+    return None if found is None else str(found)
+
+
+def load_manifest(*_):
+    """What loaded the systems of a package before `load_system` was there."""
+    return error("Load manifest deprecated!")
+
+
 def ros_home():
     """Where ROS keeps its logs: ``$ROS_HOME``, or ``.ros`` in the user's home."""
     return os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
@@ -58,8 +82,9 @@ def require(module, pathnames=None):
 
 def define_faces():
     """Make the package ROS-LOAD-MANIFEST (ROS-LOAD)."""
-    define_face("ROS-LOAD-MANIFEST", nicknames=["ROS-LOAD"], functions={"load-system": load_system, "ros-package-path": ros_package_path,
-                                                                        "ros-home": ros_home},
-                variables={"*CURRENT-ROS-PACKAGE*": None})
+    define_face("ROS-LOAD-MANIFEST", nicknames=["ROS-LOAD"], use=["COMMON-LISP"],
+                functions={"load-system": load_system, "ros-package-path": ros_package_path, "ros-home": ros_home, "rospack": rospack,
+                           "asdf-paths-to-add": asdf_paths_to_add, "asdf-ros-search": asdf_ros_search, "load-manifest": load_manifest},
+                variables={"*CURRENT-ROS-PACKAGE*": None}, export="asdf-ros-pkg-search")
     define_face("COMMON-LISP", functions={"require": require})
 

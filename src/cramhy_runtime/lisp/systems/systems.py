@@ -20,6 +20,7 @@ from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
 from ..packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader
+from .search_folders import SKIPPED, search_folders
 from .system_definitions import Module, SourceFile, System, define_system, systems
 
 
@@ -29,13 +30,12 @@ class MissingComponent(SimpleError):
 
 built_in: set = set()
 """Names of systems that are part of cramhy; rooms add theirs with `provide_system`."""
+_finders: list = []
 _read: dict = {}
 """``.asd`` file → its time and size when it was read."""
 _reading: list = []
 _loaded: dict = {}
 _loading: list = []
-extra_folders: list = []
-"""Folders to look in besides the standard ones."""
 CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
 NOT_TO_BE_HAD = {
     "cffi": "it calls functions of C, which cramhy cannot; import the Python module for that library instead",
@@ -51,24 +51,22 @@ def provide_system(names):
     built_in.update(names.split())
 
 
+def provide_systems_on_demand(find, names):
+    """Systems that cramhy makes when somebody asks for them: ``find(name)`` tells whether there is one of that name and loads it,
+    ``names()`` gives the names of all, for "did you mean"."""
+    _finders.append((find, names))
+
+
+def is_provided(name):
+    """Whether the system ``name`` is part of cramhy, or was just made by it."""
+    return name in built_in or any(find(name) for find, _ in _finders)
+
+
 def central_registry():
     """The folders that ``asdf:*central-registry*`` lists: strings, pathnames, or forms that give one."""
     entries = CENTRAL_REGISTRY.value
     values = [evaluate(entry) if isinstance(entry, (Cons, Symbol)) else entry for entry in (entries if isinstance(entries, Cons) else ())]
     return [Path(value) for value in values if value is not None]
-
-
-def search_folders():
-    """The folders below which packages and systems are looked for, in order."""
-    folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
-    folders += [Path(entry) for entry in extra_folders]
-    here = Path.cwd()
-    folders += [here, *(parent / "src" for parent in [here, *here.parents][:6] if (parent / "src").is_dir())]
-    if here.name == "src":
-        folders.append(here)
-    root = Path(__file__).parents[4]
-    folders += [root / "tutorials", Path(__file__).parents[2] / "tutorials"]
-    return [folder for folder in dict.fromkeys(folders) if folder.is_dir()]
 
 
 LIBRARIES = Path(__file__).parents[2] / "libraries"
@@ -96,11 +94,10 @@ def _asd_files(folder, depth=4):
         if entry.name.endswith(".asd") and entry.is_file():
             yield Path(entry.path)
     for entry in entries:
-        if depth and entry.is_dir() and not entry.name.startswith((".", "__")) and entry.name not in _skipped:
+        if depth and entry.is_dir() and not entry.name.startswith((".", "__")) and entry.name not in SKIPPED:
             yield from _asd_files(entry.path, depth - 1)
 
 
-_skipped = {"node_modules", "build", "devel", "venv", "site-packages", "tests"}
 
 
 def find_asd(name):
@@ -129,7 +126,7 @@ def find_package_folder(name):
 
 def known_systems():
     """Names of all systems that could be loaded, for "did you mean"."""
-    return {*built_in, *(name.removesuffix(".asd") for name in libraries()),
+    return {*built_in, *(name for _, names in _finders for name in names()), *(name.removesuffix(".asd") for name in libraries()),
             *(path.stem for folder in search_folders() for path in _asd_files(folder))}
 
 
@@ -173,7 +170,7 @@ def asdf_user():
 
 def find_system(name, required_by=None):
     """The `System` called ``name``; an unknown one is an error that names who asked for it, where it was searched, and its neighbours."""
-    if name in built_in:
+    if is_provided(name):
         return systems.setdefault(name, System(name, Path(__file__).parents[2]))
     path = find_asd(name)
     if path is not None:
@@ -225,7 +222,7 @@ def load_system(name, force=False, version=None):
 
 def _load_system(name, force=False, required_by=None, version=None):
     name = string_designator(name).lower()
-    if name in built_in:
+    if is_provided(name):
         return name
     if name in _loading:
         return error("Circular dependency: ~{~A~^ -> ~} -> ~A", list_from(_loading[_loading.index(name):]), name)

@@ -1,0 +1,124 @@
+"""The client of the package ACTIONLIB: `call_goal` sends a goal and returns with its end.
+
+Each feedback is signalled as a ``feedback-signal`` in the task that waits, so that the plan around it can look at it and, by the
+restart ``abort-goal``, give the goal up. A server that falls silent for two seconds is the error ``server-lost``. Whoever leaves
+the call otherwise cancels the goal. Source: roslisp.md 13.2.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from .. import kernel
+from ..lisp import conditions
+from ..lisp.condition_types import Condition, Error
+from ..lisp.data import MultipleValues, Symbol, truth
+from ..lisp.evaluation.control import fdefinition
+from ..lisp.packages import keyword, sym
+from . import goals
+from .client import CONNECTED, ActionClient
+
+ACKNOWLEDGE = 1.0
+"""Seconds that a server has to tell the end of a goal that was given up, if the caller does not say otherwise."""
+
+
+class ServerLost(Error):
+    """The server of a goal gave no sign of life for two seconds."""
+
+    lisp_name = "ACTIONLIB::SERVER-LOST"
+
+    def report(self):
+        return "Client lost connection to server."
+
+
+class FeedbackSignal(Condition):
+    """The server told how far it is; ``goal`` is what was asked of it, ``feedback`` the message. Not to handle it is fine."""
+
+    lisp_name = "ACTIONLIB::FEEDBACK-SIGNAL"
+    initargs = {"GOAL": "goal", "FEEDBACK": "feedback"}
+
+    def __init__(self, goal=None, feedback=None, **slots):
+        super().__init__(**slots)
+        self.goal, self.feedback = goal, feedback
+
+    def report(self):
+        return f"Feedback of an action: {self.feedback!r}"
+
+
+def goal(signal):
+    """The goal that a ``feedback-signal`` is about."""
+    return signal.goal
+
+
+def feedback(signal):
+    """The feedback message of a ``feedback-signal``."""
+    return signal.feedback
+
+
+def make_action_client(action_name, action_type):
+    """A client of the action ``action_name`` (a string) of ``action_type``, ``"package/NameAction"``."""
+    return ActionClient(action_name, action_type)
+
+
+def call_goal(client, goal, *, timeout=None, result_timeout=None, feedback_cb=None):
+    """Send ``goal`` and wait for its end: its result and the keyword of its state; NIL and :TIMEOUT after ``timeout`` seconds.
+
+    A goal whose time is over, or that the restart ``abort-goal`` gives up, is cancelled; the server then has ``result_timeout``
+    seconds (1) to tell its end. feedback_cb: a function that is called with each feedback before it is signalled.
+    """
+    if not isinstance(client, ActionClient):
+        return conditions.type_error(client, "ACTIONLIB:ACTION-CLIENT")
+    feedbacks = deque()
+
+    def note(message):
+        feedbacks.append(message)
+        client.waiting.changed()
+
+    sent = client.send(goal, feedback=note)
+    callback = fdefinition(feedback_cb) if isinstance(feedback_cb, Symbol) and truth(feedback_cb) else feedback_cb
+    limit = goals.time_limit(timeout)
+
+    def follow():
+        while True:
+            if not _wait(client, sent, feedbacks, limit):
+                return None
+            while feedbacks:
+                message = feedbacks.popleft()
+                if callback is not None:
+                    callback(message)
+                conditions.signal_condition(FeedbackSignal(goal, message))
+            if sent.done:
+                return MultipleValues((sent.result, keyword(sent.state)))
+
+    def give_up(*_):
+        client.cancel(sent)
+        client.waiting.wait(lambda: sent.done, f"the end of the cancelled goal {sent.id}",
+                            goals.time_limit(ACKNOWLEDGE if result_timeout is None else result_timeout))  # fmt: skip
+        return MultipleValues((sent.result, keyword(sent.state)))
+
+    try:
+        values = conditions.restart_case([(sym("ACTIONLIB::ABORT-GOAL"), give_up, "Abort the goal.")], follow)
+        if values is None:
+            give_up()
+            values = MultipleValues((None, keyword("TIMEOUT")))
+    except BaseException:
+        with kernel.cleanup():
+            client.cancel(sent)
+        raise
+    return values
+
+
+def _wait(client, sent, feedbacks, limit):
+    """Wait for the end or feedback: True; False when the time ``limit`` is reached. A silent server is an error."""
+    def something():
+        return feedbacks or sent.done
+
+    while True:
+        silent = max(sent.sent, client.heard or 0.0) + CONNECTED
+        until = silent if limit is None else min(silent, limit)
+        if client.waiting.wait(something, f"the end of the goal {sent.id} of action {client.name}", until):
+            return True
+        if limit is not None and kernel.now() >= limit:
+            return False
+        if kernel.now() >= max(sent.sent, client.heard or 0.0) + CONNECTED:
+            conditions.error(ServerLost())

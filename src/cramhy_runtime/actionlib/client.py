@@ -1,0 +1,211 @@
+"""The client's side of an action: one goal at a time, and in which state it is.
+
+The client learns of its goal in two ways. Several times a second the server lists the states of all goals, and when one is over
+it sends the result. Both go through one state machine, so that it does not matter which comes first:
+
+    waiting-for-goal-ack → pending → active → preempting / recalling / waiting-for-cancel-ack → waiting-for-result → done
+
+A goal that the server never lists is lost after five seconds, and so is one whose server falls silent for that long, or no longer
+lists it; the original waits for ever in the second case. The callbacks of a goal run in the tasks of the subscribers, as all
+callbacks of topics. Source: roslisp.md 13.1.
+"""
+
+from __future__ import annotations
+
+from .. import kernel
+from ..lisp import conditions
+from ..lisp.condition_types import SimpleError
+from ..ros.messages import message_class
+from ..ros.roslisp import node, topics
+from ..ros.roslisp.clock import ros_time
+from . import goals
+from .goals import ABORTED, ACTIVE, KNOWN, LOST, PENDING, PREEMPTED, PREEMPTING, RECALLING, SUCCEEDED, TERMINAL, Action, Waiting
+
+PATIENCE = 5.0
+"""Seconds after which a goal is lost that the server does not list, or whose server is silent."""
+CONNECTED = 2.0
+"""Seconds for which a sign of the server's life counts."""
+
+
+class Goal:
+    """A goal that was sent: its id, its state on the way (``communication``, a keyword's name) and at the end (``terminal``, a
+    number of GoalStatus), what the server last said of it (``status``), its result, and the callbacks."""
+
+    def __init__(self, goal_id, done, active, feedback):
+        self.id, self.done_callback, self.active_callback, self.feedback_callback = goal_id, done, active, feedback
+        self.communication = "WAITING-FOR-GOAL-ACK"
+        self.status, self.terminal, self.result = PENDING, None, None
+        self.was_active = False
+        self.sent = kernel.now()
+
+    @property
+    def done(self):
+        return self.communication == "DONE"
+
+    @property
+    def state(self):
+        """The name of its state as users see it: one of those of GoalStatus, recalling as pending, preempting as active."""
+        if self.done:
+            return goals.NAMES[self.terminal]
+        return "ACTIVE" if self.was_active else "PENDING"
+
+
+class ActionClient:
+    """A client of the action that is called ``name``; it belongs to the Lisp program's node."""
+
+    lisp_name = "ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"
+
+    def __init__(self, name, action_type):
+        self.name, self.action = str(name), Action(action_type)
+        self.goal, self.heard, self.waiting = None, None, Waiting()
+        self._watch = None
+        here = node.require_node()
+        self.node = here
+        self.goals = topics.advertise(f"{name}/goal", self.action.action_goal)
+        self.cancels = topics.advertise(f"{name}/cancel", goals.GOAL_ID)
+        self.subscribers = [
+            topics.subscribe(f"{name}/status", goals.STATUS_ARRAY, self._status),
+            topics.subscribe(f"{name}/feedback", self.action.action_feedback, self._feedback),
+            topics.subscribe(f"{name}/result", self.action.action_result, self._result),
+        ]
+
+    def __repr__(self):
+        return f"#<SIMPLE-ACTION-CLIENT {self.name} {self.action.name}>"
+
+    @property
+    def connected(self):
+        """Whether the server gave a sign of life within the last two seconds."""
+        return self.heard is not None and kernel.now() - self.heard < CONNECTED
+
+    def wait_for_server(self, timeout=0):
+        """Wait for a sign of life, at most ``timeout`` seconds (0: for ever); whether there was one."""
+        return self.waiting.wait(lambda: self.connected, f"the server of action {self.name}", goals.time_limit(timeout))
+
+    # ------------------------------------------------------------------------------------------------------ what it sends
+
+    def send(self, message, done=None, active=None, feedback=None):
+        """Send a goal and track it from now on; the one before is forgotten. Returns the `Goal`."""
+        goals.check_message(message, self.action.goal)
+        if not self.node.alive:
+            problem = SimpleError("The node of the client of action ~a has ended.", self.name)
+            problem.hint = "A client lives as long as the node that made it: make a new one."
+            conditions.error(problem)
+        self.forget()
+        now = ros_time()
+        goal_id = goals.new_goal_id(self.node.name, now)
+        goal = self.goal = Goal(goal_id.id, done, active, feedback)
+        try:
+            topics.publish(self.goals, self.action.action_goal(header=_header(now), goal_id=goal_id, goal=message))
+        except BaseException:  # it has a wrong value in a field
+            self.forget()
+            raise
+        self._watch_goal()
+        return goal
+
+    def cancel(self, goal):
+        """Ask the server to give up ``goal``; not when it is over."""
+        if not goal.done and goal.communication != "WAITING-FOR-RESULT":
+            if goal.communication not in ("PREEMPTING", "RECALLING"):
+                goal.communication = "WAITING-FOR-CANCEL-ACK"
+            self._cancel(goal.id)
+
+    def cancel_all(self):
+        """Ask the server to give up the goals of all clients."""
+        if self.goal is not None and self.goal.communication in ("WAITING-FOR-GOAL-ACK", "PENDING", "ACTIVE"):
+            self.goal.communication = "WAITING-FOR-CANCEL-ACK"
+        self._cancel("")
+
+    def _cancel(self, goal_id):
+        if self.node.alive:
+            topics.publish(self.cancels, message_class(goals.GOAL_ID)(id=goal_id))
+
+    def forget(self):
+        """Track no goal any more. For who waits for the one that was tracked it is lost."""
+        goal, self.goal = self.goal, None
+        if goal is not None and not goal.done:
+            goal.communication, goal.terminal = "DONE", LOST
+        if self._watch is not None:
+            self._watch.cancel()
+            self._watch = None
+        self.waiting.changed()
+
+    # --------------------------------------------------------------------------------------------------- what it hears of
+
+    def _sign_of_life(self):
+        self.heard = kernel.now()
+        self.waiting.changed()
+
+    def _status(self, message):
+        self._sign_of_life()
+        goal = self.goal
+        if goal is None or goal.done:
+            return
+        status = next((entry.status for entry in message.status_list if entry.goal_id.id == goal.id and entry.status in KNOWN), None)
+        if status is not None:
+            self._update(goal, status)
+        elif goal.communication not in ("WAITING-FOR-GOAL-ACK", "WAITING-FOR-CANCEL-ACK", "WAITING-FOR-RESULT"):
+            self._finish(goal, LOST)
+        elif kernel.now() >= goal.sent + PATIENCE:
+            self._finish(goal, LOST)
+
+    def _update(self, goal, status):
+        goal.status = status
+        if not goal.was_active and status in (ACTIVE, PREEMPTING, PREEMPTED, SUCCEEDED, ABORTED):
+            goal.was_active = True
+            if goal.active_callback is not None:
+                goal.active_callback()
+            if goal.done:
+                return
+        if status in TERMINAL:
+            goal.communication = "WAITING-FOR-RESULT"
+        elif status in (PREEMPTING, RECALLING):
+            goal.communication = goals.NAMES[status]
+        elif goal.communication != "WAITING-FOR-CANCEL-ACK":
+            goal.communication = goals.NAMES[status]
+        self.waiting.changed()
+
+    def _feedback(self, message):
+        self._sign_of_life()
+        goal = self.goal
+        if goal is not None and message.status.goal_id.id == goal.id and goal.feedback_callback is not None and not goal.done:
+            goal.feedback_callback(message.feedback)
+
+    def _result(self, message):
+        self._sign_of_life()
+        goal = self.goal
+        if goal is not None and message.status.goal_id.id == goal.id and not goal.done:
+            status = message.status.status
+            if status in KNOWN:
+                self._update(goal, status)
+            goal.result = message.result
+            self._finish(goal, status if status in TERMINAL else LOST)
+
+    def _finish(self, goal, terminal):
+        if goal.done:
+            return
+        goal.communication, goal.terminal = "DONE", terminal
+        if self._watch is not None:
+            self._watch.cancel()
+            self._watch = None
+        self.waiting.changed()
+        if goal.done_callback is not None:
+            goal.done_callback(goal)
+
+    def _watch_goal(self):
+        """Look again when the server may have been silent for too long."""
+        silent_since = max(self.goal.sent, self.heard or 0.0)
+        self._watch = kernel.call_at(silent_since + PATIENCE, self._look_after)
+
+    def _look_after(self):
+        goal, self._watch = self.goal, None
+        if goal is None or goal.done:
+            return
+        if kernel.now() >= max(goal.sent, self.heard or 0.0) + PATIENCE or not self.node.alive:
+            owner = self.node.graph.kernel
+            owner.spawn(lambda: self._finish(goal, LOST), name=f"Lost goal of {self.name}", parent=owner.main)
+        else:
+            self._watch_goal()
+
+
+def _header(stamp):
+    return message_class("std_msgs/Header")(stamp=stamp)

@@ -1,0 +1,151 @@
+"""Looks at a session at the end of its instants, and tells what is new to the recorders and to the board for whoever looks on.
+
+For recordings it looks at every instant, so that in virtual time a recording is a function of the run. For pages it looks as often as they
+may be told. Nothing of it is there before somebody asks; see `chronicle.start` and `chronicle.record`.
+"""
+
+from __future__ import annotations
+
+from .. import kernel
+from ..lisp.condition_types import SimpleWarning
+from ..lisp.conditions import Condition, warn
+from ..lisp.printer.printer import looking_on
+from ..ros import graph
+from ..ros.messages import message_class_exact
+from .board import Board
+from .fluents import Fluents
+from .modules import Modules
+from .plans import Plans
+from .sums import State
+from .world import World
+
+NAMES = {"world": "the turtles", "tasks": "the tasks of plans", "fluents": "fluents", "modules": "process modules"}
+
+_active = None
+
+
+class Chronicler:
+    """The watch on one kernel. ``listeners`` are functions of (kind, message), told of everything; ``board`` is for those who look on."""
+
+    def __init__(self):
+        self.kernel, self.graph = kernel.active(), graph.active()
+        now = self.kernel.now
+        self.sources = {"world": World(now), "tasks": Plans(), "fluents": Fluents(now), "modules": Modules(now)}
+        self.state = State()
+        self.listeners = []
+        self.board = None
+        self.pace_type = message_class_exact("cramhy_msgs/Pace")
+        self._looking = False
+        self.sources["world"].begin()
+        self.sources["tasks"].begin(self.look)
+        self.sources["fluents"].begin()
+        self.sources["modules"].begin()
+        self.kernel.watch_instants(self._instant)
+
+    def open_board(self):
+        """Be there for those who look on."""
+        if self.board is None:
+            self.board = Board(self)
+            for kind, message in self.state.messages().items():
+                self.board.add(kind, message)
+            if self.kernel.clock.virtual:
+                kernel.pace().on_change.append(self.board.tell_pace)
+        return self.board
+
+    def close_board(self):
+        if self.board is not None:
+            pace = self.kernel.clock.pace if self.kernel.clock.virtual else None
+            if pace is not None and self.board.tell_pace in pace.on_change:
+                pace.on_change.remove(self.board.tell_pace)
+            self.board.close()
+            self.board = None
+
+    def close(self):
+        """Look no more."""
+        self.close_board()
+        self.kernel.unwatch_instants(self._instant)
+        for source in self.sources.values():
+            source.end()
+
+    def _instant(self):
+        if self.listeners or self.board is not None and self.board.due:
+            self.look()
+
+    def look(self):
+        """Take what is new from everything that is watched."""
+        if self._looking:  # what is looked at is printed, and that may call functions of the user's which let others run
+            return
+        self._looking = True
+        if "tasks" in self.sources:
+            self.sources["tasks"].every = bool(self.listeners)
+        try:
+            with looking_on():
+                news = [(kind, self._taken(kind)) for kind in list(self.sources)]
+            for kind, message in news:
+                if message is None:
+                    continue
+                self.state.add(kind, message)
+                for listener in self.listeners:
+                    listener(kind, message)
+                if self.board is not None:
+                    self.board.add(kind, message)
+        finally:
+            self._looking = False
+        if self.board is not None:
+            self.board.publish()
+
+    def _taken(self, kind):
+        """What is new of one kind. Whatever goes wrong there, the plan and what is told of others do not suffer from it."""
+        try:
+            return self.sources[kind].take()
+        except (Condition, Exception) as problem:
+            source = self.sources.pop(kind)
+            warn(SimpleWarning("~a", f"What happens to {NAMES[kind]} can be told no more: {type(problem).__name__}: {problem}"))
+            source.end()
+
+    # ------------------------------------------------------------------------------------------------------- plan time
+
+    def pace_message(self):
+        """How plan time passes, a ``cramhy_msgs/Pace``."""
+        pace = kernel.pace()
+        return self.pace_type(stamp=self.kernel.now(), virtual=True if pace.virtual else None, paused=True if pace.paused else None,
+                              speed=pace.speed or 0.0, busy=True if pace.busy else None)
+
+    def set_pace(self, paused, speed):
+        """Let plan time pass with ``speed`` (``None``: as fast as the machine computes), or stand still."""
+        pace = kernel.pace()
+        if speed != pace.speed or not pace.virtual:
+            pace.set_speed(speed)
+        if paused != pace.paused:
+            pace.pause() if paused else pace.resume()
+
+    def step(self, seconds):
+        kernel.pace().step(seconds)
+
+    def seek(self, stamp):
+        raise ValueError("Time goes one way in a session with plans. What was before is told by /cramhy/get_history; a recording "
+                         "(--record, cramhy replay) can be sought through.")
+
+
+def active():
+    """The `Chronicler` of the active kernel, made when there is none."""
+    global _active
+    if there() is None:
+        if _active is not None:  # of a session that is over
+            _active.look()
+            _active.close()
+        _active = Chronicler()
+    return _active
+
+
+def there():
+    """The `Chronicler` of the active kernel, or ``None``."""
+    return _active if _active is not None and _active.kernel is kernel.active() else None
+
+
+def dismiss():
+    """Close the chronicler if nobody needs it any more."""
+    global _active
+    if _active is not None and _active.board is None and not _active.listeners:
+        _active.close()
+        _active = None

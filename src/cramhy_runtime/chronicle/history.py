@@ -1,0 +1,77 @@
+"""What was published before, in chapters: so that a page which comes late can scroll back.
+
+A chapter is the state at its beginning and the messages that followed. The newest is still being written; when it is long enough the
+next begins, and the oldest are forgotten when all together hold too much. What is counted are the things in messages (turtles,
+strokes, tasks, fluents), some hundred bytes each, so that memory is bounded whatever happens in the session.
+"""
+
+from __future__ import annotations
+
+from .sums import KINDS
+
+MOST = 60_000
+"""Things that are kept: about 20 MB; eight minutes of one turtle that drives and draws."""
+CHAPTER = 2_000
+"""Things after which a new chapter begins."""
+
+
+class Chapter:
+    """``number`` counts from 1. ``begin`` and ``end`` are plan times, ``state`` is the `State` at the beginning, ``later`` is by kind."""
+
+    __slots__ = ("number", "begin", "end", "state", "later", "size")
+
+    def __init__(self, number, now, state):
+        self.number, self.begin, self.end, self.state = number, now, now, state
+        self.later = {kind: [] for kind in KINDS}
+        self.size = 1 + len(state) // 4  # most of it is shared with other chapters
+
+
+class History:
+    """The chapters that are kept, the oldest first."""
+
+    def __init__(self, most=MOST, chapter=CHAPTER):
+        self.most, self.chapter = most, chapter
+        self.chapters = []
+        self.size = 0
+
+    def add(self, published, state):
+        """Note what was published at one moment, pairs (kind, message); ``state`` is the `State` that it led to."""
+        if not self.chapters or self.chapters[-1].size >= self.chapter:
+            self._begin(published[-1][1].stamp, state)
+            return
+        chapter = self.chapters[-1]
+        for kind, message in published:
+            size = _size(message)
+            chapter.later[kind].append(message)
+            chapter.size += size
+            self.size += size
+            chapter.end = message.stamp
+        self._forget()
+
+    def _begin(self, now, state):
+        number = self.chapters[-1].number + 1 if self.chapters else 1
+        if self.chapters:
+            self.chapters[-1].end = now
+        self.chapters.append(Chapter(number, now, state.copy()))
+        self.size += self.chapters[-1].size
+        self._forget()
+
+    def _forget(self):
+        while self.size > self.most and len(self.chapters) > 1:
+            self.size -= self.chapters.pop(0).size
+
+    @property
+    def numbers(self):
+        """(number of the oldest chapter, of the newest); zeros when there is none."""
+        return (self.chapters[0].number, self.chapters[-1].number) if self.chapters else (0, 0)
+
+    def get(self, number):
+        """The chapter of that number, or for 0 the newest; ``None`` if it is not there."""
+        if not self.chapters:
+            return None
+        index = -1 if number == 0 else number - self.chapters[0].number
+        return self.chapters[index] if -1 <= index < len(self.chapters) and (index >= 0 or number == 0) else None
+
+
+def _size(message):
+    return 1 + sum(len(value) for value in message.values() if value.__class__ is list)

@@ -1,0 +1,203 @@
+"""What messages about changes add up to: one message about many changes, or all that there is now.
+
+Each sum takes the messages of one topic in order (`add`). `message` gives what they come to: the changes since `clear`, or, where the
+first of them was complete, everything. Pages get their messages merged so that they come at most 60 times a second, late joiners and
+chapters of the past get the whole, and a recording that is replayed adds up to what there was at any of its moments.
+"""
+
+from __future__ import annotations
+
+from ..ros.messages import message_class_exact
+from ..turtlesim.ink import Ink
+from ..turtlesim.measures import EXTENT
+
+
+class Things:
+    """The sum of messages that hold things with an ``id``, and the ids of those that are ``removed``."""
+
+    def __init__(self, ros_type, field):
+        self.type, self.field = message_class_exact(ros_type), field
+        self.clear()
+
+    def clear(self):
+        """Begin anew, with no change."""
+        self.stamp, self.complete, self.things, self.removed = 0.0, False, {}, []
+
+    @property
+    def changed(self):
+        return bool(self.complete or self.things or self.removed)
+
+    def add(self, message):
+        self.stamp = message.stamp
+        if message.complete:
+            self.complete, self.things, self.removed = True, {}, []
+        things = self.things
+        for thing in getattr(message, self.field):
+            things[thing.id] = thing
+        for gone in message.removed:
+            things.pop(gone, None)
+            self.removed.append(gone)
+        if self.complete:
+            self.removed = []
+
+    def message(self, complete=None):
+        """The sum as one message; ``complete``: that it is everything there is."""
+        everything = True if self.complete or complete else None
+        removed = [] if everything else list(self.removed)
+        return self.type(stamp=self.stamp, complete=everything, removed=removed, **{self.field: list(self.things.values())})
+
+    def copy(self):
+        """What it is now, for `message` later."""
+        other = type(self)()
+        other.stamp, other.complete, other.things, other.removed = self.stamp, self.complete, dict(self.things), []
+        return other
+
+    def __len__(self):
+        return len(self.things)
+
+
+class TaskTrees(Things):
+    def __init__(self):
+        super().__init__("cramhy_msgs/TaskTree", "tasks")
+
+
+class FluentLists(Things):
+    def __init__(self):
+        super().__init__("cramhy_msgs/Fluents", "fluents")
+
+
+class Latest:
+    """The sum of messages each of which tells everything: the last one."""
+
+    def __init__(self, ros_type="cramhy_msgs/ProcessModules"):
+        self.type = message_class_exact(ros_type)
+        self.clear()
+
+    def clear(self):
+        self.last = None
+
+    @property
+    def changed(self):
+        return self.last is not None
+
+    def add(self, message):
+        self.last = message
+
+    def message(self, complete=None):
+        return self.type() if self.last is None else self.last
+
+    def copy(self):
+        other = type(self)()
+        other.last = self.last
+        return other
+
+    def __len__(self):
+        return 0 if self.last is None else 1
+
+
+class WorldChanges:
+    """The sum of messages about the turtles' world: where the turtles are last, and every stroke since the last new paper."""
+
+    def __init__(self):
+        self.type = message_class_exact("cramhy_msgs/World")
+        self.clear()
+
+    def clear(self):
+        self.last, self.complete, self.strokes = None, False, []
+
+    @property
+    def changed(self):
+        return self.last is not None
+
+    def add(self, message):
+        if message.complete:
+            self.complete = True
+        if self.last is None or message.complete or message.clears != self.last.clears:
+            self.strokes = []
+        self.strokes += message.strokes
+        self.last = message
+
+    def message(self, complete=None):
+        message = self.last.copy()
+        message.complete, message.strokes = True if self.complete else None, list(self.strokes)
+        return message
+
+
+PIECE = 1000
+"""Strokes that are thinned out together, which takes some milliseconds."""
+
+
+class WorldState:
+    """The world as it is. Its strokes are thinned out piece by piece and kept as ink, 20 bytes each."""
+
+    def __init__(self):
+        self.type, self.stroke_type = message_class_exact("cramhy_msgs/World"), message_class_exact("cramhy_msgs/Stroke")
+        self.last, self.ink, self.shared, self.recent = None, Ink(), False, []
+
+    def add(self, message):
+        if self.last is None or message.complete or message.clears != self.last.clears:
+            self.ink, self.shared, self.recent = Ink(), False, []
+        self.recent += [(each.x2, EXTENT - each.y2, each.x1, EXTENT - each.y1, (each.r, each.g, each.b), each.width)
+                        for each in message.strokes]
+        if len(self.recent) >= PIECE:
+            self._thin_out()
+        self.last = message
+
+    def _thin_out(self):
+        if self.shared:  # somebody keeps what it was
+            self.ink, self.shared = self.ink.copy(), False
+        piece, self.recent = self.recent, []
+        for begin in range(0, len(piece), PIECE):
+            thin = Ink()
+            thin.take(piece[begin:begin + PIECE])
+            for colour, width, points in thin.polylines():
+                self.ink.take([(*end, *start, colour, width) for start, end in zip(points, points[1:])])
+
+    def message(self, complete=None):
+        if self.last is None:
+            return self.type(complete=True)
+        make, ink = self.stroke_type, self.ink.copy()
+        ink.take(self.recent)
+        message = self.last.copy()
+        message.complete = True
+        message.strokes = [make(x1, y1, x2, y2, *colour, width) for x1, y1, x2, y2, colour, width in ink.strokes()]
+        return message
+
+    def copy(self):
+        """What it is now, for `message` later: the ink is copied when more is drawn."""
+        other = type(self)()
+        other.last, other.ink, other.recent = self.last, self.ink, list(self.recent)
+        other.shared = self.shared = True
+        return other
+
+    def __len__(self):
+        return 0 if self.last is None else len(self.last.turtles) + len(self.ink) // 10 + len(self.recent) // 3
+
+
+KINDS = ("world", "tasks", "fluents", "modules")
+TOPICS = {"world": "/cramhy/world", "tasks": "/cramhy/tasks", "fluents": "/cramhy/fluents", "modules": "/cramhy/process_modules"}
+TYPES = {"world": "cramhy_msgs/World", "tasks": "cramhy_msgs/TaskTree", "fluents": "cramhy_msgs/Fluents",
+         "modules": "cramhy_msgs/ProcessModules"}
+CHANGES = {"world": WorldChanges, "tasks": TaskTrees, "fluents": FluentLists, "modules": Latest}
+
+
+class State:
+    """Everything as it is now: the sum of all messages of each kind."""
+
+    def __init__(self):
+        self.sums = {"world": WorldState(), "tasks": TaskTrees(), "fluents": FluentLists(), "modules": Latest()}
+
+    def add(self, kind, message):
+        self.sums[kind].add(message)
+
+    def messages(self):
+        """Kind → the complete message."""
+        return {kind: made.message(True) for kind, made in self.sums.items()}
+
+    def copy(self):
+        other = type(self)()
+        other.sums = {kind: made.copy() for kind, made in self.sums.items()}
+        return other
+
+    def __len__(self):
+        return sum(map(len, self.sums.values()))

@@ -1,0 +1,195 @@
+"""The command line: ``cramhy repl | run | eval | test | turtlesim | teleop | view | replay | ros-shims`` and ``roslisp_repl``.
+
+`options` says which words there are, `openings` what a session opens to the outside, `apart` has the commands that are no session of
+Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out. Each command
+imports what it needs when it runs, so that the quick ones are quick.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+from contextlib import ExitStack
+
+
+def session(options, default_time="wall", closings=None):
+    """The `Session` that the options describe, opened to the outside as they say, with systems loaded and the package set.
+
+    closings: an `ExitStack` that takes what is to be closed at the session's end; without one nothing is opened. What cannot be opened
+    is told and ends the process, as a wrong option does.
+    """
+    from cramhy_runtime.repl import backtrace
+    from cramhy_runtime.repl.session import Session
+
+    backtrace.show(options.backtrace)
+    made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
+                   turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)))
+    gc.freeze()  # what the start has made stays to the end
+    gc.enable()
+    if closings is not None:
+        from .openings import NotPossible, open_session
+
+        try:
+            open_session(options, closings)
+        except NotPossible as problem:
+            print(f"cramhy: {problem}", file=sys.stderr)
+            sys.exit(2)
+    for system in options.load:
+        made.load(system)
+    if options.package:
+        made.package = options.package.upper()
+    if options.command != "run":
+        evaluate_forms(made, options.forms)
+    return made
+
+
+def evaluate_forms(made, forms):
+    for form in forms:
+        made.evaluate_text(form, "<--eval>")
+
+
+def main(arguments=None):
+    """Run the command; the exit status."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    try:
+        if arguments[:1] == ["ros"] and len(arguments) > 1:  # the words belong to the tool, whatever they look like
+            from . import shims
+
+            return shims.tool(arguments[1], arguments[2:])
+        from .options import parser
+
+        options = parser().parse_args(arguments)
+        if options.command in ("repl", "eval", "run", "test"):
+            gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
+        return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    finally:
+        gc.enable()
+
+
+def roslisp_repl():
+    """The console script of that name: ``cramhy repl``."""
+    sys.exit(main(["repl", *sys.argv[1:]]))
+
+
+def _checked(options):
+    """Whether all that the options ask for can be had; what cannot is told."""
+    if not (options.serve or options.view or options.port or options.origin
+            or any(getattr(options, name, None) is not None for name in ("record", "ros", "picture"))):
+        return True
+    from . import openings
+
+    try:
+        openings.check(options)
+    except openings.NotPossible as problem:
+        print(f"cramhy: {problem}", file=sys.stderr)
+        return False
+    return True
+
+
+def _repl(options):
+    from cramhy_runtime.repl.console import Console
+
+    if not _checked(options):
+        return 2
+    with ExitStack() as closings:
+        return Console(lambda: session(options, closings=closings)).run()
+
+
+def _eval(options):
+    from cramhy_runtime.lisp.streams import streams
+    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.repl import json_lines
+    from cramhy_runtime.repl.console import report
+    from cramhy_runtime.repl.session import condition_of, handle_interrupts
+
+    if not _checked(options):
+        return 2
+    streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
+    with ExitStack() as closings:
+        try:
+            made = session(options, "virtual", closings)
+        except (Exception, Condition) as problem:
+            report(condition_of(problem))
+            return 1
+        handle_interrupts()
+        json_lines.serve(made)
+
+
+def _run(options):
+    from cramhy_runtime.repl.console import report
+    from cramhy_runtime.repl.session import Interruption, condition_of, handle_interrupts
+    from cramhy_runtime.lisp.conditions import Condition
+
+    if not _checked(options):
+        return 2
+    handle_interrupts()
+    with ExitStack() as closings:
+        try:
+            made = session(options, closings=closings)
+            if options.picture:
+                from .openings import save_picture
+
+                closings.callback(save_picture, options.picture)
+            made.load(options.file)
+            if options.package:
+                made.package = options.package.upper()
+            evaluate_forms(made, options.forms)
+        except Interruption:
+            return 130
+        except (Exception, Condition) as problem:
+            report(condition_of(problem))
+            return 1
+
+
+def _test(options):
+    """Run the tests of a system, an ``.asd``, ``.lisp`` or ``.hy`` file, or of all test files below a folder."""
+    from cramhy_runtime.lisp.systems import unit_tests
+    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.repl.console import report
+    from cramhy_runtime.repl.session import Interruption, condition_of, handle_interrupts
+
+    handle_interrupts()
+    unit_tests.limit = options.limit
+    try:
+        made = session(options, default_time="virtual")
+        return 0 if made.test(options.path) else 1
+    except Interruption:
+        return 130
+    except (Exception, Condition) as problem:
+        report(condition_of(problem))
+        return 1
+
+
+def _turtlesim(options):
+    from . import apart
+
+    return apart.turtlesim(options.port, options.view)
+
+
+def _teleop(options):
+    from . import keyboard
+
+    return keyboard.teleop([] if options.turtle == "turtle1" else [f"turtle1/cmd_vel:={options.turtle}/cmd_vel"])
+
+
+def _view(options):
+    from . import apart
+
+    return apart.view(options.port)
+
+
+def _replay(options):
+    from . import apart
+
+    return apart.replay(options.file, options.port)
+
+
+def _ros_shims(options):
+    from . import shims
+
+    return shims.run(options.install)

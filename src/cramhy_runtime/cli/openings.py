@@ -1,0 +1,159 @@
+"""What a session opens to the outside when an option asks for it: the server, the page, the recorder, a real ROS, a picture.
+
+Each is a room of its own, imported when it is asked for, so that a session that opens nothing pays nothing. What an option needs
+and is not installed is named before the session begins, with the extra that brings it. Everything that was opened is closed when
+the session has ended, the last first, and after the plan's cleanup, which may still have something to tell (law 2).
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from urllib.parse import urlsplit
+
+NEEDS = {
+    "serve": ("web", ("uvicorn", "websockets")),
+    "view": ("web", ("uvicorn", "websockets")),
+    "replay": ("web,record", ("uvicorn", "websockets", "mcap")),
+    "record": ("record", ("mcap",)),
+    "ros": ("ros", ("roslibpy",)),
+}
+"""The extra that an option needs, and its modules that have to be there."""
+WORKERS = {"serve": "rosbridge.start", "view": "view.start", "record": "chronicle.record", "ros": "rosbridge.attach",
+           "picture": "turtlesim.pictures.save"}
+"""What does the work that an option asks for."""
+PICTURES = (".png", ".svg", ".gif")
+
+
+class NotPossible(Exception):
+    """Something that was asked for cannot be had: the text says what, why, and what to do."""
+
+
+def require(what, asked):
+    """Make sure that the modules for ``what`` are installed, which the user asked for with the words ``asked``."""
+    extra, modules = NEEDS[what]
+    missing = [module for module in modules if find_spec(module) is None]
+    if missing:
+        verb = "is" if len(missing) == 1 else "are"
+        raise NotPossible(f"{asked} needs {', '.join(modules)}, and {', '.join(missing)} {verb} not installed. Type: "
+                          f"pip install 'cramhy[{extra}]'")
+
+
+def works(name, asked):
+    """The function that does what the words ``asked`` want; ``name`` says where it is, as ``"rosbridge.start"``."""
+    home, _, function = name.rpartition(".")
+    missing = f"cramhy_runtime.{name}"
+    try:
+        found = getattr(importlib.import_module(f"cramhy_runtime.{home}"), function, None)
+        if found is not None:
+            return found
+    except ModuleNotFoundError as problem:
+        missing = problem.name or missing
+        if not missing.startswith("cramhy_runtime."):
+            raise NotPossible(f"{asked} needs the Python module {missing}, which is not installed.") from None
+    raise NotPossible(f"{asked} is not part of this version of cramhy: it has no {missing}.")
+
+
+def check(options):
+    """Complain of what cannot be done before anything begins; see `NotPossible`."""
+    for option in ("record", "ros", "picture"):
+        if getattr(options, option, None) == "":  # as from a shell's variable that is not set
+            raise NotPossible(f"--{option} is given an empty word. Give it what it needs, or leave it out.")
+    if getattr(options, "ros", None):
+        if not _is_address(options.ros):
+            raise NotPossible(f"--ros {options.ros}: that is no address of a rosbridge server; one looks like ws://robot:9090.")
+    if getattr(options, "picture", None) and Path(options.picture).suffix.lower() not in PICTURES:
+        raise NotPossible(f"--picture {options.picture}: a picture is written as .png or .svg; .gif and .replay.svg show "
+                          "the whole way.")
+    for option in ("record", "picture"):
+        path = getattr(options, option, None)
+        if path and not Path(path).absolute().parent.is_dir():
+            raise NotPossible(f"--{option} {path}: there is no folder {Path(path).absolute().parent}.")
+    if options.port is not None and not (options.serve or options.view):
+        raise NotPossible("--port says where --serve and --view listen; give one of them, too.")
+    if getattr(options, "origin", None) and not (options.serve or options.view):
+        raise NotPossible("--origin says whose pages may connect to --serve and --view; give one of them, too.")
+    for what, name in WORKERS.items():
+        if getattr(options, what, None):
+            if what in NEEDS:
+                require(what, f"--{what}")
+            works(name, f"--{what}")
+
+
+def _is_address(text):
+    """Whether a rosbridge server could be at ``text``: ``ws://HOST:PORT``."""
+    try:
+        parts = urlsplit(text)
+        return parts.scheme in ("ws", "wss") and bool(parts.hostname) and parts.port != 0
+    except ValueError:  # a port beyond 65535, brackets that never close
+        return False
+
+
+def open_session(options, closings):
+    """Open what ``options`` ask for, in the session that has just begun. ``closings`` is an `contextlib.ExitStack`."""
+    if options.record:
+        closings.callback(works("chronicle.record", "--record")(options.record, program_of(options)).close)
+    if options.ros:
+        with server_errors_told():
+            closings.callback(works("rosbridge.attach", "--ros")(options.ros).close)
+    if getattr(options, "picture", None):
+        from cramhy_runtime.turtlesim.pictures import is_replay
+
+        if is_replay(options.picture):  # it shows what happened from the beginning
+            works("turtlesim.pictures.keep_history", "--picture")()
+    if options.view or options.serve:
+        server = serve(closings, options.port, options.view, options.origin)
+        if not options.view:
+            print(f"; Clients of rosbridge: {server.address}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def server_errors_told():
+    """A server that cannot start, or be reached, is something that cannot be had."""
+    from cramhy_runtime.rosbridge.server import ServerError
+
+    try:
+        yield
+    except ServerError as problem:
+        raise NotPossible(str(problem)) from None
+
+
+def program_of(options):
+    """The files and systems that the options have loaded, in that order."""
+    return [*options.load, *([options.file] if getattr(options, "file", None) else [])]
+
+
+def serve(closings, port=None, view=False, origins=()):
+    """Start the server, with the page when ``view`` says so, and let other terminals start programs here; the address is told.
+
+    origins: pages of other servers that may connect. Returns the server, or the page; raises `NotPossible`.
+    """
+    trust = {"origins": tuple(origins)} if origins else {}
+    with server_errors_told():
+        if view and trust:  # the page takes the server that there is
+            closings.callback(works("rosbridge.start", "--serve")(port=port, **trust).close)
+            port, trust = None, {}
+        server = works(*("view.start", "--view") if view else ("rosbridge.start", "--serve"))(port=port, **trust)
+        closings.callback(server.close)
+    from cramhy_runtime.ros_tools.hosting import Host
+
+    Host()
+    if view:
+        print(f"; The page: {server.url}", file=sys.stderr, flush=True)
+    return server
+
+
+def save_picture(path):
+    """Write what the turtle's window shows now, or how it came about, into the file ``path``; a problem is told, and ends the process."""
+    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.repl.console import report
+    from cramhy_runtime.repl.session import condition_of
+
+    try:
+        works("turtlesim.pictures.save", "--picture")(path)
+    except (Exception, Condition) as problem:
+        report(condition_of(problem))
+        sys.exit(1)

@@ -1,0 +1,263 @@
+"""``roscore``, ``rosrun`` and ``roslaunch``, and ``cramhy turtlesim`` and ``teleop``: programs that run on the graph, and their terminals.
+
+All nodes live in one process, the session; a terminal that starts a program shows its log and ends it with Ctrl-C. Where does it run?
+In the session of this machine, if there is one (`ros_tools.hosting`). If there is none, this process becomes a session itself, with the
+clock of the wall, until a REPL starts: then the program begins anew over there, and this terminal goes on with its log. When the REPL
+ends, the program comes back. So a student may start the simulator and the REPL in any order, as with ROS, and the REPL's own turtle,
+which the plan moves in the plan's time, is the one that everybody sees.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from contextlib import ExitStack
+from typing import NamedTuple
+
+LOOK_AGAIN = 1.0  # s between two looks for a session that has started elsewhere
+_ENDS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""Who closes the window, or ends the process in another way, ends its programs as Ctrl-C does."""
+RUN_USAGE = """Usage: rosrun PACKAGE EXECUTABLE [ARGS]
+  rosrun starts EXECUTABLE of PACKAGE with ARGS, such as __name:=x, __ns:=/y, a:=b and _parameter:=value."""
+
+
+class Program(NamedTuple):
+    """A program to be started: an executable of a package, the words of its command line; ``label`` is roslaunch's name of it."""
+
+    package: str
+    executable: str
+    arguments: list
+    label: str = ""
+
+
+def roscore(arguments):
+    """``roscore``: there is nothing to start."""
+    print("No master is needed: the ROS graph lives in the process of roslisp_repl.")
+
+
+def rosrun(arguments):
+    """``rosrun PACKAGE EXECUTABLE [ARGS]``."""
+    if len(arguments) < 2 or arguments[0].startswith("-"):
+        print(RUN_USAGE)
+        return 0
+    package, executable, *words = arguments
+    status = _known(package, executable)
+    if status:
+        return status
+    if executable == "turtle_teleop_key":
+        from . import keyboard
+
+        return keyboard.teleop(words)
+    return run([Program(package, executable, words)])
+
+
+def _known(package, executable):
+    """0 when there is such an executable; else the exit status, after the complaint."""
+    from cramhy_runtime.ros_tools.hosting import PROGRAMS
+    from cramhy_runtime.ros_tools.words import meant
+
+    from .workspace import folder_of
+
+    if package == "turtlesim" and executable in PROGRAMS:
+        return 0
+    folder = folder_of(package)
+    if folder is None:
+        print(f"[rospack] Error: package '{package}' not found", file=sys.stderr)
+        sys.stderr.write(meant(package, ["turtlesim"]))
+        return 2
+    print(f"[rosrun] Couldn't find executable named {executable} below {folder}", file=sys.stderr)
+    if package == "turtlesim":
+        print(f"[rosrun] turtlesim has the executables {', '.join(sorted(PROGRAMS))}.", file=sys.stderr)
+    return 3
+
+
+def roslaunch(arguments):
+    """``roslaunch PACKAGE FILE.launch [arg:=value]`` or ``roslaunch FILE.launch``; also an executable, as the slides have it."""
+    from . import launch
+
+    words = [word for word in arguments if ":=" not in word and not word.startswith("-")]
+    values = dict(word.split(":=", 1) for word in arguments if ":=" in word)
+    if not words:
+        print("Usage: roslaunch [options] [package] <filename> [arg_name:=value...]\n       roslaunch [options] <filename> "
+              "[<filename>...] [arg_name:=value...]\n\nroslaunch: error: you must specify at least one input file", file=sys.stderr)
+        return 2
+    from cramhy_runtime.ros_tools.hosting import PROGRAMS
+
+    if len(words) == 2 and words[0] == "turtlesim" and words[1] in PROGRAMS:
+        return rosrun(words + [word for word in arguments if ":=" in word])
+    try:
+        launched = launch.load(words, values)
+    except launch.LaunchError as problem:
+        print(f"RLException: {problem}", file=sys.stderr)
+        return 1
+    print(launch.summary(launched))
+    for name in launched.arguments_unused:
+        print(f"WARNING: there is no <arg name=\"{name}\"> in the launch file", file=sys.stderr)
+    return run(launched.programs, launched.parameters)
+
+
+# ------------------------------------------------------------------------------------------------------------ where to run
+
+
+def run(programs, parameters=None, port=None, view=False):
+    """Run programs, in the session that there is or in this process, until they end or Ctrl-C; the exit status.
+
+    parameters: values by global name, which are set before. port, view: where a session of this process listens; with the page.
+    """
+    from cramhy_runtime.ros_tools import there
+    from cramhy_runtime.ros_tools.reach import NoSession, Refused, SessionEnded
+
+    from . import openings
+
+    told = None
+    try:
+        openings.require("serve", "To run a program outside of roslisp_repl")
+        while True:
+            try:
+                graph = there.current()
+            except NoSession as problem:
+                if str(problem):
+                    raise openings.NotPossible(str(problem)) from None
+                if told is not None:
+                    _tell(f"The session has ended: {told} here again.")
+                if _run_here(programs, parameters, port, view) != "moved":
+                    return 0
+                told = _what(programs)
+                _tell(f"A session has started: {told} there now.")
+                continue
+            try:
+                return _run_there(graph, programs, parameters)
+            except SessionEnded:
+                told = _what(programs)
+            finally:
+                graph.close()
+    except (openings.NotPossible, Refused) as problem:
+        print(f"cramhy: {problem}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 0
+
+
+def _what(programs):
+    return "the turtle lives" if any(each.executable == "turtlesim_node" for each in programs) else "the program runs"
+
+
+def _tell(text):
+    print(f"; {text}", file=sys.stderr, flush=True)
+
+
+def show(line):
+    """A line of a program's log: warnings and errors go to the other stream, as roscpp has it."""
+    print(line, file=sys.stdout if line.startswith(("[ INFO]", "[DEBUG]")) else sys.stderr, flush=True)
+
+
+def _started(program, number, pid):
+    """What roslaunch prints when it has started a program; its name and number, for the end."""
+    if program.label:
+        print(f"process[{program.label}-{number}]: started with pid [{pid}]", flush=True)
+    return [f"{program.label}-{number}"] if program.label else []
+
+
+def _closing(labels):
+    """What roslaunch prints when it ends its programs, the last first."""
+    for label in labels:
+        print(f"[{label}] killing on exit")
+    if labels:
+        print("shutting down processing monitor...\n... shutting down processing monitor complete\ndone", flush=True)
+
+
+def _run_there(graph, programs, parameters):
+    """Run programs in the session of another process."""
+    for number in _ENDS:  # also when the kernel of a session of our own had them before
+        signal.signal(number, signal.default_int_handler)
+    for name, value in (parameters or {}).items():
+        graph.set_parameter(name, value)
+    ours, shown, labels = [], set(), []
+    with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log:
+        try:
+            for number, program in enumerate(programs, 1):
+                answer = graph.call("/cramhy/start_program", "", {
+                    "package": program.package, "executable": program.executable, "arguments": list(program.arguments)})
+                shown.add(answer["node"])
+                if answer["there"]:
+                    _tell(f"{answer['node']} runs in the session of process {graph.pid} already. This is its log; Ctrl-C leaves it alone.")
+                else:
+                    ours.append(answer["node"])
+                labels = _started(program, number, graph.pid) + labels
+                for line in answer["lines"]:
+                    show(line)
+            while shown:
+                _, message = log.take()
+                if message["node"] in shown and not message["ended"]:
+                    show(message["line"])
+                elif message["ended"]:
+                    shown.discard(message["node"])
+        except KeyboardInterrupt:
+            _closing(labels)
+            for node in reversed(ours):
+                if node in shown:
+                    graph.kill(node)
+    return 0
+
+
+def _run_here(programs, parameters, port, view):
+    """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``."""
+    from cramhy_runtime import image, kernel
+    from cramhy_runtime.repl.session import handle_interrupts
+    from cramhy_runtime.ros import graph
+    from cramhy_runtime.ros.services import Refusal
+    from cramhy_runtime.ros_tools.hosting import Host
+
+    from . import openings
+
+    kernel.start(clock="wall")
+    image.boot()
+    handle_interrupts()
+    for number in _ENDS:
+        signal.signal(number, signal.getsignal(signal.SIGINT))
+    labels = []
+    with ExitStack() as closings:
+        closings.callback(kernel.stop)
+        try:
+            openings.serve(closings, port, view)
+            host = Host()
+            for name, value in (parameters or {}).items():
+                graph.active().parameters.set(name, value)
+            nodes = []
+            for number, program in enumerate(programs, 1):
+                try:
+                    name, _, lines = host.start_program(program.package, program.executable, program.arguments)
+                except Refusal as problem:
+                    raise openings.NotPossible(str(problem)) from None
+                node = graph.active().nodes[name]
+                nodes.append(node)
+                labels = _started(program, number, os.getpid()) + labels
+                for line in lines:
+                    show(line)
+                node.program.echo = _both(node.program.echo)
+            return _wait(nodes)
+        except (KeyboardInterrupt, kernel.Interrupted, kernel.Abandoned):
+            _closing(labels)
+            return "interrupted"
+
+
+def _both(tell):
+    def echo(line):
+        show(line)
+        tell(line)
+
+    return echo
+
+
+def _wait(nodes):
+    """Wait until all nodes have ended (``"ended"``) or a session has started elsewhere (``"moved"``)."""
+    from cramhy_runtime import kernel
+    from cramhy_runtime.rosbridge import sessions
+
+    while any(node.alive for node in nodes):
+        kernel.sleep(LOOK_AGAIN)
+        newest = kernel.run_blocking(sessions.current)
+        if newest is not None and newest.pid != os.getpid():
+            return "moved"
+    return "ended"

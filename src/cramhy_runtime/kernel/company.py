@@ -1,0 +1,127 @@
+"""A thread beside the kernel that runs an asyncio loop: for servers and bridges, and kept from robbing the plan of the processor.
+
+Python runs one thread at a time, so whatever such a thread computes, the plan does not. A server cannot choose how much it is asked:
+a flood of requests would halve the pace of a plan. So the loop has a `Share` of the processor. It spends as it likes while the kernel
+has nothing to do; while the kernel computes, it gets `SHARE` of the time, and what it has overspent it sleeps off before it looks at
+its sockets again. Then the system's buffers fill, and the flood waits where it came from. What the kernel itself does for the loop
+(`Share.charge`) counts too.
+
+Such a thread never touches tasks: it reaches them by `kernel.post`, and is reached by `Company.call`, from any thread.
+"""
+
+import asyncio
+import selectors
+import threading
+import time
+from collections import deque
+
+SHARE = 0.03  # of the processor, while the kernel computes
+IDLE = 0.4  # of the wall: a kernel that waits less than that computes
+SAVINGS = 0.01  # s of the processor that may be spent at once
+NAP = 0.05  # s; a longer sleep is cut, to see whether the kernel still computes
+LAST = 1.0  # s that what still runs in the loop gets to end
+WINDOW = 0.1  # s; how often it is asked whether the kernel computes
+
+
+class Share:
+    """What a loop has spent, and how long it has to sleep for it. ``spent``: seconds of the processor so far; ``slept``: of the wall.
+
+    idle: gives the seconds of the wall that the kernel has waited so far. What is owed is counted in time of the processor, so that it
+    comes out the same on a machine that has other things to do.
+    """
+
+    def __init__(self, idle, share=SHARE, wall=time.monotonic, own=time.thread_time, everybody=time.process_time):
+        self.share = share
+        self._clocks = wall, own, everybody, idle
+        self._charged = deque()
+        self._balance = SAVINGS
+        self._marks = self._window = None
+        self.spent = self.slept = 0.0
+        self.busy = self.forgiven = False  # forgiven: nothing is owed any more, since the loop shall end
+
+    def charge(self, seconds):
+        """The kernel has spent SECONDS of the processor for the loop. Safe from any thread."""
+        self._charged.append(seconds)
+
+    def debt(self):
+        """Seconds that the loop has to sleep now, 0 for none. To be called in its thread, often."""
+        marks = wall, own, everybody, idle = [clock() for clock in self._clocks]
+        before, self._marks = self._marks or marks, marks
+        if self._window is None:
+            self._window = marks
+        charged = 0.0
+        while self._charged:
+            charged += self._charged.popleft()
+        used = own - before[1] + charged
+        self.spent += used
+        since = wall - self._window[0]
+        if since >= WINDOW:
+            self.busy = idle - self._window[3] < IDLE * since
+            self._window = marks
+        if not self.busy or self.forgiven:
+            self._balance = min(SAVINGS, self._balance + wall - before[0])
+            return 0.0
+        plan = max(0.0, everybody - before[2] - used)
+        self._balance = min(SAVINGS, self._balance + self.share * plan - used)
+        return min(NAP, -self._balance / self.share) if self._balance < 0 else 0.0
+
+
+class _PatientSelector(selectors.DefaultSelector):
+    """Looks at the sockets only when nothing is owed."""
+
+    def __init__(self, share):
+        super().__init__()
+        self._share = share
+
+    def select(self, timeout=None):
+        while (debt := self._share.debt()) > 0:
+            time.sleep(debt)
+            self._share.slept += debt
+        return super().select(timeout)
+
+
+class Company:
+    """The thread, beside KERNEL. MAIN: a coroutine function of no arguments; with it the thread ends. It holds up no exit."""
+
+    def __init__(self, main, name, kernel):
+        self.share = Share(lambda: kernel.idle_seconds)
+        self.loop = asyncio.SelectorEventLoop(_PatientSelector(self.share))
+        self.failure = None
+        self._main = main
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    @property
+    def alive(self):
+        return self._thread.is_alive()
+
+    def _run(self):
+        asyncio.set_event_loop(self.loop)
+        try:
+            self.loop.run_until_complete(self._main())
+        except BaseException as failure:
+            self.failure = failure
+        finally:
+            try:
+                left = asyncio.all_tasks(self.loop)
+                for task in left:
+                    task.cancel()
+                if left:
+                    self.loop.run_until_complete(asyncio.wait(left, timeout=LAST))
+                self.loop.run_until_complete(self.loop.shutdown_asyncgens())
+            finally:
+                asyncio.set_event_loop(None)
+                self.loop.close()
+
+    def call(self, fn, *arguments):
+        """Have FN(*ARGUMENTS) called in the loop, soon; false when the thread has ended. Safe from any thread."""
+        try:
+            self.loop.call_soon_threadsafe(fn, *arguments)
+        except RuntimeError:  # the loop is closed
+            return False
+        return True
+
+    def join(self, seconds):
+        """Wait until the thread has ended, SECONDS at most; whether it has."""
+        self._thread.join(seconds)
+        return not self.alive

@@ -1,0 +1,174 @@
+"""Where definitions of messages lie: in the folders ``msg``, ``srv`` and ``action`` of ROS packages.
+
+Our own copies of the common packages, in ``definitions/``, come first. Then folders that were named with
+`add_package_directory`, and the places where all packages are looked for: ``ROS_PACKAGE_PATH``, the workspace's ``src``, the
+current folder and ``tutorials/``. Nothing is looked for before somebody asks. Source: roslisp.md 12.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from ..lisp.systems.search_folders import SKIPPED, search_folders
+from . import definition_text
+from .definition_text import ACTION_PARTS, DefinitionError, action_messages
+
+OURS = Path(__file__).parent / "definitions"
+KINDS = ("msg", "srv", "action")
+
+_directories = []
+_TYPE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
+_LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_-]*$")
+_PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
+_DEPTH = 3
+"""How deep below a folder of the search packages are looked for: ``src/a_stack/a_package``."""
+
+
+def add_package_directory(directory):
+    """Look for ROS packages in the sub-folders of ``directory`` too."""
+    directory = Path(directory)
+    if directory not in _directories:
+        _directories.append(directory)
+
+
+def forget_package_directory(directory):
+    """Look there no more."""
+    _directories.remove(Path(directory))
+
+
+def package_folder(package):
+    """The folder of the ROS package that has definitions and is called ``package``, or ``None``."""
+    if not _LEGAL.match(package):
+        return None
+    for folder in [OURS, *_directories]:
+        if _has_definitions(folder / package):
+            return folder / package
+    return next((folder for name, folder in _packages_on_path() if name == package), None)
+
+
+def known_packages():
+    """The names of all packages with definitions."""
+    named = [entry.name for folder in [OURS, *_directories] if folder.is_dir() for entry in folder.iterdir() if _has_definitions(entry)]
+    return sorted({*named, *(name for name, _ in _packages_on_path())})
+
+
+def definition_files(folder, kind):
+    """The files of the package in ``folder``, of kind ``"msg"``, ``"srv"`` or ``"action"``, by the name of what they define."""
+    return {path.stem: path for path in sorted((folder / kind).glob("*." + kind))}
+
+
+def message_names(folder):
+    """The names of all messages of the package in ``folder``, those of its actions included."""
+    names = list(definition_files(folder, "msg"))
+    for action in definition_files(folder, "action"):
+        names += [*action_messages(action), *(action + part for part in ACTION_PARTS)]
+    return list(dict.fromkeys(names))
+
+
+def has_kind(folder, kind):
+    """Whether the package in ``folder`` has messages (``"msg"``) or services (``"srv"``); an action is messages."""
+    return (folder / kind).is_dir() or kind == "msg" and (folder / "action").is_dir()
+
+
+def _has_definitions(folder):
+    return any(os.path.isdir(folder / kind) for kind in KINDS)
+
+
+def _packages_on_path():
+    """Name and folder of each package with definitions, in the order of the search."""
+    for root in search_folders():
+        yield from _packages_below(root, _DEPTH)
+
+
+def _packages_below(folder, depth):
+    try:
+        entries = {entry.name: entry for entry in os.scandir(folder) if not entry.name.startswith((".", "__"))}
+    except OSError:
+        return
+    manifest = entries.get("package.xml")
+    if any(kind in entries and entries[kind].is_dir() for kind in KINDS):
+        yield _name_of(Path(folder), manifest), Path(folder)
+    elif manifest is None and depth:
+        for name in sorted(entries):
+            if entries[name].is_dir() and name not in SKIPPED:
+                yield from _packages_below(entries[name].path, depth - 1)
+
+
+def _name_of(folder, manifest):
+    found = _PACKAGE_NAME.search(Path(manifest.path).read_text(errors="replace")) if manifest is not None else None
+    return found[1] if found else folder.name
+
+
+# ------------------------------------------------------------------------------------------------------- a whole package
+
+
+class PackageDefinitions:
+    """What a package defines: messages by name, those of its actions included, services by name as (request, response), and the
+    names of its actions."""
+
+    __slots__ = ("messages", "services", "actions")
+
+    def __init__(self):
+        self.messages, self.services, self.actions = {}, {}, []
+
+
+def read(package):
+    """The `PackageDefinitions` of the package of that name, or ``None``; a `DefinitionError` when something is wrong with them."""
+    folder = package_folder(package)
+    return read_package(package, folder) if folder is not None else None
+
+
+def read_package(package, folder):
+    """The `PackageDefinitions` of the package in ``folder``. Anything wrong with them is a `DefinitionError`."""
+    found = PackageDefinitions()
+    for name, path in definition_files(folder, "msg").items():
+        found.messages[name] = definition_text.parse_message(_text_of(path), package, str(path))
+    for name, path in definition_files(folder, "srv").items():
+        found.services[name] = definition_text.parse_service(_text_of(path), package, str(path))
+    for name, path in definition_files(folder, "action").items():
+        found.actions.append(name)
+        for part, definition in zip(ACTION_PARTS, definition_text.parse_action(_text_of(path), package, str(path))):
+            found.messages.setdefault(name + part, definition)
+        for message, text in action_messages(name).items():
+            found.messages.setdefault(message, definition_text.parse_message(text, package, str(path)))
+    if folder.parent != OURS:
+        _check_types(package, folder, found)
+    return found
+
+
+def _text_of(path):
+    if not _TYPE_NAME.match(path.stem):
+        raise DefinitionError(
+            f"{path}: {path.stem} is not a name for a type.", "Rename the file: letters, digits and underscores, the first one a letter."
+        )
+    return path.read_text(encoding="utf-8", errors="replace")  # what is no UTF-8 stands in comments
+
+
+def _check_types(package, folder, found):
+    names = {package: found.messages}
+    for definition in [*found.messages.values(), *(half for service in found.services.values() for half in service)]:
+        for field in definition.fields:
+            if not field.primitive:
+                home, _, name = field.base.partition("/")
+                if home not in names:
+                    other = package_folder(home)
+                    names[home] = message_names(other) if other is not None else ()
+                if name not in names[home]:
+                    definition_text.unknown_type(field, package, definition.where, names[home])
+    for name in found.messages:
+        _check_circles(package, found.messages, [name])
+
+
+def _check_circles(package, messages, way):
+    definition = messages[way[-1]]
+    for field in definition.fields:
+        home, _, name = field.base.partition("/")
+        if home == package and name in messages:
+            if name in way:
+                circle = " -> ".join([*way[way.index(name):], name])
+                line, column = field.place
+                raise DefinitionError(f"{definition.where}, line {line}, column {column}: A message cannot contain itself: {circle}.",
+                                      "Refer to the other one by a number or a name.")  # fmt: skip
+            _check_circles(package, messages, [*way, name])

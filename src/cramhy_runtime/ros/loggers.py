@@ -1,0 +1,48 @@
+"""The levels of logging, and the loggers of a roscpp node: how much it says, and the two services that ask and change that.
+
+Every node in C++ offers ``~get_loggers`` and ``~set_logger_level``. Loggers are named by dots, ``ros`` is the root of all; a
+level that is set for one counts for it alone. Source: wiki.ros.org/rosconsole, roscpp's services of these names.
+"""
+
+from __future__ import annotations
+
+from .messages import message_class_exact, service_type_exact
+from .services import Refusal
+
+DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
+LEVEL_NAMES = {DEBUG: "DEBUG", INFO: "INFO", WARN: "WARN", ERROR: "ERROR", FATAL: "FATAL"}
+LEVEL_CODES = {name: code for code, name in LEVEL_NAMES.items()}
+
+
+class Loggers:
+    """The loggers of ``node``, an executable of the ROS package ``package``; its services are offered from now on."""
+
+    def __init__(self, node, package):
+        self.own = f"ros.{package}"
+        self.levels = {"ros": INFO, "ros.roscpp": INFO, "ros.roscpp.roscpp_internal": INFO,
+                       "ros.roscpp.superdebug": WARN, self.own: INFO}
+        get, change = service_type_exact("roscpp/GetLoggers"), service_type_exact("roscpp/SetLoggerLevel")
+        entry = message_class_exact("roscpp/Logger")
+
+        def tell(_):
+            return get.response(loggers=[entry(name=name, level=LEVEL_NAMES[self.levels[name]].lower())
+                                         for name in sorted(self.levels)])
+
+        def set_level(request):
+            code = LEVEL_CODES.get(request.level.upper())
+            if code is None:
+                raise Refusal("")
+            self.levels[request.logger] = code
+            return change.response()
+
+        node.serve("~get_loggers", get, tell)
+        node.serve("~set_logger_level", change, set_level)
+
+    def enabled(self, level):
+        """Whether the node prints what it logs at ``level``, a code of ``rosgraph_msgs/Log``."""
+        return level >= self.levels[self.own]
+
+    @property
+    def talkative(self):
+        """Whether it prints what is for debugging."""
+        return self.levels[self.own] == DEBUG

@@ -1,0 +1,478 @@
+"""Messages as JSON, in the spelling of rosbridge v2: what the bridge, the recorder and the page send and understand.
+
+`to_json` gives plain dicts, lists, numbers and texts; `from_json` makes of such data the message that a subscriber would get,
+or raises `MessageJsonError`, whatever the data are: they come from outside. For each type both directions are written out
+once as a Python function, for a page with many turtles asks for thousands of messages per second.
+
+* A number that is not finite leaves as null, and null comes in as not-a-number.
+* ``uint8[]`` and ``char[]`` leave as base64 texts and come in as such or as lists.
+* A time is ``{"secs", "nsecs"}``; ROS 2's ``{"sec", "nanosec"}`` comes in too, and ``"now"``.
+* Texts are Unicode outside and bytes inside, one character each (roslisp.md 5.2). Characters below 256 stay as they are, so
+  that *ä* is *ä* on both sides; a text with others crosses as its bytes in UTF-8, and these as the text that they were.
+
+Sources: rosbridge protocol 2.0, sections 3.1 and 4; its conversions as rosbridge_library does them.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import math
+import reprlib
+
+from ..lisp.data import DoubleFloat, LispString
+from ..lisp.numbers.arithmetic import is_real, single
+from . import messages
+from .definition_text import INTEGERS
+from .messages import RosMessage
+from .wire import NONFINITE, lisp_float, ros_text
+
+
+class MessageJsonError(ValueError):
+    """Data that are no message of the type, or a message that has no JSON. The text names type, field, value and a remedy.
+
+    problem: the text, or a function that makes it of the type of the whole message and the field's full name. path: the names of
+    the fields from the outermost inwards, elements of arrays by their index: ``["poses", "[2]", "position", "x"]``.
+    """
+
+    def __init__(self, problem, path=()):
+        super().__init__(problem)
+        self.problem, self.path, self.type = problem, list(path), ""
+
+    def below(self, field):
+        """This error, seen from the message that has it in its ``field``."""
+        self.path.insert(0, field)
+        return self
+
+    def of(self, ros_type):
+        """This error, about a message of the type as a whole."""
+        self.type = ros_type
+        return self
+
+    def __str__(self):
+        return self.problem(self.type, ".".join(self.path).replace(".[", "[")) if callable(self.problem) else self.problem
+
+
+def to_json(message):
+    """``message``, as the graph delivers it or as it was made, as plain data for ``json.dumps``. Raises `MessageJsonError`."""
+    encode = _encoders.get(message.__class__) or _encoder(message.__class__)
+    try:
+        return encode(message)
+    except (TypeError, ValueError, AttributeError, OverflowError):  # infinities as symbols, and what nobody has checked yet
+        try:
+            return _encode_with_care(message)
+        except MessageJsonError as problem:
+            raise problem.of(message.ros_type)
+
+
+def from_json(cls, data, now=None):
+    """The message of class ``cls`` (or `MessageJsonError`) that ``data``, a dict as ``json.loads`` gives it, describes.
+
+    Fields that are not given have their defaults. now: seconds since 1970, which the text ``"now"`` stands for; when it is
+    given, a header without a stamp gets it too, as in rosbridge. The values are those that a subscriber sees.
+    """
+    decode = _decoders.get(cls) or _decoder(cls)
+    try:
+        return decode(data, now)
+    except MessageJsonError as problem:
+        raise problem.of(cls.ros_type)
+
+
+def request_from_json(cls, data, now=None):
+    """The request that the arguments of a service call describe: as `from_json`, or a list in the order of the fields, or None."""
+    if data is None:
+        data = {}
+    elif data.__class__ is list:
+        if len(data) > len(cls.fields):
+            wanted = f"{_counted(len(cls.fields), 'argument')} ({_names(cls)})"
+            raise MessageJsonError(f"{cls.ros_type} takes {wanted}, but {len(data)} were given.")
+        data = {field.name: value for field, value in zip(cls.fields, data)}
+    return from_json(cls, data, now)
+
+
+def type_named(name, find=messages.message_class_exact):
+    """The message class called ``"turtlesim/Pose"``, or in ROS 2's way ``"turtlesim/msg/Pose"``; with ``find`` a service.
+
+    Raises `MessageJsonError` when there is none. To be called in the kernel: it may read a package's definitions.
+    """
+    if isinstance(name, str):
+        parts = name.split("/")
+        if len(parts) == 3 and parts[1] in ("msg", "srv"):
+            parts = parts[::2]
+        if len(parts) == 2 and all(part.isidentifier() for part in parts):
+            found = find("/".join(parts))
+            if found is not None:
+                return found
+    raise MessageJsonError(f'There is no type {_shown(name)}. A type is written "package/Name"; its package must be on ROS_PACKAGE_PATH.')
+
+
+def service_named(name):
+    """The `ServiceType` called ``"turtlesim/Spawn"`` or ``"turtlesim/srv/Spawn"``; errors as of `type_named`."""
+    return type_named(name, messages.service_type_exact)
+
+
+# -------------------------------------------------------------------------------------------------------------- the values
+
+
+_brief = reprlib.Repr()
+_brief.maxlevel = 2
+_brief.maxstring = _brief.maxother = 40
+
+
+def _shown(value):
+    """``value`` in an error text: short, however large or deep it is."""
+    try:
+        return _brief.repr(value)
+    except (ValueError, RecursionError):
+        return f"a very large {type(value).__name__}"
+
+
+_JSON_NAMES = {dict: "an object", list: "a list", str: "a text", bool: "a truth value", int: "an integer", float: "a number"}
+
+
+def _wrong(type_name, value, why=""):
+    kind = "null" if value is None else f"{_JSON_NAMES.get(value.__class__, type(value).__name__)}, {_shown(value)}"
+    return _mismatch(type_name, kind + (why and ": " + why))
+
+
+def _mismatch(type_name, given):
+    return MessageJsonError(
+        lambda ros_type, field: f"{ros_type} message requires a {type_name}{field and ' for field ' + field}, but got {given}."
+    )
+
+
+def _counted(number, what):
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def _names(cls):
+    return ", ".join(field.name for field in cls.fields) or "none"
+
+
+def _integer(name, bits, signed):
+    least, most = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if signed else (0, (1 << bits) - 1)
+
+    def read(value):
+        if value.__class__ is int and least <= value <= most:
+            return value
+        raise _wrong(name, value, f"{least} to {most} is its range" if value.__class__ is int else "")
+
+    return read
+
+
+def _floating(name, rounded):
+    def read(value):
+        if value is None:
+            return lisp_float(math.nan)
+        if value.__class__ is not float:
+            if value.__class__ is not int:
+                raise _wrong(name, value)
+            try:
+                value = float(value)
+            except OverflowError:
+                raise _wrong(name, value, "its range ends at 1.8e308") from None
+        return lisp_float(rounded(value))
+
+    return read
+
+
+def _read_bool(value):
+    if value.__class__ is bool:
+        return True if value else None
+    raise _wrong("bool", value, "write true or false")
+
+
+def _read_string(value):
+    if value.__class__ is not str:
+        raise _wrong("string", value)
+    if value.isascii():
+        return value
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise _wrong("string", value, "half of a surrogate pair is no character") from None
+    return ros_text(value)
+
+
+def _write_string(text):
+    text = "" if text is None else str(text)
+    if text.isascii() or max(text) > "\u00ff":
+        return text
+    try:
+        outside = text.encode("latin-1").decode()
+    except UnicodeDecodeError:
+        return text
+    return outside if max(outside) > "\u00ff" else text
+
+
+def _moment(name, signed):
+    least, most = (-(1 << 31), (1 << 31) - 1) if signed else (0, (1 << 32) - 1)
+
+    def read(value, now):
+        if value == "now" and not signed:
+            return DoubleFloat(now or 0.0)
+        if value.__class__ is not dict:
+            raise _wrong(name, value, 'write {"secs": 1, "nsecs": 500000000}')
+        second, nanosecond = ("sec", "nanosec") if "sec" in value or "nanosec" in value else ("secs", "nsecs")
+        if value.keys() - {second, nanosecond}:
+            raise _wrong(name, value, f'it has the fields "{second}" and "{nanosecond}"')
+        parts = value.get(second, 0), value.get(nanosecond, 0)
+        for part in parts:
+            if part.__class__ is not int or not least <= part <= most:
+                raise _wrong(name, value, f"{_shown(part)} is no integer from {least} to {most}")
+        return DoubleFloat(parts[0] + parts[1] / 1e9)
+
+    return read
+
+
+def _write_moment(value):
+    seconds = math.floor(value)
+    nanoseconds = round((value - seconds) * 1e9)
+    return {"secs": seconds + 1, "nsecs": 0} if nanoseconds == 1_000_000_000 else {"secs": seconds, "nsecs": nanoseconds}
+
+
+def _read_bytes(name):
+    def read(value):
+        if value.__class__ is str:
+            try:
+                return list(base64.b64decode(value, validate=True))
+            except (binascii.Error, ValueError):
+                raise _wrong(name, value, "a text must be base64") from None
+        if value.__class__ is not list:
+            raise _wrong(name, value, "write a list, or a text in base64")
+        if all(element.__class__ is int and 0 <= element <= 255 for element in value):
+            return list(value)
+        index = next(i for i, element in enumerate(value) if element.__class__ is not int or not 0 <= element <= 255)
+        raise _wrong(name, value[index], f"element {index} is no integer from 0 to 255")
+
+    return read
+
+
+def _write_bytes(octets):
+    return base64.b64encode(bytes(octets or b"")).decode("ascii")
+
+
+_readers = {name: _integer(name, *size) for name, size in INTEGERS.items()}
+_readers.update(
+    float64=_floating("float64", lambda value: value),
+    float32=_floating("float32", single),
+    bool=_read_bool,
+    string=_read_string,
+)
+_moments = {"time": _moment("time", False), "duration": _moment("duration", True)}
+_DEFAULTS = {"bool": "None", "string": '""', "float32": "zero", "float64": "zero", **dict.fromkeys(INTEGERS, "0")}
+
+
+def _is_binary(field):
+    return field.is_array and field.base in ("uint8", "char")
+
+
+# --------------------------------------------------------------------------------------------------------------- encoders
+
+
+_encoders: dict[type, object] = {}
+_ENCODED = {
+    "float32": "float(value) if isfinite(value := {0}) else None",
+    "float64": "float(value) if isfinite(value := {0}) else None",
+    "bool": "(value := {0}) is not None and value is not False",
+    "string": "value if (value := {0}).__class__ is str and value.isascii() else string(value)",
+    "time": "moment({0})",
+    "duration": "moment({0})",
+}
+"""What is written out for a field that ``{0}`` reads; integers are themselves."""
+
+
+def _encoder(cls):
+    """Write out, compile and keep the function that makes plain data of a message of class ``cls``."""
+    if not (isinstance(cls, type) and issubclass(cls, RosMessage)):
+        raise MessageJsonError(f"Only a message can be sent, not an object of class {getattr(cls, '__name__', cls)}.")
+    scope = {"isfinite": math.isfinite, "moment": _write_moment, "octets": _write_bytes, "string": _write_string, "floats": _write_floats}
+    parts = []
+    for field in cls.fields:
+        value, text = f"message.{field.attribute}", _ENCODED.get(field.base, "{0}")
+        if not field.primitive:
+            part = _part_class(field)
+            scope[f"part_{field.attribute}"] = _encoders.get(part) or _encoder(part)
+            text = f"part_{field.attribute}({{0}})"
+        if _is_binary(field):
+            text = f"octets({value})"
+        elif field.is_array and field.base in ("float32", "float64"):
+            text = f"floats({value})"
+        elif field.is_array:
+            text = f"[{text.format('each')} for each in {value} or ()]"
+        else:
+            text = text.format(value)
+        parts.append(f"{field.name!r}: {text}")
+    exec(f"def encode(message):\n    return {{{', '.join(parts)}}}", scope)
+    _encoders[cls] = scope["encode"]
+    return scope["encode"]
+
+
+def _write_floats(values):
+    values = values or ()
+    if all(map(math.isfinite, values)):
+        return list(map(float, values))
+    return [float(value) if math.isfinite(value) else None for value in values]
+
+
+def _part_class(field):
+    found = messages.message_class_exact(field.base)
+    if found is None:
+        raise MessageJsonError(
+            lambda ros_type, name: f"{field.base}, the type of the field {name} of {ros_type}, is not known. "
+            "Is its package on ROS_PACKAGE_PATH?",
+            [field.name],
+        )
+    return found
+
+
+def _encode_with_care(message):
+    """As the written-out functions do, for values that these do not expect."""
+    result = {}
+    for field in message.fields:
+        value = getattr(message, field.attribute)
+        try:
+            if _is_binary(field):
+                result[field.name] = _write_bytes(value)
+            elif field.is_array:
+                result[field.name] = [_plain(field, each) for each in value or ()]
+            else:
+                result[field.name] = _plain(field, value)
+        except MessageJsonError as problem:
+            raise problem.below(field.name)
+        except (TypeError, ValueError, AttributeError, OverflowError):
+            raise _wrong(field.type, value).below(field.name) from None
+    return result
+
+
+def _plain(field, value):
+    if not field.primitive:
+        if not isinstance(value, RosMessage):
+            raise _wrong(field.base, value)
+        return _encode_with_care(value)
+    if field.base in ("float32", "float64"):
+        if value in NONFINITE:
+            return None
+        if not is_real(value):
+            raise _wrong(field.base, value)
+        number = float(value)
+        return number if math.isfinite(number) else None
+    if field.base in INTEGERS:
+        if value.__class__ is not int:
+            raise _wrong(field.base, value)
+        return value
+    if field.base == "bool":
+        return value is not None and value is not False
+    if field.base == "string":
+        if not (value is None or isinstance(value, (str, LispString))):
+            raise _wrong("string", value)
+        return _write_string(value)
+    if not is_real(value):
+        raise _wrong(field.base, value)
+    return _write_moment(value)
+
+
+# --------------------------------------------------------------------------------------------------------------- decoders
+
+
+_decoders: dict[type, object] = {}
+_MISSING = object()
+
+
+def _decoder(cls):
+    """Write out, compile and keep the function that reads a message of class ``cls``."""
+    scope = {
+        "cls": cls,
+        "new": cls.__new__,
+        "missing": _MISSING,
+        "zero": DoubleFloat(0.0),
+        "Double": DoubleFloat,
+        "problems": MessageJsonError,
+        "no_object": _no_object,
+        "unknown_field": _unknown_field,
+        "elements": _elements,
+        "inner": _inner,
+    }
+    lines = [
+        "def decode(data, now):",
+        "    if data.__class__ is not dict: no_object(cls, data)",
+        "    message, given, get = new(cls), 0, data.get",
+    ]
+    for field in cls.fields:
+        target, name = f"message.{field.attribute}", field.name
+        read, default = _reading(field, scope, cls)
+        lines += [
+            f"    value = get({name!r}, missing)",
+            f"    if value is missing: {target} = {default}",
+            "    else:",
+            "        given += 1",
+            f"        try: {target} = {read}",
+            f"        except problems as problem: raise problem.below({name!r})",
+        ]
+    lines += ["    if given != len(data): unknown_field(cls, data)", "    return message"]
+    exec("\n".join(lines), scope)
+    _decoders[cls] = scope["decode"]
+    return scope["decode"]
+
+
+def _reading(field, scope, cls):
+    """The expressions for the value of a field: of what is given in ``value``, and when nothing is given."""
+    reader = f"read_{field.attribute}"
+    if not field.primitive:
+        part = _part_class(field)
+        scope[reader] = _decoders.get(part) or _decoder(part)
+        read, default = f"{reader}(value, now)", f"{reader}({{}}, now)"
+    elif field.base in _moments:
+        scope[reader] = _moments[field.base]
+        read, default = f"{reader}(value, now)", "zero"
+        if cls.ros_type == "std_msgs/Header" and field.name == "stamp":
+            default = "zero if now is None else Double(now)"
+    elif field.base == "float64" and not field.is_array:
+        scope[reader] = _readers["float64"]
+        read, default = f"Double(value) if value.__class__ is float and value - value == 0.0 else {reader}(value)", "zero"
+    else:
+        scope[reader] = _readers[field.base]
+        read, default = f"{reader}(value)", _DEFAULTS[field.base]
+    if not field.is_array:
+        return read, default
+    if _is_binary(field):
+        scope[reader] = _read_bytes(field.type)
+        return f"elements({reader}(value), {field.length}, {field.type!r})", f"[0] * {field.length}"
+    default = f"[{default} for _ in range({field.length})]"
+    return f"inner(elements(value, {field.length}, {field.type!r}), lambda value: {read})", default
+
+
+def _elements(value, length, type_name):
+    """``value``, checked to be a list, of the right length when that is not 0."""
+    if value.__class__ is not list:
+        raise _wrong(type_name, value)
+    if length and len(value) != length:
+        raise _mismatch(type_name, f"a list of {_counted(len(value), 'element')}")
+    return value
+
+
+def _inner(values, read):
+    """Read each element; an error gets its index."""
+    try:
+        return [read(value) for value in values]
+    except MessageJsonError:
+        pass
+    for index, value in enumerate(values):
+        try:
+            read(value)
+        except MessageJsonError as problem:
+            raise problem.below(f"[{index}]")
+
+
+def _no_object(cls, data):
+    raise _wrong(cls.ros_type, data, f"write an object with some of the fields {_names(cls)}")
+
+
+def _unknown_field(cls, data):
+    known = {field.name for field in cls.fields}
+    name = next(name for name in data if name not in known)
+    shown = name if isinstance(name, str) and len(name) <= 40 else _shown(name)
+    raise MessageJsonError(
+        lambda ros_type, field: f"Message type {ros_type} does not have a field {field}. The fields of {cls.ros_type} are {_names(cls)}.",
+        [shown],
+    )

@@ -1,0 +1,71 @@
+"""Parameters: the tree of values that the master keeps: text, numbers, booleans, lists, and dictionaries for the names below.
+
+How Lisp's values get in and out stands in ``roslisp/parameter_values.py``. Source: wiki.ros.org/ROS/Parameter_Server_API.
+"""
+
+from __future__ import annotations
+
+
+class ParameterTree:
+    """Values by global name; a dictionary stands for the names below it."""
+
+    def __init__(self):
+        self.root = {}
+
+    def get(self, name):
+        """The value, or `KeyError`."""
+        value = self.root
+        for part in _parts(name):
+            if not isinstance(value, dict):
+                raise KeyError(name)
+            value = value[part]
+        return value
+
+    def has(self, name):
+        try:
+            self.get(name)
+        except KeyError:
+            return False
+        return True
+
+    def set(self, name, value):
+        parts = _parts(name)
+        if not parts:
+            if not isinstance(value, dict):
+                raise TypeError("cannot set root of parameter tree to non-dictionary")
+            self.root = value
+            return
+        space = self.root
+        for part in parts[:-1]:
+            below = space.get(part)
+            if not isinstance(below, dict):
+                below = space[part] = {}
+            space = below
+        space[parts[-1]] = value
+
+    def delete(self, name):
+        """Remove the value, or `KeyError`. The root cannot go, but it can be emptied."""
+        parts = _parts(name)
+        if not parts:
+            self.root = {}
+            return
+        space = self.get("/" + "/".join(parts[:-1]))
+        if not isinstance(space, dict):
+            raise KeyError(name)
+        del space[parts[-1]]
+
+    def names(self):
+        """The names of all values that are no dictionaries, sorted."""
+        return sorted(_leaves(self.root, ""))
+
+
+def _parts(name):
+    return [part for part in name.split("/") if part]
+
+
+def _leaves(space, prefix):
+    for key, value in space.items():
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, f"{prefix}/{key}")
+        else:
+            yield f"{prefix}/{key}"

@@ -1,0 +1,19 @@
+"""What time it is for the Lisp program: the kernel's clock, or ``/clock`` when ``/use_sim_time`` is set.
+
+Time is counted from 1970. In virtual time the kernel's zero is the moment on the lecture's slide, so a run prints the same
+stamps every time. Source: roslisp.md 9.
+"""
+
+from __future__ import annotations
+
+from ...lisp.data import DoubleFloat
+from .. import graph
+
+
+def ros_time():
+    """Seconds since the epoch, a double; under simulated time the last ``/clock``, or single 0.0 before the first."""
+    here = graph.active()
+    node = here.lisp_node
+    if node is not None and getattr(node, "simulated_time", None) is not None:
+        return node.simulated_time
+    return DoubleFloat(here.now())

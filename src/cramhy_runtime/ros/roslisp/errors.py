@@ -1,0 +1,75 @@
+"""The conditions of roslisp, and the way it reports its own errors.
+
+Two habits of roslisp are kept because programs rely on them: most errors are logged at level ERROR on the root topic before
+they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the complaint of the master, is no subclass of
+``error``, so a handler for errors does not see it (roslisp.md 7.1 and trap 6).
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+from ...lisp import conditions
+from ...lisp.condition_types import Condition, Error, SimpleError
+from ...lisp.format.format import format_to_string
+from ...lisp.printer.printer import princ_to_string
+from . import logging
+from .master import master_uri
+
+
+class RosRpcError(Condition):
+    """The master refused a call. ``call`` is the text of the call, ``code``, ``message`` and ``result`` its answer."""
+
+    lisp_name = "ROSLISP::ROS-RPC-ERROR"
+
+    def __init__(self, call="", uri=None, code=-1, message="", result="", **slots):
+        super().__init__(**slots)
+        self.call, self.uri, self.code, self.message, self.result = call, uri, code, message, result
+        if message == "no provider":
+            self.hint = ('No node offers this service. rosservice list, typed at the prompt, shows those that there are; '
+                         "(wait-for-service name) waits for one.")
+
+    def report(self):
+        return (
+            f"ros-rpc call ({self.call}) to {princ_to_string(self.uri)} failed with code {self.code}, "
+            f"message {self.message}, values {self.result}"
+        )
+
+
+class ServiceError(SimpleError):
+    """Signalled by a service callback to refuse a request with a text of its own."""
+
+    lisp_name = "ROSLISP::SERVICE-ERROR"
+
+
+class ServiceCallError(Error):
+    """A call of a persistent service failed; ``message`` tells why."""
+
+    lisp_name = "ROSLISP::SERVICE-CALL-ERROR"
+    initargs = {"MESSAGE": "message"}
+    message = ""
+
+    def report(self):
+        return f"service-call-error: {self.message}"
+
+
+def ros_error(control, *arguments, hint=None):
+    """Log the format control at level ERROR on the root topic, then signal it as a simple error.
+
+    hint: what to try, or a function that gives it; it is shown below the error and is no part of its text.
+    """
+    logging.log_text(logging.ERROR, None, format_to_string(control, *arguments))
+    problem = SimpleError(control, *arguments)
+    problem.hint = hint
+    return conditions.error(problem)
+
+
+def close_names(name, names, otherwise):
+    """The hint for a name that is not there: those of ``names`` that look like it, or the sentence ``otherwise``."""
+    close = get_close_matches(name, list(names), n=3, cutoff=0.7)
+    return f"Did you mean {' or '.join(close)}?" if close else otherwise
+
+
+def rpc_error(call, code, message, result=""):
+    """Signal the master's refusal of ``call``, with the restart ``Ignore and continue``."""
+    return conditions.cerror("Ignore and continue", RosRpcError(call, master_uri(), code, message, result))

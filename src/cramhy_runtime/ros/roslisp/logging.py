@@ -1,0 +1,171 @@
+"""Logging as roslisp does it: levels per topic, a line on standard output, and a message on ``/rosout``.
+
+``(ros-info (turtle) "text")`` prints ``[(TURTLE) INFO] 1292688669.674: text`` on a line of its own. The topic is a path in a
+tree: a level set for ``(a)`` counts for ``(a b)`` unless that has its own. Levels belong to the session and not to the node.
+Source: roslisp.md 4. The macros evaluate their arguments only when `enabled` says so.
+"""
+
+from __future__ import annotations
+
+from ...lisp import conditions
+from ...lisp.condition_types import SimpleError
+from ...lisp.data import Cons, LispString, Symbol, lisp_list, list_from
+from ...lisp.format.format import format_to_string
+from ...lisp.packages import intern, string_designator, sym, symbol_name
+from ...lisp.printer.printer import princ_to_string
+from .. import graph, rosout, wire
+from ..rosout import DEBUG, ERROR, FATAL, INFO, LEVEL_CODES, LEVEL_NAMES, WARN
+from . import log_file
+from .clock import ros_time
+
+__all__ = ["DEBUG", "ERROR", "FATAL", "INFO", "WARN"]
+
+_standard_output = sym("*STANDARD-OUTPUT*")
+
+
+def topic_path(topic):
+    """A topic as a tuple of upper-case names: a list, one symbol or string, nil for the root, or a tuple."""
+    if topic is None:
+        return ()
+    if isinstance(topic, (Cons, tuple, list)):
+        return tuple(string_designator(part).upper() for part in topic)
+    return (string_designator(topic).upper(),)
+
+
+def _levels():
+    return graph.active().debug_levels
+
+
+def level_of(path):
+    """The level in force for the topic ``path``, a tuple of names."""
+    levels = _levels()
+    if not levels:
+        return INFO
+    while path:
+        if path in levels:
+            return levels[path]
+        path = path[:-1]
+    return levels.get((), INFO)
+
+
+def enabled(level, topic):
+    """Whether a message of ``level`` (1, 2, 4, 8, 16) on ``topic`` (list, symbol or nil) is printed."""
+    return level >= level_of(topic_path(topic))
+
+
+def ros_log(level, topic, control, *arguments):
+    """Log the format control with its arguments, if the level passes; the number of ``/rosout`` subscribers, or nil."""
+    if not enabled(level, topic):
+        return None
+    return _print(level, topic, format_to_string(control, *arguments))
+
+
+def ros_log_lazily(level, topic, condition, text):
+    """What ``ros-info`` and its relatives expand into: ``condition`` (``None``: none) and ``text`` are functions of no
+    arguments, called only when the level passes; ``text`` gives the formatted string."""
+    if not enabled(level, topic):
+        return None
+    if condition is not None:
+        value = condition()
+        if value is None or value is False:
+            return None
+    return _print(level, topic, text())
+
+
+def log_text(level, topic, text):
+    """Log a finished text from the runtime itself. ``topic``: a tuple of symbol names (taken from ROSLISP), or nil."""
+    if not enabled(level, topic):
+        return None
+    if isinstance(topic, tuple):
+        topic = list_from([intern(name, "ROSLISP") for name in topic])
+    return _print(level, topic, text)
+
+
+def _print(level, topic, text):
+    shown_topic = princ_to_string(topic if topic is None or isinstance(topic, Cons) else lisp_list(topic))
+    stream = _standard_output.value
+    stream.fresh_line()
+    line = f"[{shown_topic} {LEVEL_NAMES[level]}] {float(ros_time()):.3f}: {text}"
+    stream.write(line)
+    stream.fresh_line()
+    log_file.write(line + "\n")
+    here = graph.active()
+    lisp_node = here.lisp_node
+    if lisp_node is None:
+        here.log.append((level, None, text))
+        return None
+    return rosout.report(lisp_node, level, text)
+
+
+# -------------------------------------------------------------------------------------------------------------- the levels
+
+
+def level_code(level):
+    """The number of a level given as keyword, number, or upper-case string."""
+    if level.__class__ is int:
+        return level
+    if isinstance(level, Symbol):
+        code = LEVEL_CODES.get(symbol_name(level))
+        name = symbol_name(level)
+    else:
+        code = LEVEL_CODES.get(str(level)) if isinstance(level, (str, LispString)) else None
+        name = "NIL"
+    if code is None:
+        return conditions.error(SimpleError("~a", f"Could not get symbol code for {name} for ROS message type <LOG>"))
+    return code
+
+
+def set_debug_level(name, level):
+    """Set the level of a topic (list or symbol). With a node running the parameter ``~debug/…/level`` is set too: 0."""
+    path, code = topic_path(name), level_code(level)
+    _levels()[path] = code
+    here = graph.active().lisp_node
+    if here is None:
+        return None
+    here.graph.parameters.set(
+        here.resolve("~debug/" + "".join(part.lower() + "/" for part in path) + "level"),
+        LEVEL_NAMES.get(code, str(code)).lower(),
+    )
+    return 0
+
+
+def set_debug_levels(*names_and_levels):
+    """``NAME1 LEVEL1 …``, what the macro ``set-debug-levels`` calls with quoted names."""
+    result = None
+    for index in range(0, len(names_and_levels), 2):
+        result = set_debug_level(names_and_levels[index], names_and_levels[index + 1])
+    return result
+
+
+def debug_level(name):
+    """The number of the level in force; the topic is given as a reversed list of keywords, ``(:tcp :roslisp)``."""
+    if isinstance(name, Cons):
+        return level_of(tuple(reversed(topic_path(name))))
+    return level_of(())
+
+
+def print_debug_levels():
+    """Print the table of levels; topics appear reversed, as in the original."""
+    levels = {(): INFO, **_levels()}
+    lines = []
+    for path, code in levels.items():
+        shown = f"({' '.join(reversed(path))})" if path else "NIL"
+        lines.append(f"{shown} : {LEVEL_NAMES.get(code, code)}")
+    stream = _standard_output.value
+    stream.write("[" + "\n ".join(lines) + "]")
+
+
+def read_levels(here):
+    """Take over the levels that stand as parameters below ``~debug/`` (at node start, and by ``~reset_debug_levels``)."""
+    prefix = here.resolve("~debug/").rstrip("/") + "/"
+    for name in here.graph.parameters.names():
+        if name.startswith(prefix) and name.endswith("/level"):
+            path = tuple(part.upper() for part in name[len(prefix) :].split("/")[:-1])
+            word = str(here.graph.parameters.get(name)).upper()
+            if word in LEVEL_CODES:
+                here.graph.debug_levels[path] = LEVEL_CODES[word]
+            else:
+                log_text(WARN, ("ROSLISP", "ROSOUT"), f"Skipping setting debug level of {name} to unknown level {word}")
+
+
+wire.on_misfit.append(lambda text: log_text(ERROR, ("ROSLISP",), text))

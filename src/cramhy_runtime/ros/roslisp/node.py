@@ -1,0 +1,241 @@
+"""The node of the Lisp program: starting it, shutting it down, asking for it.
+
+`start_ros_node` prints the six lines of the original. In virtual time the 1.09 s that the original takes pass on the clock, so
+that stamps look as on the slides; nobody waits for them. In wall time the node is up at once. Source: roslisp.md 2.
+"""
+
+from __future__ import annotations
+
+import os
+
+from ... import kernel
+from ...lisp import conditions
+from ...lisp.condition_types import SimpleError
+from ...lisp.data import LispString, python_list, truth
+from ...lisp.dynamic import special
+from ...lisp.packages import sym
+from ...lisp.printer.printer import princ_to_string
+from .. import graph, messages, names, rosout
+from . import log_file, logging, master
+from .errors import ros_error
+from .master import MASTER_URI
+from .parameter_values import encode
+
+STARTUP_SECONDS = 1.094
+"""What starting a node took when the golden transcript was recorded."""
+SHUTDOWN_SECONDS = 3.5
+"""How long the cleanup of callbacks is waited for: what shutting a node down takes in the original."""
+ROSOUT_DELAY = 0.05
+"""Seconds until the log collector has connected to a new node: its first log calls reach nobody."""
+
+NODE_NAME = special("ROSLISP::*ROS-NODE-NAME*")
+RUNNING_FROM_COMMAND_LINE = special("ROSLISP::*RUNNING-FROM-COMMAND-LINE*")
+
+
+def node_status():
+    """``:running`` or ``:shutdown``."""
+    return sym(":SHUTDOWN") if graph.active().lisp_node is None else sym(":RUNNING")
+
+
+def require_node():
+    """The node of the Lisp program. Without one: the continuable error that offers to start a dummy."""
+    here = graph.active().lisp_node
+    while here is None:
+        problem = SimpleError("Node status is SHUTDOWN")
+        problem.hint = 'No ROS node runs here. (start-ros-node "name") starts one.'
+        conditions.cerror("Start a dummy node", problem)
+        start_ros_node("dummy")
+        here = graph.active().lisp_node
+    return here
+
+
+def fully_qualified_name(name):
+    """The global name that ``name`` means to the node; works without a node too."""
+    here = graph.active().lisp_node
+    if not isinstance(name, (str, LispString)):
+        return conditions.type_error(name, "STRING", "\nwhen binding ROSLISP::NAME")
+    if here is not None:
+        return here.resolve(str(name))
+    return names.qualify(str(name), names.as_namespace(os.environ.get("ROS_NAMESPACE")), NODE_NAME.value)
+
+
+def start_ros_node(name, *, master_uri=None, anonymous=None, cmd_line_args=None, **others):
+    """Start the node ``name``. Returns the number of ``/rosout`` subscribers, usually 0.
+
+    anonymous: append microseconds and seconds. cmd_line_args: a list of strings, or one string. master_uri: a string or a
+    `Uri`. Others are ignored, but for two that are errors since long.
+    """
+    for gone in ("xml-rpc-port", "pub-server-port"):
+        if gone.replace("-", "_") in others:
+            return conditions.error(SimpleError("~a", f"start-ros-node no longer accepts the {gone} argument"))
+    if not isinstance(name, (str, LispString)):
+        return conditions.type_error(name, "STRING", "\nwhen binding ROSLISP::NAME")
+    here = graph.active()
+    if here.lisp_node is not None:
+        conditions.warn(
+            "Before starting node, node-status equalled RUNNING instead of :shutdown.  Shutting the previous node invocation down now."
+        )
+        shutdown_ros_node()
+    naming = _naming(here, str(name), anonymous, cmd_line_args)
+    address = master.chosen_uri(master_uri)
+    for prepare in here.before_first_node:
+        prepare()
+    here.before_first_node.clear()
+    MASTER_URI.value = address
+    NODE_NAME.value = naming.node_name
+    _contact_master(naming, address)
+    _open_log_file(naming)
+    node = here.add_node(naming)
+    try:
+        _upload_parameters(node)
+        logging.read_levels(node)
+        _announce(node, address)
+        if kernel.active().clock.virtual:
+            kernel.sleep(STARTUP_SECONDS)
+        here.lisp_node = node
+        _connect_services(node)
+        node.on_shutdown.append(_ended)  # also when somebody else ends it, as rosnode kill does
+        return _top("Node startup complete")
+    except BaseException:  # an interrupt, or the end of the task: half a node helps nobody
+        node.shutdown()
+        log_file.stop()
+        raise
+
+
+def _contact_master(naming, address):
+    problem = master.connection_problem(address)
+    if problem is None:
+        return
+    hint = "The master is in this process, and a node finds it when :master-uri is left out."
+    for name, _, _ in reversed(naming.private_parameters):  # they are the first thing that it would be told
+        ros_error("Could not contact master at ~a when setting param ~a", address, naming.resolve(name), hint=hint)
+    ros_error("Could not contact master at ~a when getting param list: ~a", address, problem, hint=hint)
+
+
+def _naming(here, name, anonymous, arguments):
+    if anonymous is not None and anonymous is not False:
+        now = here.now()
+        name = f"{name}_{int(now % 1 * 1e6)}_{int(now)}"
+    if not names.is_base_name(name):
+        conditions.warn("~a", f"{name} is not a legal ROS base name. This may cause problems with other ROS tools")
+    naming = names.Naming(name, os.environ.get("ROS_NAMESPACE") or "/")
+    if arguments is not None and not isinstance(arguments, (str, LispString)):
+        arguments = python_list(arguments)
+    naming.apply_arguments(
+        names.split_arguments(str(arguments) if isinstance(arguments, LispString) else arguments),
+        names.read_private_value,
+    )
+    return naming
+
+
+def _announce(node, address):
+    naming = node.naming
+    _top(f"Node name is {naming.node_name}")
+    _top(f"Namespace is {naming.namespace}")
+    pairs = " ".join(f"({name} . {raw})" for name, _, raw in naming.private_parameters)
+    _top(f"Params are {f'({pairs})' if pairs else 'NIL'}")
+    _top("Remappings are:" + "".join(f"\n  {left} = {right}" for left, right in naming.remappings.items()))
+    _top(f"master URI is {address.address}:{address.port}")
+
+
+def _top(text):
+    return logging.log_text(logging.INFO, ("ROSLISP", "TOP"), text)
+
+
+def _connect_services(node):
+    rosout.join(node, ROSOUT_DELAY)
+    tree = node.graph.parameters
+    if tree.has("/use_sim_time") and tree.get("/use_sim_time") in (True, 1, "true", "T"):
+        node.simulated_time = 0.0
+
+        def tick(message):
+            node.simulated_time = message.clock
+
+        node.subscribe("/clock", messages.message_class_exact("rosgraph_msgs/Clock"), tick, queue=5)
+    empty = messages.service_type_exact("std_srvs/Empty")
+
+    def reset_levels(_):
+        logging.read_levels(node)
+        return empty.response()
+
+    node.serve("~reset_debug_levels", empty, reset_levels)
+
+
+def _upload_parameters(node):
+    """Set the private parameters of the node's command line."""
+    for name, value, _ in reversed(node.naming.private_parameters):
+        node.graph.parameters.set(names.qualify(name, node.naming.namespace, node.name), encode(value))
+
+
+def _open_log_file(naming):
+    path = log_file.place(naming, graph.active().now())
+    if path is None:
+        return
+    try:
+        log_file.start(path)
+    except OSError as problem:
+        ros_error("Could not open the log file ~a: ~a. Choose another one with __log:=FILE.", str(path), problem.strerror)
+
+
+def shutdown_ros_node():
+    """Shut the node down: its topics, services and tasks end. NIL when none is running. An executable ends with its node."""
+    here = graph.active().lisp_node
+    if here is None:
+        return None
+    tasks = [task for entry in (*_entries(here.subscriptions), getattr(here, "event_loop", None)) if (task := getattr(entry, "task", None))]
+    here.shutdown()
+    limit = kernel.now() + SHUTDOWN_SECONDS
+    for task in tasks:
+        if task is not kernel.current():
+            task.join(f"{task.name} to end with the node", limit, claim=False)
+    if truth(RUNNING_FROM_COMMAND_LINE.value):
+        raise SystemExit(0)
+
+
+def _entries(table):
+    return [entry for entries in table.values() for entry in entries]
+
+
+def _ended():
+    _top("Shutdown complete")
+    log_file.stop()
+
+
+def with_ros_node(name, body, *, spin=None, **options):
+    """Run ``body`` with a node, and shut it down on every way out. With ``spin`` wait for ever after the body."""
+
+    def shut_down(condition=None):
+        text = "About to shutdown" if condition is None else f"About to shutdown due to condition {condition}"
+        return _top(text)
+
+    def run():
+        start_ros_node(name, **options)
+        result = body()
+        while truth(spin):
+            kernel.park("nothing: the node spins until somebody ends it", kernel.now() + 100)
+        return result
+
+    try:
+        return conditions.restart_case([(sym("ROSLISP::SHUTDOWN-ROS-NODE"), shut_down, "Shut the node down.")], run)
+    finally:
+        with kernel.shield():
+            shutdown_ros_node()
+
+
+def standalone_exec_debug_hook(condition, hook=None):
+    """Debugger hook of executables: ends the node when one is running."""
+    if graph.active().lisp_node is not None:
+        conditions.invoke_restart(sym("ROSLISP::SHUTDOWN-ROS-NODE"), condition)
+
+
+def print_status():
+    """Print the node's name, state, master, and what it publishes and subscribes to."""
+    here = graph.active().lisp_node
+    stream = sym("*STANDARD-OUTPUT*").value
+    stream.fresh_line()
+    stream.write(f"Node {NODE_NAME.value or 'NIL'} is {node_status().name}, master {princ_to_string(MASTER_URI.value)}\n")
+    for title, table in (
+        ("Publications", {name: entry.type.ros_type for name, entry in here.publications.items()} if here else {}),
+        ("Subscriptions", {name: entries[0].type.ros_type for name, entries in here.subscriptions.items()} if here else {}),
+    ):
+        stream.write(f"{title}:\n" + "".join(f"  {name} [{kind}]\n" for name, kind in table.items()))

@@ -1,0 +1,56 @@
+"""What a Lisp value becomes as a parameter, and a parameter in Lisp; the encoding of XML-RPC without the text.
+
+Symbols become their names, lists and vectors arrays, structs dictionaries. On the way back a float is a single-float, an array a
+list, false NIL. An integer has 32 bits. Source: roslisp.md 8, xmlrpc.com/spec.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ...lisp import conditions
+from ...lisp.condition_types import SimpleError, shown
+from ...lisp.data import Cons, LispString, Symbol, list_from
+from ...lisp.packages import symbol_name
+from .structs import Struct
+
+LEAST, MOST = -(2**31), 2**31 - 1
+
+
+def encode(value):
+    """A Lisp value as the master keeps it."""
+    if value is None or value is False:
+        return False
+    if value is True or isinstance(value, str):
+        return value
+    if isinstance(value, int):
+        return value if LEAST <= value <= MOST else _refuse(
+            f"The integer {value} does not fit into a parameter: those have 32 bits, from {LEAST} to {MOST}. A float or a string holds it.")
+    if isinstance(value, LispString):
+        return str(value)
+    if isinstance(value, (float, Fraction)):
+        return float(value)
+    if isinstance(value, Symbol):
+        return symbol_name(value)
+    if isinstance(value, (Cons, list, tuple)):
+        return [encode(element) for element in value]
+    if isinstance(value, Struct):
+        value = value.members
+    if isinstance(value, dict):
+        return {str(key): encode(element) for key, element in value.items()}
+    return _refuse(f"A parameter can be a string, number, boolean, list or vector of these, but not {shown(value)}.")
+
+
+def _refuse(text):
+    return conditions.error(SimpleError("~a", text))
+
+
+def decode(value):
+    """A value of the master as Lisp sees it."""
+    if value is False:
+        return None
+    if isinstance(value, (list, tuple)):
+        return list_from([decode(element) for element in value])
+    if isinstance(value, dict):
+        return Struct({name: decode(element) for name, element in value.items()})
+    return value

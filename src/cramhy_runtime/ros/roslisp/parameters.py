@@ -1,0 +1,81 @@
+"""The functions of roslisp on parameters. They need no running node, only a known master. Source: roslisp.md 8."""
+
+from __future__ import annotations
+
+from ...lisp import conditions
+from ...lisp.condition_types import SimpleError
+from ...lisp.data import UNSUPPLIED, Cons, LispString, list_from
+from ...lisp.packages import symbol_name
+from .. import graph
+from . import master, node
+from .errors import close_names, ros_error, rpc_error
+from .parameter_values import decode, encode
+
+
+def _full_name(key):
+    if not isinstance(key, (str, LispString)):
+        return conditions.type_error(key, "STRING", "\nwhen binding ROSLISP::KEY")
+    _require_master()
+    return node.fully_qualified_name(str(key))
+
+
+def _require_master():
+    if master.master_uri() is None:
+        conditions.error(SimpleError("Master uri not set"))
+
+
+def _tree(control, *arguments):
+    """The master's parameters; when the master is another one, the error ``control`` with its address, ``arguments`` and the reason."""
+    uri = master.master_uri()
+    problem = master.connection_problem(uri)
+    if problem is not None:
+        ros_error(control, uri, *arguments, problem)
+    return graph.active().parameters
+
+
+def get_param(key, default=UNSUPPLIED):
+    """The value of the parameter; ``default`` (nil counts) when it is not set; else an error that is logged too."""
+    name = _full_name(key)
+    try:
+        return decode(_tree("Could not contact master~* when getting param ~a: ~a", name).get(name))
+    except KeyError:
+        if default is not UNSUPPLIED:
+            return default
+    return ros_error("Param ~a does not exist, and no default supplied", name, hint=lambda: close_names(
+        name, graph.active().parameters.names(), "(list-params) shows those that there are; a second argument of get-param is a default."))
+
+
+def set_param(key, val):
+    """Set the parameter; 0."""
+    name = _full_name(key)
+    _tree("Could not contact master at ~a when setting param ~a", name).set(name, encode(val))
+    return 0
+
+
+def has_param(key):
+    """T when the parameter is set, even to false."""
+    name = _full_name(key)
+    return True if _tree("Could not contact master at ~a for call to hasParam ~a: ~a", name).has(name) else None
+
+
+def delete_param(key):
+    """Remove the parameter; 0. One that is not set is a ``ros-rpc-error``."""
+    name = _full_name(key)
+    try:
+        _tree("Could not contact master at ~a when deleting param ~a: ~a", name).delete(name)
+    except KeyError:
+        rpc_error(f"deleteParam {name}", -1, f"parameter [{name}] is not set", 0)
+    return 0
+
+
+def list_params(namespace=None):
+    """The list of the names below a namespace: a string, or a list of symbols ``(foo bar)`` for ``/foo/bar/``."""
+    _require_master()
+    if namespace is None:
+        prefix = "/"
+    elif isinstance(namespace, Cons):
+        prefix = "/" + "".join(symbol_name(symbol).lower() + "/" for symbol in namespace)
+    else:
+        prefix = _full_name(namespace).rstrip("/") + "/"
+    names = _tree("Could not contact master at ~a when getting param list: ~a").names()
+    return list_from([name for name in names if name.startswith(prefix)])

@@ -1,0 +1,79 @@
+"""Waiting and looping by the clock, as roslisp does it.
+
+All waits here park, so in virtual time they take no time at all (law 5). Source: roslisp.md 9.
+"""
+
+from __future__ import annotations
+
+from ... import kernel
+from ...lisp.data import MultipleValues, Symbol, one, truth
+from ...lisp.evaluation.control import fdefinition
+from ...lisp.numbers.arithmetic import need_real
+from .. import graph
+from . import logging
+from .clock import ros_time
+
+
+def spin_until_ros_time_valid():
+    """Wait until `ros_time` is above zero, looking every 0.05 s; a warning every 100 looks."""
+    looks = 0
+    while not ros_time() > 0:
+        looks += 1
+        if looks % 100 == 0:
+            logging.log_text(logging.WARN, ("ROSLISP", "TIME"), "Waiting for valid ros-time before proceeding")
+        kernel.sleep(0.05)
+
+
+def wait_duration(d):
+    """Wait until ``d`` seconds of ROS time have passed; T."""
+    seconds = float(need_real(d))
+    node = graph.active().lisp_node
+    if node is None or getattr(node, "simulated_time", None) is None:
+        kernel.sleep(seconds)
+        return True
+    end = ros_time() + seconds
+    while ros_time() < end:
+        kernel.sleep(0.01)
+    return True
+
+
+def loop_at_most_every(d, body):
+    """Call ``body`` for ever, at most once per ``d`` seconds, the first time at once. It is left by a non-local exit."""
+    period = float(need_real(d))
+    while True:
+        next_time = kernel.now() + period
+        body()
+        rest = next_time - kernel.now()
+        kernel.sleep(rest)  # zero and less yields, so an endless loop can be ended
+
+
+def spin_until(test, increment, body=None, timeout=None):
+    """Call ``test`` every ``increment`` seconds and return its value when true; else call ``body``.
+
+    When ``timeout`` seconds have passed: two values, NIL and T. The test is tried at least once.
+    """
+    end = None if timeout is None else kernel.now() + float(need_real(timeout))
+    while True:
+        value = test()
+        if truth(one(value)):
+            return value
+        if end is not None and kernel.now() >= end:
+            return MultipleValues((None, True))
+        if body is not None:
+            body()
+        pause = float(need_real(increment))
+        kernel.sleep(pause if end is None else max(0.0, min(pause, end - kernel.now())))
+
+
+def with_parallel_thread(function, name, body):
+    """Run ``function`` (or that of a symbol) in a task called ``name`` while ``body`` runs, then end it; the values of ``body``."""
+    if isinstance(function, Symbol):
+        name = name if name is not None else function.name
+        function = fdefinition(function)
+    task = kernel.spawn(function, name=str(name))
+    try:
+        return body()
+    finally:
+        task.cancel("the body of with-parallel-thread is over")
+        with kernel.shield():
+            task.join(claim=False)

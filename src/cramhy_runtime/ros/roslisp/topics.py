@@ -1,0 +1,272 @@
+"""Topics for the Lisp program: advertising, publishing, subscribing, and the tasks that callbacks run in.
+
+Each topic that the program subscribes to has one queue and one task, ``Subscriber thread for topic /x``, which runs the
+callbacks, the newest first; so callbacks of one topic never overlap, and an error in one is logged while the others go on.
+Source: roslisp.md 6.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from ... import kernel
+from ...lisp import conditions
+from ...lisp.condition_types import Condition, Error, SimpleError, SimpleTypeError, formatted, shown
+from ...lisp.data import NO_VALUES, LispString, Symbol
+from ...lisp.format.format import format_to_string
+from ...lisp.objects.generic_errors import no_applicable_method, no_primary_method
+from ..messages import RosMessage, topic_class
+from ..topics import Publication
+from ..type_texts import same_on_the_wire
+from . import logging, node
+from .errors import close_names, ros_error
+
+
+DELIVERY = ("ROSLISP", "DESERIALIZATION-THREAD")
+"""The topic of log lines about messages that are not delivered."""
+
+
+class Subscription:
+    """The Lisp program's side of a topic: queue, task, callbacks (`Subscriber`s, the newest first).
+
+    The task lives as long as there are messages to deliver. A task that begins where another one just ended needs no stack
+    of its own, so a pose that comes 62 times a second costs no switch of threads, and a report of waiting tasks names only
+    those that really wait. A message that finds no task is in its hand already: it does not stand in the queue, whose limit
+    counts the messages that wait for the one that is delivered.
+    """
+
+    lisp_name = "ROSLISP::SUBSCRIPTION"
+
+    def __init__(self, node, name, message_type, limit=None):
+        self.node, self.name, self.type, self.limit = node, name, message_type, limit
+        self.queue = deque(maxlen=limit)
+        self.callbacks = []
+        self.closed = False
+        self.message, self.remaining = None, []
+        self.task = None
+        self.task_name = f"Subscriber thread for topic {name}"
+        self._handlers = [(Error, self._failed)]
+
+    def receive(self, message):
+        if self.task is not None:
+            if len(self.queue) == self.limit:
+                logging.log_text(logging.DEBUG, DELIVERY, f"Dropped 1 messages on topic {self.name}")
+            self.queue.append(message)
+        elif not self.closed:
+            owner = self.node.graph.kernel
+            self.message, self.remaining = message, list(self.callbacks)
+            self.task = owner.spawn(self._run, name=self.task_name, parent=owner.main)
+
+    def spoiled(self, publication, message):
+        """A message of another type came over the wire. roslisp's thread for the connection dies of it; we drop the message."""
+        logging.log_text(logging.DEBUG, DELIVERY, f"Dropped a {message.ros_type} that {publication.node.name} sent on {self.name}, "
+                         f"whose type is {self.type.ros_type}")
+
+    def close(self):
+        self.closed = True
+        if self.task is not None and self.task is not kernel.current():
+            self.task.cancel("the subscription ended")
+
+    def _run(self):
+        try:
+            while self.queue or self.remaining:
+                try:
+                    conditions.handler_case(self._handlers, self._deliver)
+                except Condition as condition:  # no error, but nobody handled it: the subscription shall not die of it
+                    self._failed(condition)
+        finally:
+            self.message, self.remaining, self.task = None, [], None
+
+    def _deliver(self):
+        queue, callbacks = self.queue, self.callbacks
+        while not self.closed:
+            kernel.checkpoint()  # a callback may cause the next message, and that one the next, for ever
+            while self.remaining:
+                subscriber = self.remaining.pop(0)
+                if subscriber in callbacks:  # and did not unsubscribe meanwhile
+                    subscriber.callback(self.message)
+            if not queue:
+                return
+            self.message, self.remaining = queue.popleft(), list(callbacks)
+        queue.clear()
+        self.remaining = []
+
+    def _failed(self, condition):
+        logging.log_text(
+            logging.ERROR,
+            ("ROSLISP", "SERVICE", "TCP"),
+            format_to_string("Error during subscriber callback: '~a' for topic item: ~%~a ", condition, self.message),
+        )
+
+
+class Subscriber:
+    """What ``subscribe`` returns: one callback of one subscription, for ``unsubscribe``."""
+
+    __slots__ = ("topic", "subscription", "callback")
+    lisp_name = "ROSLISP::SUBSCRIBER"
+
+    def __init__(self, topic, subscription, callback):
+        self.topic, self.subscription, self.callback = topic, subscription, callback
+
+
+# ------------------------------------------------------------------------------------------------------ roslisp's functions
+
+
+def _topic_name(topic, parameter="TOPIC"):
+    if not isinstance(topic, (str, LispString)):
+        return conditions.type_error(topic, "STRING", f"\nwhen binding ROSLISP::{parameter}")
+    return str(topic)
+
+
+def advertise(topic, topic_type, *, latch=None):
+    """Publish on ``topic`` from now on. Advertised already: the publication that is there, unchanged."""
+    topic = _topic_name(topic)
+    here = node.require_node()
+    cls = topic_class(topic_type)
+    publication = here.advertise(topic, cls, latch is not None and latch is not False)
+    _warn_of_listeners_to_another_type(publication)
+    return publication
+
+
+def _warn_of_listeners_to_another_type(publication):
+    """Such a node complains on its own screen, where nobody looks who has just typed ``advertise``."""
+    for subscription in publication.node.graph.topics[publication.name].visible_subscriptions:
+        if not same_on_the_wire(subscription.type, publication.type):
+            conditions.warn("~a", f"{subscription.node.name} listens to {publication.name} for messages of type "
+                            f"{subscription.type.ros_type}, so it gets nothing of what is published there as {publication.type.ros_type}.")
+
+
+def unadvertise(topic):
+    """Stop publishing on ``topic``; 1. Not advertised: a warning."""
+    here = node.require_node()
+    name = here.resolve(_topic_name(topic))
+    if not here.unadvertise(name):
+        logging.log_text(logging.WARN, ("ROSLISP", "TOP"), f"Not publishing on {name}")
+        conditions.warn("Not publishing on ~a", name)
+    return 1
+
+
+def publish(pub, message):
+    """Send ``message`` on ``pub``, a publication or the name of an advertised topic; the number of subscribers reached."""
+    publication = pub
+    if publication.__class__ is not Publication:
+        if not isinstance(pub, (str, LispString)):
+            advice = ("What (advertise topic type) returns is published on, or the name of an advertised topic. Has the function been "
+                      "called that advertises?")
+            return no_primary_method("ROSLISP:PUBLISH", 3, pub, message, advice=advice)
+        here = node.require_node()
+        name = here.resolve(str(pub))
+        publication = here.publications.get(name)
+        if publication is None:
+            return ros_error("Unknown topic ~a", name, hint=lambda: close_names(
+                name, here.publications, f'One publishes on a topic that was advertised before: (advertise "{name}" type).'))
+    elif not publication.node.alive:
+        here = node.require_node()
+        publication = here.publications.get(publication.name, publication)
+    if not isinstance(message, RosMessage):
+        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, message)
+    return publication.publish(message)
+
+
+def publication_type(pub):
+    """The message class of a publication object (``publish-msg`` and ``make-publisher-msg`` build on it)."""
+    if isinstance(pub, Publication):
+        return pub.type
+    return conditions.error(
+        SimpleTypeError(
+            "~a",
+            f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION.",
+            datum=pub,
+            expected_type="ROSLISP::PUBLICATION",
+        )
+    )
+
+
+def num_subscribers(pub):
+    """How many subscribers are connected to a publication object."""
+    if not isinstance(pub, Publication):
+        return conditions.type_error(pub, "ROSLISP::PUBLICATION", "\nwhen binding ROSLISP::PUB")
+    return pub.subscribers
+
+
+def subscribe(topic, topic_type, callback, *, max_queue_length=None):
+    """Have ``callback`` called with every message on ``topic``; returns a subscriber for `unsubscribe`.
+
+    Waits until publishers that are there have accepted the connection. A type that cannot be found is a warning and NIL.
+    ``max_queue_length``: of messages that wait, the oldest are dropped beyond it; nil or ``infty``: unlimited.
+    """
+    topic = _topic_name(topic)
+    here = node.require_node()
+    if not callable(callback) or isinstance(callback, Symbol):
+        return conditions.type_error(callback, "FUNCTION", "\nwhen binding ROSLISP::CALLBACK")
+    cls = _type_or_warning(topic, topic_type)
+    if cls is None:
+        return None
+    name, limit = here.resolve(topic), _limit(max_queue_length)
+    subscription, waiting = _subscription(here, name), []
+    if subscription is not None and subscription.type is not cls:
+        return ros_error(
+            "Asserted topic type ~a for new subscription to ~a did not match existing type ~a",
+            cls.ros_type,
+            name,
+            subscription.type.ros_type,
+        )
+    problem = _publishers_of_another_type(here, name, cls)
+    if problem is not None:
+        conditions.warn("~a", f"Received error {problem} when attempting to setup subscription to {name} of type {cls.ros_type}, "
+                        "so not subscribing.")
+        return None
+    first = subscription is None
+    if first:
+        subscription = Subscription(here, name, cls, limit)
+    subscriber = Subscriber(name, subscription, callback)
+    subscription.callbacks.insert(0, subscriber)
+    if first:
+        waiting = here.add_subscription(subscription)
+    for publisher in waiting:
+        publisher.wait_for_spin(f"{publisher.name} to accept the subscription to {name}")
+    return subscriber
+
+
+def _publishers_of_another_type(here, name, cls):
+    """What the publishers of the topic say when none of them has messages of class ``cls``, else ``None``."""
+    topic = here.graph.topics.get(name)
+    publications = topic.visible_publications if topic is not None else []
+    if not publications or any(same_on_the_wire(publication.type, cls) for publication in publications):
+        return None
+    return publications[0].mismatch(here, cls)
+
+
+def _subscription(here, name):
+    return next((entry for entry in here.subscriptions.get(name, ()) if isinstance(entry, Subscription)), None)
+
+
+def _type_or_warning(topic, topic_type):
+    def give_up(condition):
+        shown_type = topic_type if isinstance(topic_type, str) else formatted("~a", (topic_type,))
+        conditions.warn("~a", f"Couldn't lookup topic type {shown_type} for {topic}, so not subscribing.")
+
+    return conditions.handler_case([(Error, give_up)], lambda: topic_class(topic_type))
+
+
+def _limit(length):
+    if length is None or isinstance(length, Symbol):
+        return None
+    if length.__class__ is not int or length < 1:
+        return conditions.error(
+            SimpleError("~a", f"The queue of a subscription must hold at least one message, but :max-queue-length is {length}.")
+        )
+    return length
+
+
+def unsubscribe(subscriber):
+    """Remove the callback; the last one ends the subscription. Returns no values."""
+    if not isinstance(subscriber, Subscriber):
+        return conditions.type_error(subscriber, "ROSLISP::SUBSCRIBER", "\nwhen binding ROSLISP::SUBSCRIBER")
+    subscription = subscriber.subscription
+    if subscription.closed or subscriber not in subscription.callbacks:
+        return ros_error("Subscription to topic `~a' invalid.", subscriber.topic)
+    subscription.callbacks.remove(subscriber)
+    if not subscription.callbacks:
+        subscription.node.unsubscribe(subscription)
+    return NO_VALUES

@@ -1,0 +1,94 @@
+"""``roslisp-utilities``: what runs when the node starts and when it ends, and conversions between ROS and Lisp names.
+
+Source: roslisp.md 11. Init functions run by descending rank; equal ranks in the order of registration.
+"""
+
+from __future__ import annotations
+
+from ...lisp import conditions
+from ...lisp.data import UNSUPPLIED, Symbol
+from ...lisp.evaluation.control import fdefinition
+from ...lisp.packages import intern, string_designator, sym, symbol_name
+from .. import graph
+from . import logging, node
+
+_init_functions: dict[Symbol, tuple] = {}
+_cleanup_functions: dict[Symbol, object] = {}
+
+
+def register_ros_init_function(symbol, rank=0):
+    """Run the function of ``symbol``, as it is now, in `startup_ros`; higher ranks come first. Returns the function."""
+    function = fdefinition(symbol)
+    _init_functions[symbol] = (function, rank if isinstance(rank, (int, float)) and rank is not True else 0)
+    return function
+
+
+def register_ros_cleanup_function(symbol):
+    """Run the function of ``symbol``, as it is now, in `shutdown_ros`. Returns the function."""
+    function = _cleanup_functions[symbol] = fdefinition(symbol)
+    return function
+
+
+def forget_registrations():
+    """Empty both registries (for tests, and for a session that starts over)."""
+    _init_functions.clear()
+    _cleanup_functions.clear()
+
+
+def startup_ros(*, master_uri=UNSUPPLIED, cmd_line_args=UNSUPPLIED, name="cram_hl", anonymous=True):
+    """Start a node, after shutting down one that runs, and run the init functions; NIL."""
+    if graph.active().lisp_node is not None:
+        shutdown_ros()
+    options = {key: value for key, value in (("master_uri", master_uri), ("cmd_line_args", cmd_line_args)) if value is not UNSUPPLIED}
+    node.start_ros_node(name, anonymous=anonymous, **options)
+    for function, _ in sorted(_init_functions.values(), key=lambda entry: -entry[1]):
+        _announce("ROS init", function)
+        function()
+
+
+def shutdown_ros():
+    """Run the cleanup functions and shut the node down."""
+    for function in list(_cleanup_functions.values()):
+        _announce("ROS cleanup", function)
+        function()
+    return node.shutdown_ros_node()
+
+
+def _announce(what, function):
+    logging.ros_log(logging.INFO, intern("ROSNODE", "ROSLISP-UTILITIES"), f"{what} ~a.", function)
+
+
+# ------------------------------------------------------------------------------------------------------------------- names
+
+
+def _package(package):
+    return package if package is not None else sym("*PACKAGE*").value
+
+
+def lispify_ros_name(string, package=None):
+    """``"HelloWorld"`` → ``HELLO-WORLD``: a dash before each capital that follows a small letter or a digit."""
+    text = str(string)
+    if not text:
+        return conditions.error("Invalid index 0 for (SIMPLE-ARRAY CHARACTER (0)): the empty string has no Lisp name.")
+    parts = [text[0]]
+    for before, character in zip(text, text[1:]):
+        if character.isupper() and not before.isupper() and before.isalnum():
+            parts.append("-")
+        parts.append(character)
+    return intern("".join(parts).upper(), _package(package))
+
+
+def rosify_lisp_name(symbol):
+    """``HELLO-WORLD`` → ``"HelloWorld"``."""
+    return "".join(part.capitalize() for part in symbol_name(symbol).split("-"))
+
+
+def lispify_ros_underscore_name(string, package=None):
+    """``"foo_bar"`` → ``FOO-BAR``."""
+    return intern(str(string).replace("_", "-").upper(), _package(package))
+
+
+def rosify_underscores_lisp_name(symbol):
+    """``FOO-BAR`` → ``"foo_bar"``; a name with a small letter is taken as it is."""
+    name = string_designator(symbol)
+    return name if any(character.islower() for character in name) else name.replace("-", "_").lower()

@@ -1,0 +1,14 @@
+"""The ROS command-line tools: ``rosnode``, ``rostopic``, ``rosservice``, ``rosparam``, ``rosmsg``, ``rossrv``.
+
+They print what the originals print (roslisp.md 14.2), and work on the graph of this process, for a command typed at the prompt, or from
+another terminal on the session that serves there. Importing this package, and a command from another terminal, load no Lisp.
+
+Where the parts are:
+
+* `running`      a command from its words to its exit status, and the terminal it writes to
+* `words`        commands, options, usage; `definitions` and `filling` types, and data that fit them
+* `yaml_reading`, `yaml_writing`  values as they are typed and printed
+* `nodes`, `topics`, `watching`, `publishing`, `calling`, `parameters`, `types`  the commands
+* `reach`        what they ask of a graph; `here` the graph of this process, `there` the session of another terminal
+* `hosting`      programs that run in a session for a terminal elsewhere
+"""

@@ -1,0 +1,115 @@
+"""Programs that run in a session, with their terminals elsewhere: ``rosrun turtlesim draw_square`` from a second terminal.
+
+All nodes of a session live in its process. So ``rosrun`` asks the session to start the program there, prints the lines of its log, which
+come on ``/cramhy/program_log``, and ends it with Ctrl-C. A terminal that is killed cannot ask for that: what a client has started ends
+with its connection at the latest. A `Host` offers that to clients of the session's server, on a hidden node; it starts nodes of packages
+that are part of cramhy, and evaluates nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from ..lisp import conditions
+from ..lisp.condition_types import Error
+from ..ros import graph
+from ..ros.messages import message_class_exact, service_type_exact
+from ..ros.services import Refusal, Service
+from ..ros.wire import ros_text
+from ..turtlesim.executables import PROGRAMS
+from ..turtlesim.executables import start as start_executable
+
+LOG = "/cramhy/program_log"
+SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode"}
+SHARED = ("turtlesim_node",)
+"""What runs once: who starts it a second time under its name looks on, as at a window."""
+
+
+class Starting(Service):
+    """The service that starts programs, which needs to know for whom."""
+
+    def respond(self, call):
+        return self.handler(call.request, call.caller)
+
+
+class Host:
+    """Offers to start, feed and end programs in the active graph."""
+
+    def __init__(self):
+        self.graph = graph.active()
+        self.node = self.graph.node("cramhy_programs", hidden=True)
+        self.line_type = message_class_exact("cramhy_msgs/ProgramLine")
+        self.log = self.node.advertise(LOG, self.line_type)
+        self._told = set()
+        for name, kind in SERVICES.items():
+            service_type = service_type_exact(f"cramhy_msgs/{kind}")
+            handler = self._handler(getattr(self, name), service_type.response)
+            made = Starting if name == "start_program" else Service
+            self.node.add_service(made(self.node, f"/cramhy/{name}", service_type, handler))
+
+    def close(self):
+        """Offer nothing more."""
+        self.node.shutdown()
+
+    @staticmethod
+    def _handler(function, response):
+        return lambda request, *caller: response(*function(*request.values(), *caller))
+
+    def start_program(self, package, executable, arguments, caller=None):
+        """(name of the node, whether it was there before, its log so far). The program ends with the caller, see `services.start_call`."""
+        if package != "turtlesim" or executable not in PROGRAMS:
+            raise Refusal(f"cramhy has no executable {package}/{executable}; turtlesim has {', '.join(sorted(PROGRAMS))}.")
+        there = self.graph.nodes.get("/turtlesim") if executable in SHARED and not arguments else None
+        if there is not None and hasattr(there, "program"):
+            self.tell(there.program)
+            return there.name, True, list(there.program.lines)
+
+        def fail(condition):
+            raise Refusal(condition.report())
+
+        program = conditions.handler_case([(Error, fail)], lambda: start_executable(executable, arguments))
+        self.tell(program)
+        if caller is not None:
+            caller.at_end.add(program.shutdown)
+            program.node.on_shutdown.append(lambda: caller.at_end.discard(program.shutdown))
+        return program.node.name, False, list(program.lines)
+
+    def tell(self, program):
+        """Send the lines of the program's log to the terminals from now on."""
+        if program in self._told:
+            return
+        self._told.add(program)
+        before = program.echo
+        name = program.node.name
+
+        def echo(line):
+            self.log.send(self.line_type(name, ros_text(line), None))
+            if callable(before):
+                before(line)
+            elif before is not None:
+                print(line, file=sys.stderr if before is True else before)
+
+        def ended():
+            self._told.discard(program)
+            if self.node.alive:
+                self.log.send(self.line_type(name, "", True))
+
+        program.echo = echo
+        program.node.on_shutdown.append(ended)
+
+    def feed_program(self, name, keys):
+        """Hand keys to a program; whether it still runs."""
+        program = getattr(self.graph.nodes.get(name), "program", None)
+        if program is None:
+            return (None,)
+        if not hasattr(program, "feed"):
+            raise Refusal(f"The program {name} reads no keys.")
+        return (True if program.feed(bytes(keys)) else None,)
+
+    def end_node(self, name):
+        """End a node."""
+        node = self.graph.nodes.get(name)
+        if node is None or node.hidden:
+            raise Refusal(f"There is no node {name}.")
+        node.shutdown()
+        return ()

@@ -1,0 +1,28 @@
+"""rosbridge v2 (JSON over WebSocket): how everything outside of the process speaks to the graph, and how a session joins a real ROS.
+
+Where the parts are:
+
+* `protocol`     one client's operations, done on the graph; `hub` what the clients share there; `rosapi` what they may ask
+* `parsing`, `encoding`, `outbox`, `raw`  what comes in, what goes out, how much may wait, the bytes of ROS 1
+* `no_answers`   what a caller hears instead of an answer, for both ends
+* `server`       sockets and pages in a thread beside the kernel; `connection` one client there; `http` before it is one
+* `attachment`   the other way round: a session as the client of a real ROS
+* `refusal`      why the server of a real ROS does not let a session in
+* `guard`        who is let in, and how much is allowed; `sessions` how a program finds the session of its user
+
+Importing this package imports none of them, and starting a session loads nothing of it (law 9).
+"""
+
+
+def start(session=None, port=None, pages=None, origins=(), limits=None):
+    """Let other programs of this user connect; the `server.Server`. See `server.serve`."""
+    from .server import serve
+
+    return serve(session, pages, port, origins, limits)
+
+
+def attach(url, patience=10.0):
+    """Join this session to a real ROS through its rosbridge server; the `attachment.Link`. See `attachment.join`."""
+    from .attachment import join
+
+    return join(url, patience)

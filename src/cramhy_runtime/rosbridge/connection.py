@@ -1,0 +1,244 @@
+"""One WebSocket: it is let in, read with measure, and written to as it reads. All of this is in the server's thread.
+
+A client that has shown its token gets a `protocol.Session` in the kernel. Reading stops while `Limits.waiting` of its operations wait
+there, and slows down when they come too fast. What waits to be sent is in its `Outbox`; the writer takes from it when the socket has
+room, and what stays too long there closes the connection, with the reason.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+
+from .guard import Bucket, query_of, same
+from .outbox import Outbox, reason_text
+from .parsing import Fragments, Malformed, operation, parse
+from .protocol import Session
+
+POLICY, TOO_BIG, TOO_MUCH = 1008, 1009, 1013
+
+
+class Gone(Exception):
+    """The client has closed the connection."""
+
+
+class Left(Exception):
+    """We close it: code and reason."""
+
+    def __init__(self, code, reason):
+        super().__init__(reason)
+        self.code = code
+
+
+class Connection:
+    """See the top of this file. ``session``: `protocol.Session`, made and used in the kernel only."""
+
+    def __init__(self, server, scope, receive, send):
+        self.server, self.scope, self.limits = server, scope, server.limits
+        self._receive, self._send = receive, send
+        self.outbox = Outbox(server.limits)
+        self.session = None
+        self.hidden = False
+        self.waiting = 0
+        self.fragments = Fragments(server.limits)
+        self.complaints = []
+        self._stirred = asyncio.Event()
+        self._room = asyncio.Event()
+        self._room.set()
+        self._ending = None
+        self._sending = False
+        self._tasks = ()
+
+    # ---------------------------------------------------------------------------------------------------------- letting in
+
+    async def run(self, refusal):
+        """From the request to the end of the connection."""
+        if (await self._receive())["type"] != "websocket.connect":
+            return
+        token = self.server.guard.token_of(self.scope) if refusal is None else None
+        if refusal is None and token is not None and not same(token, self.server.token):
+            refusal = 403, "This is not the token of this session, or no address of it."
+        if refusal is None and len(self.server.connections) >= self.limits.connections:
+            refusal = 503, f"{self.limits.connections} clients are connected; more are not allowed."
+        if refusal is None and token is None and self.server.strangers >= self.limits.strangers:
+            refusal = 503, "Too many connections have not shown a token yet."
+        if refusal is not None:
+            await self._refuse(*refusal)
+            return
+        offered = self.scope.get("subprotocols") or ()
+        await self._send({"type": "websocket.accept", "subprotocol": "rosbridge_v2" if "rosbridge_v2" in offered else None})
+        self.server.connections.add(self)
+        try:
+            if token is None:
+                await self._wait_for_token()
+            else:
+                self.hidden = query_of(self.scope).get("hidden") == ["1"]
+            await self._serve()
+        except Gone:
+            pass
+        except Left as left:
+            await self._close(left.code, str(left))
+        except OSError:
+            pass  # the connection broke while we wrote
+        finally:
+            self.server.connections.discard(self)
+            self._leave()
+
+    async def _refuse(self, status, text):
+        body = (text + "\n").encode()
+        await self._send({"type": "websocket.http.response.start", "status": status,
+                          "headers": [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(body)).encode())]})
+        await self._send({"type": "websocket.http.response.body", "body": body})
+
+    async def _wait_for_token(self):
+        self.server.strangers += 1
+        try:
+            text = await asyncio.wait_for(self._text(), self.limits.first_message)
+            message = parse(text, self.limits.depth)
+        except TimeoutError:
+            raise Left(POLICY, f"No token came within {self.limits.first_message:g} s. The first message must be "
+                               '{"op": "auth", "token": "..."}.') from None
+        except Malformed:
+            message = None
+        finally:
+            self.server.strangers -= 1
+        if not self.server.guard.lets_in(message):
+            raise Left(POLICY, 'The first message must be {"op": "auth", "token": "..."} with the token of this session.')
+        self.hidden = message.get("hidden") is True
+
+    # ------------------------------------------------------------------------------------------------------------- reading
+
+    async def _serve(self):
+        self.server.post(self._open)
+        reader, writer = asyncio.ensure_future(self._read()), asyncio.ensure_future(self._write())
+        self._tasks = reader, writer
+        try:
+            done, _ = await asyncio.wait(self._tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in self._tasks:
+                task.cancel()
+            await asyncio.gather(*self._tasks, return_exceptions=True)
+        for task in done:
+            if task.cancelled():
+                self._leave_if_asked()
+            task.result()
+
+    async def _text(self):
+        while True:
+            message = await self._receive()
+            kind = message["type"]
+            if kind == "websocket.receive":
+                text = message.get("text")
+                return message["bytes"] if text is None else text
+            if kind == "websocket.disconnect":
+                raise Gone
+
+    async def _read(self):
+        bucket = Bucket(self.limits.operations, self.limits.burst, time.monotonic())
+        while True:
+            text = await self._text()
+            found = self._understood(text)
+            if found is not None:
+                self.waiting += 1
+                self.server.post(lambda found=found: self._do(found))
+            pause = bucket.take(time.monotonic())
+            if pause > 0:
+                await asyncio.sleep(pause)
+            if self.waiting >= self.limits.waiting:
+                self._room.clear()
+                await self._room.wait()
+
+    def _understood(self, text):
+        """The operation in a message; ``None`` for a fragment that waits for others, and for what is none, which the client is told."""
+        try:
+            found = parse(text, self.limits.depth)
+            while found["op"] == "fragment":
+                whole = self.fragments.add(found)
+                if whole is None:
+                    return None
+                found = parse(whole, self.limits.depth)
+            return operation(found)
+        except Malformed as problem:
+            status = {"op": "status", "level": "error", "msg": str(problem)}
+            if isinstance(problem.id, str) and len(problem.id) <= self.limits.name:
+                status["id"] = problem.id
+            self.outbox.put(status)
+            self.stir()
+            self._complain()
+            return None
+
+    def _complain(self):
+        now = time.monotonic()
+        self.complaints = [moment for moment in self.complaints if now - moment < 60] + [now]
+        if len(self.complaints) > self.limits.complaints:
+            raise Left(POLICY, f"More than {self.limits.complaints} messages in a minute were none that rosbridge knows.")
+
+    # -------------------------------------------------------------------------------------------------------------- writing
+
+    def stir(self):
+        """There may be something to send, or a reason to close, which does not wait for a client that does not read."""
+        self._stirred.set()
+        if self._sending and (self.outbox.reason is not None or self._ending is not None):
+            self._tasks[1].cancel()
+
+    def _leave_if_asked(self):
+        if self.outbox.reason is not None:
+            raise Left(TOO_MUCH, self.outbox.reason)
+        if self._ending is not None:
+            raise Left(*self._ending)
+
+    async def _write(self):
+        outbox, send, stirred, loop = self.outbox, self._send, self._stirred, asyncio.get_running_loop()
+        while True:
+            stirred.clear()
+            self._leave_if_asked()
+            frames, pause = outbox.next(time.monotonic())
+            for frame in frames:
+                self._sending = True
+                await send({"type": "websocket.send", "bytes" if frame.__class__ is bytes else "text": frame})
+                self._sending = False
+            if not frames:
+                reminder = None if pause is None else loop.call_later(pause, stirred.set)
+                await stirred.wait()
+                if reminder is not None:
+                    reminder.cancel()
+
+    def end(self, code, reason):
+        """Close the connection soon."""
+        self._ending = code, reason
+        self.stir()
+
+    async def _close(self, code, reason):
+        farewell = {"type": "websocket.close", "code": code, "reason": reason_text(reason)}
+        try:
+            await asyncio.wait_for(self._send(farewell), self.limits.closing)
+        except (TimeoutError, OSError):
+            pass
+
+    # ---------------------------------------------------------------------------------------------------- in the kernel
+
+    def _open(self):
+        self.session = Session(self.server.hub, self.outbox, self._after, self.hidden)
+
+    def _do(self, found):
+        try:
+            if self.session is not None:
+                self.session.receive(found)
+        finally:
+            self.server.hand_out(self._done)
+
+    def _leave(self):
+        def leave():
+            if self.session is not None:
+                self.session.close()
+
+        self.server.post(leave)
+
+    def _done(self):
+        self.waiting -= 1
+        if self.waiting <= self.limits.waiting // 2:
+            self._room.set()
+
+    def _after(self, seconds, function):
+        """Have FUNCTION called in the kernel SECONDS of the wall from now."""
+        self.server.hand_out(lambda: self.server.company.loop.call_later(seconds, self.server.post, function))

@@ -1,0 +1,13 @@
+"""What a caller is told instead of an answer when the server of a service has none to give.
+
+rosbridge has one text for whatever went wrong. Two of them say something that the tools of ROS tell their users in words of their own, so
+`protocol` writes these and ``ros_tools`` recognises them; the text is all that both share.
+"""
+
+WITHOUT_REASON = "The service {} refused, without a reason."
+SERVER_GONE = "The server of the service {} went away before it answered."
+
+
+def reason(call):
+    """The text for a `ros.services.Call` that was lost or refused."""
+    return SERVER_GONE.format(call.service.name) if call.lost else call.failure or WITHOUT_REASON.format(call.service.name)

@@ -1,0 +1,135 @@
+"""What waits to be sent to one client: bounded, in order, and slowed down where the client asked for it.
+
+The simulation never waits for a client. What is promised (answers, and each message of a topic that is subscribed to without
+conditions) waits here up to a limit; who reads too slowly for that is closed, with the reason. What was asked for *with* conditions is
+not promised to be complete: ``queue_length`` N keeps the newest N messages of a topic, ``throttle_rate`` MS sends one in so many
+milliseconds, and always the newest in the end (rosbridge's own server forgets that one when there is no queue).
+
+No input and no output happens here; times are given. All of it lives in the server's thread.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from heapq import heappop, heappush
+
+from .encoding import fragments_of, text_of
+
+REASON_BYTES = 120  # what fits into the frame that closes a WebSocket
+
+
+class Feed:
+    """One client's messages of one topic."""
+
+    def __init__(self, outbox, topic):
+        self.outbox, self.topic = outbox, topic
+        self.queue = deque()
+        self.promised = True
+        self.pause = 0.0
+        self.compression, self.fragment_size = "none", None
+        self.last = float("-inf")
+        self.listed = False
+        self.closed = False
+
+    def configure(self, throttle_rate=0, queue_length=0, compression="none", fragment_size=None):
+        """throttle_rate: milliseconds between two messages. queue_length: the most that wait, 0 for all (with a throttle: one)."""
+        self.pause = throttle_rate / 1000
+        self.promised = not (throttle_rate or queue_length)
+        keep = None if self.promised else queue_length or 1
+        if keep != self.queue.maxlen:
+            waiting, self.queue = self.queue, deque(maxlen=keep)
+            for parcel in waiting:
+                self.queue.append(parcel)
+        self.compression, self.fragment_size = compression, fragment_size
+
+    def offer(self, parcel):
+        """A new message; what has no room falls out at the other end."""
+        if self.closed:
+            return
+        self.queue.append(parcel)
+        outbox = self.outbox
+        if not self.listed:
+            self.listed = True
+            outbox.items.append(self)
+        if self.promised and len(self.queue) > outbox.limits.messages:
+            outbox.overflow(f"More than {outbox.limits.messages} messages of {self.topic} wait for you. Subscribe with throttle_rate or "
+                            "queue_length.")
+
+    def close(self):
+        """Nothing more comes."""
+        self.closed = True
+        self.queue.clear()
+
+
+class Outbox:
+    """All that one client gets. ``reason``: why the client must be closed, or ``None``."""
+
+    def __init__(self, limits):
+        self.limits = limits
+        self.items = deque()
+        self.later = []
+        self.bytes = 0
+        self.reason = None
+        self._fragments = self._order = 0
+
+    def feed(self, topic):
+        return Feed(self, topic)
+
+    def put(self, operation, compression="none", fragment_size=None):
+        """An operation that must arrive."""
+        text = text_of(operation)
+        if compression == "png":
+            from .encoding import png_of
+
+            text = png_of(text)
+        elif compression != "none":
+            from .encoding import cbor_of
+
+            text, fragment_size = cbor_of(operation), None
+        for frame in self._frames(text, fragment_size):
+            self.items.append(frame)
+            self.bytes += len(frame)
+        if self.bytes > self.limits.buffer:
+            self.overflow(f"More than {self.limits.buffer >> 20} MB of answers wait for you.")
+
+    def overflow(self, reason):
+        """Give the client up: nothing that waits is worth keeping."""
+        if self.reason is None:
+            self.reason = reason
+        self.items.clear()
+
+    def next(self, now):
+        """What to send at the time NOW: (frames, 0), or (no frames, seconds until there may be some, ``None`` for nobody knows)."""
+        later, items = self.later, self.items
+        while later and later[0][0] <= now:
+            items.append(heappop(later)[2])
+        while items:
+            item = items.popleft()
+            if item.__class__ is not Feed:
+                self.bytes -= len(item)
+                return [item], 0.0
+            if not item.queue:
+                item.listed = False
+            elif item.last + item.pause > now:
+                self._order += 1
+                heappush(later, (item.last + item.pause, self._order, item))
+            else:
+                parcel = item.queue.popleft()
+                item.last = now
+                if item.queue:
+                    items.append(item)
+                else:
+                    item.listed = False
+                return self._frames(parcel.form(item.compression), item.fragment_size), 0.0
+        return [], later[0][0] - now if later else None
+
+    def _frames(self, form, size):
+        if size is None or form.__class__ is bytes or len(form) <= size:
+            return [form]
+        self._fragments += 1
+        return fragments_of(form, size, f"fragment:{self._fragments}")
+
+
+def reason_text(reason):
+    """REASON, cut to what a closing frame can hold."""
+    return reason.encode()[:REASON_BYTES].decode("utf-8", "ignore")

@@ -1,0 +1,66 @@
+"""A message as the bytes that ROS 1 puts on its wire, for clients that ask for ``cbor-raw``, as Foxglove does.
+
+Little-endian numbers one after the other; strings and arrays of no fixed length begin with their length in 32 bits; a time is two
+integers. Source: wiki.ros.org/msg, "Serialization".
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+
+from ..ros.wire import NONFINITE, as_float
+
+_FORMATS = {"bool": "B", "int8": "b", "byte": "b", "uint8": "B", "char": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I",
+            "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
+_LENGTH = struct.Struct("<I")
+
+
+def serialize(message):
+    """The bytes of MESSAGE, as the graph delivers it."""
+    parts = []
+    _write(message, parts.append)
+    return b"".join(parts)
+
+
+def _write(message, put):
+    for field in message.fields:
+        value = getattr(message, field.attribute)
+        if field.is_array:
+            value = value or ()
+            if not field.length:
+                put(_LENGTH.pack(len(value)))
+            if field.base in _FORMATS:
+                put(struct.pack(f"<{len(value)}{_FORMATS[field.base]}", *(_number(field.base, each) for each in value)))
+            else:
+                for each in value:
+                    _write_one(field.base, each, put)
+        else:
+            _write_one(field.base, value, put)
+
+
+def _write_one(base, value, put):
+    form = _FORMATS.get(base)
+    if form is not None:
+        put(struct.pack("<" + form, _number(base, value)))
+    elif base == "string":
+        data = str(value or "").encode("latin-1", "replace")
+        put(_LENGTH.pack(len(data)) + data)
+    elif base in ("time", "duration"):
+        seconds = math.floor(value)
+        nanoseconds = round((float(value) - seconds) * 1e9)
+        if nanoseconds == 10**9:
+            seconds, nanoseconds = seconds + 1, 0
+        put(struct.pack("<II" if base == "time" else "<ii", seconds, nanoseconds))
+    else:
+        _write(value, put)
+
+
+def _number(base, value):
+    if base == "bool":
+        return value is not None and value is not False
+    if base in ("float32", "float64"):
+        return as_float(value) if value in NONFINITE or value.__class__ is not float else value
+    if base == "byte":
+        return value - 256 if value > 127 else value
+    return value

@@ -1,0 +1,262 @@
+"""The server: a socket on loopback, WebSockets that speak rosbridge, and the files of a page, in a thread beside the kernel.
+
+Three parties: the kernel, which has the graph; the thread of the server (`kernel.company`), which has the sockets; and the clients. What a
+client sends is parsed in the thread and posted to the kernel, a limited number at a time: who sends faster than the plan takes
+notice is not read meanwhile. What the graph has for clients is handed to the thread in a list, and the kernel never looks back.
+While the plan computes, the thread has a small share of the processor, so that no flood slows it down (see `company`).
+
+In wall time messages are read while the prompt waits, and the turtle goes on. In virtual time the clock stands still at the prompt, but
+messages are read and answered; while somebody waits for an answer, plan time passes as far as the answer needs (see `protocol`).
+
+The application is plain ASGI, with one guard for pages and WebSockets and nothing to route, so uvicorn and websockets are enough: there is
+no starlette in between. Their versions in pyproject.toml are the first with uvicorn's ``websockets-sansio`` and websockets' ``proxy``.
+
+The server is a task of the kernel's, too: it is closed when that is, with all its clients (law 1).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import time
+from collections import deque
+from http import HTTPStatus
+from importlib import metadata
+
+from .. import kernel
+from ..kernel.company import Company
+from ..ros import graph
+from . import sessions
+from .connection import Connection
+from .guard import HEADERS, Guard, Limits, new_token
+from .hub import Hub
+from .rosapi import RosApi
+
+HOST = "127.0.0.1"
+BACKLOG = 64  # connections that the system keeps until the server takes them
+LONGEST_STOP = 5.0  # s that the thread gets to end
+
+
+class ServerError(Exception):
+    """A server that cannot start; the text says why and what to do."""
+
+
+class Server:
+    """A running server; made by `serve`. port, token: where it listens, and what clients must show. url: of its page, with the token
+    in the fragment. address: for clients of rosbridge, with the token in the path."""
+
+    def __init__(self, here, pages, port, origins, limits):
+        self.graph, self.kernel, self.limits = here, here.kernel, limits
+        self.pages = pages or {}
+        self.token = new_token()
+        self.socket = _listen(port)
+        self.port = self.socket.getsockname()[1]
+        self.file = self._announce()  # before anything else is there that would have to be taken back
+        self.url = f"http://{HOST}:{self.port}/#{self.token}"
+        self.address = f"ws://{HOST}:{self.port}/{self.token}"
+        self.guard = Guard(self.token, self.port, origins)
+        self.hub = Hub(here, self.hand_out, limits)
+        self.rosapi = RosApi(here)
+        self.connections = set()
+        self.strangers = 0
+        self.closed = False
+        self._out = deque()
+        self._called = False
+        self._uvicorn = None
+        self.kernel.count_outside(1)  # with the baton, so that the next prompt knows; `outside_source` is for other threads
+        self.company = Company(self._main, "cramhy rosbridge", self.kernel)
+        self.task = self.kernel.spawn(self._stay, name=f"rosbridge server on port {self.port}", parent=self.kernel.main)
+
+    def _announce(self):
+        try:
+            return sessions.announce(self.port, self.token, time.time_ns())
+        except (sessions.Unsafe, OSError) as problem:
+            self.socket.close()
+            raise ServerError(f"The server cannot be announced to the other programs of this user. {problem}") from None
+
+    def _stay(self):
+        try:
+            while True:
+                kernel.park("clients of rosbridge")
+        finally:
+            self.close()
+
+    def close(self):
+        """End the server and its clients; what they had on the graph goes. To be called with the baton. Does nothing a second time."""
+        if self.closed:
+            return
+        self.closed = True
+        self.file.unlink(missing_ok=True)
+        self.hub.close()
+        self.rosapi.close()
+        self.company.share.forgiven = True
+        self.company.call(self._stop_soon)
+        self.company.join(LONGEST_STOP)
+        self.socket.close()
+        self.kernel.count_outside(-1)
+        if self.task is not kernel.current():
+            self.task.cancel("the server was closed")
+
+    stop = close
+
+    # ------------------------------------------------------------------------------------------------- between the two sides
+
+    def hand_out(self, function):
+        """Have FUNCTION called in the server's thread, after what was handed out before."""
+        self._out.append(function)
+        if not self._called:
+            self._called = True
+            self.company.call(self._take)
+
+    def _take(self):
+        self._called = False
+        out = self._out
+        while out:
+            try:
+                out.popleft()()
+            except Exception as problem:
+                self.report(problem)
+        for connection in self.connections:
+            connection.stir()
+
+    def post(self, function):
+        """Have FUNCTION called in the kernel, unless that has ended; what it costs the kernel is the server's to pay."""
+        def run():
+            if self.closed:
+                return
+            began = time.thread_time()
+            try:
+                function()
+            finally:
+                self.company.share.charge(time.thread_time() - began)
+
+        self.kernel.post(run)
+
+    def report(self, problem):
+        """A defect of the server's own, from its thread: the user is told, and the session goes on."""
+        self.kernel.post(lambda: kernel.unhandled(kernel.current(), problem))
+
+    # ------------------------------------------------------------------------------------------------------------ the thread
+
+    async def _main(self):
+        import uvicorn
+
+        from .http import make_protocol
+
+        config = uvicorn.Config(
+            self.application, interface="asgi3", loop="asyncio", http=make_protocol(self.limits), ws="websockets-sansio", lifespan="off",
+            log_config=None, log_level=100, access_log=False, server_header=False, date_header=False, proxy_headers=False, backlog=BACKLOG,
+            ws_max_size=self.limits.message, ws_per_message_deflate=False, ws_ping_interval=20.0, ws_ping_timeout=20.0,
+            timeout_keep_alive=5, timeout_graceful_shutdown=1, h11_max_incomplete_event_size=16384,
+        )  # fmt: skip
+        self._uvicorn = uvicorn.Server(config)
+        if self.closed:
+            return
+        await self._uvicorn.serve([self.socket])
+
+    def _stop_soon(self):
+        for connection in list(self.connections):
+            connection.end(1001, "The session has ended.")
+        if self._uvicorn is not None:
+            self._uvicorn.should_exit = True
+
+    async def application(self, scope, receive, send):
+        """The ASGI application."""
+        refusal = self.guard.refusal(scope)
+        if scope["type"] == "websocket":
+            connection = Connection(self, scope, receive, send)
+            try:
+                await connection.run(refusal)
+            except asyncio.CancelledError:
+                raise
+            except Exception as problem:
+                self.report(problem)
+        elif scope["type"] == "http":
+            status, kind, body, headers = self._page(scope) if refusal is None else (refusal[0], "text/plain", refusal[1] + "\n", {})
+            await _respond(scope, send, status, kind, body, headers)
+
+    def _page(self, scope):
+        path = scope["path"]
+        found = self.pages(path) if callable(self.pages) else self.pages.get(path)
+        if found is None:
+            if path == "/" and not self.pages:
+                return 200, "text/plain", "A session of cramhy. It speaks rosbridge v2 over WebSockets.\n", {}
+            return 404, "text/plain", "There is nothing here.\n", {}
+        body, kind, *headers = found
+        return 200, kind, body() if callable(body) else body, headers[0] if headers else {}
+
+
+async def _respond(scope, send, status, kind, body, headers):
+    data = body.encode() if isinstance(body, str) else body
+    kind += "; charset=utf-8" if kind.startswith("text/") or kind.endswith(("javascript", "json")) else ""
+    fields = {"content-type": kind, "content-length": str(len(data)), **HEADERS, **{name.lower(): value for name, value in headers.items()}}
+    if status == HTTPStatus.METHOD_NOT_ALLOWED:
+        fields["allow"] = "GET, HEAD"
+    if status >= 400:
+        fields["connection"] = "close"
+    lines = [(name.encode("latin-1"), value.encode("latin-1")) for name, value in fields.items()]
+    await send({"type": "http.response.start", "status": status, "headers": lines})
+    await send({"type": "http.response.body", "body": b"" if scope["method"] == "HEAD" else data})
+
+
+def _listen(port):
+    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        if port:
+            found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        found.bind((HOST, port or 0))
+        found.listen(BACKLOG)
+    except (OSError, OverflowError) as problem:
+        found.close()
+        why = getattr(problem, "strerror", None) or problem
+        raise ServerError(f"The server cannot listen on port {port} of {HOST}: {why}. "
+                          "Choose another port, or none for a free one.") from None
+    found.setblocking(False)
+    return found
+
+
+def need_extra():
+    """Raise `ServerError` when what the server is made of is not installed."""
+    missing = []
+    for name in ("uvicorn", "websockets"):
+        try:
+            metadata.version(name)
+        except metadata.PackageNotFoundError:
+            missing.append(name)
+    if missing:
+        raise ServerError(f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed: "
+                          "pip install 'cramhy[web]'")
+    # Here and not in the server's thread, which would have to save up for them while a plan computes.
+    import uvicorn.lifespan.off  # noqa: F401
+    import uvicorn.protocols.http.h11_impl  # noqa: F401
+    import uvicorn.protocols.websockets.websockets_sansio_impl  # noqa: F401
+
+
+_servers = {}
+
+
+def serve(here=None, pages=None, port=None, origins=(), limits=None):
+    """Start a server for the active kernel, or for the kernel or session HERE; returns the `Server`.
+
+    pages: static files: a mapping, or a function, from a path ("/", "/view.js") to ``(body, media type)`` or
+    ``(body, media type, headers)``, where body is bytes, text, or a function that gives one; it is called in the server's thread. port:
+    where to listen on loopback, ``None`` or 0 for a free one. origins: pages of other servers that may connect ("https://app.foxglove.dev").
+    limits: `guard.Limits`. Raises `ServerError`. To be called with the baton.
+    """
+    need_extra()
+    active = kernel.active()
+    if active is None or here not in (None, active) and getattr(here, "kernel", active) is not active:
+        raise ServerError("A server belongs to the kernel that is active, and this is another one, or none. Call kernel.start() or make a "
+                          "session first.")
+    running = _servers.get(active)
+    if running is not None and not running.closed:
+        raise ServerError(f"This session has a server already, on port {running.port}. Close it first, or use it.")
+    _servers.clear()  # those of kernels before are closed
+    server = _servers[active] = Server(graph.active(), pages, port, tuple(origins), limits or Limits())
+    return server
+
+
+def running():
+    """The server of the active kernel, or ``None``."""
+    found = _servers.get(kernel.active())
+    return None if found is None or found.closed else found

@@ -1,0 +1,20 @@
+"""Names of frames. tf takes ``/map`` and ``map`` for the same frame. Source: cl-transforms.md 5."""
+
+from __future__ import annotations
+
+from ..lisp.conditions import type_error
+from ..lisp.data import LispString
+
+
+def unslash_frame(frame):
+    """``frame``, a string, without slashes and blanks at its ends; NIL stays NIL."""
+    if frame is None:
+        return None
+    if not isinstance(frame, (str, LispString)):
+        return type_error(frame, "STRING", "\nwhen binding CL-TRANSFORMS-STAMPED::FRAME")
+    return str(frame).strip("/ ")
+
+
+def resolve_frame(prefix, frame_name):
+    """``frame_name`` below ``prefix``: ``"pre/map"``; without a prefix (NIL) ``"/map"``."""
+    return f"{unslash_frame(prefix) or ''}/{unslash_frame(frame_name)}"

@@ -1,0 +1,90 @@
+"""``draw_square``: a turtle that drives squares for ever, as well as it can.
+
+It looks at the pose every 16 ms and is in one of four states: forward until the goal is near, standing until the turtle stands,
+turning until the goal's heading is near, standing again. Near is a tenth of a metre, or a hundredth of a radian by plain subtraction, and
+the command goes out first and is judged afterwards, so the sides are 1.9 m long and the square turns slowly to the right.
+`DrawSquare` is the program. Source: turtlesim.md 11.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .. import kernel
+from ..ros import rosout, wire
+from ..ros.messages import message_class_exact
+from ..ros.services import start_call
+from .roscpp import Program
+
+PERIOD = 0.016
+PI = 3.141592
+SIDE, SPEED, TURN = 2.0, 1.0, 0.4
+FORWARD, STOP_FORWARD, TURNING, STOP_TURN = "forward", "stop forward", "turning", "stop turn"
+
+
+class DrawSquare(Program):
+    """The node ``/draw_square``: resets the simulator and drives ``turtle1`` of its namespace. ``state`` is one of the four."""
+
+    name = "draw_square"
+
+    def __init__(self, name=None, namespace="/", arguments=(), echo=None):
+        super().__init__(name, namespace, arguments, echo=echo)
+        node = self.node
+        self.twist = message_class_exact("geometry_msgs/Twist")
+        self.pose = self.goal = None
+        self.state = FORWARD
+        node.subscribe("turtle1/pose", message_class_exact("turtlesim/Pose"), self._see, queue=1)
+        self.publication = node.advertise("turtle1/cmd_vel", self.twist)
+        self._reset()
+        timer = kernel.call_every(PERIOD, self.tick)
+        node.on_shutdown.append(timer.cancel)
+
+    def _reset(self):
+        reset = self.graph.services.get(self.node.resolve("reset"))
+        if reset is not None:  # without a simulator the original, too, goes on and waits for a pose
+            start_call(reset, reset.type.request(), lambda call: None)
+
+    def _see(self, pose):
+        self.pose = tuple(wire.as_float(value) for value in pose.values())
+
+    def tick(self):
+        """What the timer does: one command, and perhaps the next state."""
+        if self.pose is None:
+            return
+        x, y, heading, speed, turn = self.pose
+        if self.goal is None:
+            self._aim(x + math.cos(heading) * SIDE, y + math.sin(heading) * SIDE, heading)
+        stands = turn < 0.0001 and speed < 0.0001
+        if self.state == FORWARD:
+            self._drive(SPEED, 0.0, STOP_FORWARD)
+        elif self.state == TURNING:
+            self._drive(0.0, TURN, STOP_TURN)
+        else:
+            self._command(0.0, 0.0)
+            if stands:
+                self.log(rosout.INFO, "Reached goal")
+                if self.state == STOP_FORWARD:
+                    self.state = TURNING
+                    goal = math.fmod(heading + PI / 2.0, 2.0 * PI)
+                    self._aim(x, y, goal - 2.0 * PI if goal >= PI else goal)
+                else:
+                    self.state = FORWARD
+                    self._aim(x + math.cos(heading) * SIDE, y + math.sin(heading) * SIDE, heading)
+
+    def _drive(self, speed, turn, when_there):
+        x, y, heading = self.pose[:3]
+        goal_x, goal_y, goal_heading = self.goal
+        if abs(x - goal_x) < 0.1 and abs(y - goal_y) < 0.1 and abs(heading - goal_heading) < 0.01:
+            self.state = when_there
+            self._command(0.0, 0.0)
+        else:
+            self._command(speed, turn)
+
+    def _aim(self, x, y, heading):
+        self.goal = (x, y, heading)
+        self.log(rosout.INFO, f"New goal [{x:f} {y:f}, {heading:f}]")
+
+    def _command(self, speed, turn):
+        message = self.twist()
+        message.linear.x, message.angular.z = speed, turn
+        self.publication.publish(message)

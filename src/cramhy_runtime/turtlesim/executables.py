@@ -1,0 +1,28 @@
+"""The executables of the package, as ``rosrun turtlesim …`` and launch files start them.
+
+`start` makes a node in the active graph and returns the running `Program`; it must be called in the kernel (from outside with
+``kernel.post``). The one who asked prints the log (``echo``) and ends it with `Program.shutdown`. Source: turtlesim.md 1.
+"""
+
+from __future__ import annotations
+
+from ..lisp import conditions
+from ..lisp.condition_types import SimpleError
+from .draw_square import DrawSquare
+from .mimic import Mimic
+from .node import Turtlesim
+from .teleop import Teleop
+
+PROGRAMS = {"turtlesim_node": Turtlesim, "turtle_teleop_key": Teleop, "draw_square": DrawSquare, "mimic": Mimic}
+
+
+def start(executable, arguments=(), echo=None):
+    """Start an executable of the package with the words of its command line (``__name:=x``, ``__ns:=/y``, ``a:=b``, ``_p:=v``).
+
+    echo: where its log goes, see `Program`. Result: the `Program`. An unknown executable is a simple error.
+    """
+    program = PROGRAMS.get(executable)
+    if program is None:
+        conditions.error(SimpleError(
+            "~a", f"The package turtlesim has no executable {executable}. Executables: {' '.join(sorted(PROGRAMS))}."))
+    return program(arguments=arguments, echo=echo)

@@ -1,0 +1,125 @@
+"""What happened on the paper: the way of each turtle and every stroke with its tick, for a picture that moves (`replay`).
+
+A `History` observes a simulator (`Turtlesim.observe`) from the moment it is made. What stands still takes no room, a tick of driving
+some two hundred bytes. It is bounded: beyond `MOST_SAMPLES` the older half is forgotten, but for the lines that lay on the paper then.
+Ticks are counted from the beginning of the history, and a tick stands for 16 ms of plan time, whatever the clock said.
+"""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_left
+
+from .ink import Ink
+from .measures import EXTENT
+
+MOST_SAMPLES = 250_000
+"""Poses and strokes that are kept: half an hour of one turtle that draws all the time, thirty megabytes."""
+_LOOK = 4096  # ticks between two looks at how many they are
+
+
+class Track:
+    """The way of one turtle from the tick when it came to the tick when it went (``end`` is ``None`` while it is there)."""
+
+    __slots__ = ("turtle", "name", "number", "begin", "end", "ticks", "poses", "last")
+
+    def __init__(self, turtle, tick):
+        self.turtle, self.name, self.number = turtle, turtle.name, turtle.number
+        self.begin, self.end = tick, None
+        self.ticks, self.poses = array("I"), array("d")
+        self.last = None
+
+    def see(self, tick):
+        """Note where the turtle is, if that is news; before a move out of rest, also that it had not moved until then."""
+        turtle = self.turtle
+        pose = (turtle.x, turtle.y, turtle.heading)
+        if pose == self.last or (turtle.x + turtle.y + turtle.heading) * 0.0 != 0.0:  # one that is nowhere stays where it was seen last
+            return
+        if self.last is not None and self.ticks[-1] < tick - 1:
+            self.ticks.append(tick - 1)
+            self.poses.extend(self.last)
+        self.ticks.append(tick)
+        self.poses.extend(pose)
+        self.last = pose
+
+    def samples(self):
+        """[(tick, x, y, heading), ...], metres on the screen and radians; between two samples the turtle moved evenly."""
+        values = self.poses
+        return [(tick, *values[3 * index : 3 * index + 3]) for index, tick in enumerate(self.ticks)]
+
+    def forget(self, cut):
+        """Keep only what was from tick ``cut`` on, and count ticks from there."""
+        first = max(bisect_left(self.ticks, cut + 1) - 1, 0)  # the last sample before says where the turtle stood
+        self.ticks = array("I", (max(tick - cut, 0) for tick in self.ticks[first:]))
+        self.poses = self.poses[3 * first :]
+        self.begin = max(self.begin - cut, 0)
+        self.end = None if self.end is None else self.end - cut
+
+
+class History:
+    """``tracks`` are the turtles' ways, ``strokes`` and ``clears`` what happened to the paper, ``ticks`` how many have passed."""
+
+    def __init__(self, simulator):
+        self.simulator = simulator
+        self.ticks = 0
+        self.tracks = []
+        self.there = {}
+        self._inhabitants = None
+        self.clears = [(0, simulator.canvas.background)]  # (tick, background)
+        self._cleared = simulator.canvas.clears
+        self.strokes = [(0, *stroke) for stroke in simulator.canvas.strokes()]  # (tick, x1, y1, x2, y2, colour, width), y up
+        self._note_turtles()
+        simulator.observe(self.see)
+
+    def stop(self):
+        """Look on no more."""
+        self.simulator.unobserve(self.see)
+
+    def see(self, simulator, strokes):
+        """One tick (the callback of `Turtlesim.observe`)."""
+        self.ticks = tick = self.ticks + 1
+        canvas = simulator.canvas
+        if canvas.clears != self._cleared:
+            self._cleared = canvas.clears
+            self.clears.append((tick, canvas.background))
+        if simulator.inhabitants is not self._inhabitants:
+            self._note_turtles()
+        for track in self.there.values():
+            track.see(tick)
+        if strokes:
+            self.strokes.extend([(tick, *stroke) for stroke in strokes])
+        if not tick % _LOOK and sum(len(track.ticks) for track in self.tracks) + len(self.strokes) > MOST_SAMPLES:
+            self._shorten()
+
+    def eras(self):
+        """[(tick, background, strokes), ...]: each clear, or the beginning, with what was drawn until the next."""
+        begins = [bisect_left(self.strokes, (tick,)) for tick, _ in self.clears] + [len(self.strokes)]
+        return [(tick, background, self.strokes[begins[index] : begins[index + 1]])
+                for index, (tick, background) in enumerate(self.clears)]
+
+    def _shorten(self):
+        """Forget the older half, but for what lay on the paper in its middle."""
+        cut = self.ticks // 2
+        paper = Ink()
+        begin = max(index for index, (tick, _) in enumerate(self.clears) if tick <= cut)
+        first = bisect_left(self.strokes, (self.clears[begin][0],))
+        last = bisect_left(self.strokes, (cut + 1,))
+        paper.take([(x2, EXTENT - y2, x1, EXTENT - y1, colour, width) for _, x1, y1, x2, y2, colour, width in self.strokes[first:last]])
+        self.strokes = [(0, *stroke) for stroke in paper.strokes()[-MOST_SAMPLES // 4 :]] + [
+            (tick - cut, *stroke) for tick, *stroke in self.strokes[last:]]
+        self.clears = [(max(tick - cut, 0), background) for tick, background in self.clears[begin:]]
+        self.tracks = [track for track in self.tracks if track.end is None or track.end > cut]
+        for track in self.tracks:
+            track.forget(cut)
+        self.ticks -= cut
+
+    def _note_turtles(self):
+        self._inhabitants = self.simulator.inhabitants
+        now = {id(inhabitant): inhabitant.turtle for inhabitant in self._inhabitants.values()}
+        for key in [key for key in self.there if key not in now]:
+            self.there.pop(key).end = self.ticks
+        for key, turtle in now.items():
+            if key not in self.there:
+                track = self.there[key] = Track(turtle, self.ticks)
+                track.see(self.ticks)
+                self.tracks.append(track)

@@ -1,0 +1,74 @@
+"""Which kind of picture a file gets, by its ending: a still one of the window as it is, or a replay of what has happened.
+
+=================  ==========================================================================
+``x.png``          the window as it is, 500 by 500 pixels
+``x.svg``          the same as vectors
+``x.gif``          a replay in pixels
+``x.replay.svg``   a replay as vectors, for browsers
+=================  ==========================================================================
+
+A replay needs a history that was kept from the beginning: `keep_history`, which costs five microseconds per tick of driving, a quarter of
+what a tick may cost, and is therefore done only when asked for.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..lisp import conditions
+from ..lisp.condition_types import SimpleError, shown
+from ..lisp.numbers.arithmetic import is_real
+from . import replay, stills
+from .node import each_simulator, needed_simulator
+
+_REPLAYS = {".gif": replay.write_gif, ".replay.svg": replay.write_svg}
+_STILLS = {".png": stills.still_png, ".svg": stills.still_svg}
+
+
+def check(path):
+    """Complain of a file name that says no kind of picture: a simple error. To be called before what the picture shall show."""
+    path = str(path)
+    if not path.lower().endswith((*_REPLAYS, *_STILLS)):
+        conditions.error(SimpleError(
+            "~a", f"What kind of picture is {path} to be? A name ends in .png or .svg (the window as it is), in .gif or .replay.svg (a "
+                  "replay)."))
+
+
+def is_replay(path):
+    """Whether the file's name asks for a replay, and so for `keep_history` before the plan runs."""
+    return str(path).lower().endswith(tuple(_REPLAYS))
+
+
+def keep_history():
+    """Remember from now on what happens, in every simulator that runs or starts in the active graph."""
+    each_simulator(lambda simulator: simulator.keep_history())
+
+
+def save(path, simulator=None, speed=None):
+    """Write a picture to ``path``; its ending says which kind (see the module).
+
+    simulator: a `Turtlesim`; the running one when it is left out. speed: of a replay, seconds of plan time per second; ``None``: 1, or as
+    fast as it takes to be over in 30 seconds. Errors, all simple ones: an ending that says nothing, no simulator, no history, a speed that
+    is no number above zero, a folder that cannot be written to.
+    """
+    check(path)
+    if speed is not None and not (is_real(speed) and 0 < float(speed) < math.inf):
+        conditions.error(SimpleError(
+            "~a", f"The speed of a replay is a number above zero, such as 2 for twice as fast, but not {shown(speed)}."))
+    path = str(path)
+    simulator = simulator or needed_simulator()
+    try:
+        for ending, write in _REPLAYS.items():
+            if path.lower().endswith(ending):
+                return write(simulator.history or _no_history(path), path, speed)
+        for ending, write in _STILLS.items():
+            if path.lower().endswith(ending):
+                return write(simulator, path)
+    except OSError as problem:
+        conditions.error(SimpleError("~a", f"The picture {path} cannot be written: {problem.strerror or problem}."))
+
+
+def _no_history(path):
+    return conditions.error(SimpleError(
+        "~a", f"There is no history for the replay {path}, since nobody asked to keep one. Type (turtlesim:record), let the turtle do it "
+              "again, and save the replay then."))

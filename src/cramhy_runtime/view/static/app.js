@@ -1,0 +1,141 @@
+// The page: it puts the session and the views together, and gives each its turn. The world is drawn in every frame in which it moves;
+// of the panels at most one, so that none of them costs the turtle a frame. What goes wrong is said at the foot of the page.
+
+import { STATES } from "./connection.js";
+import { byId, setText } from "./dom.js";
+import { Drive } from "./drive.js";
+import { FluentsView } from "./fluents.js";
+import { clock } from "./format.js";
+import { LogView } from "./log.js";
+import { ModulesView } from "./modules.js";
+import { PaceView } from "./pace.js";
+import { Pictures } from "./paper.js";
+import { Session } from "./session.js";
+import { StatusView } from "./status.js";
+import { offerThemes } from "./theme.js";
+import { Timeline } from "./timeline.js";
+import { TreeView } from "./tree.js";
+import { WorldView } from "./world.js";
+
+const PANEL_PAUSE = 100; // ms between two looks at a panel
+const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? location.hash.slice(1);
+const STANDS = "Virtual time stands still while the prompt waits. Step lets some of it pass.";
+
+const doing = ({ recording, paused, busy }) => recording || (paused ? "paused" : busy ? "a form runs" : "the prompt waits");
+
+async function start() {
+  offerThemes(byId("theme"));
+  const pictures = new Pictures(await (await fetch("shapes.json")).json());
+  const past = { stamp: null, state: null }; // the moment of the past that is shown
+  const status = new StatusView({ pill: byId("connection"), banner: byId("banner"), notice: byId("notice") });
+  const failed = (error) => status.failed(error);
+  const session = new Session({
+    url: `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, token, heard, anew, older, rosout, failed,
+    connection: (...news) => status.connection(...news),
+  });
+  const world = new WorldView({
+    canvas: byId("paper"), empty: byId("empty"), turtles: byId("turtles"), pose: byId("pose"), strokes: session.strokes, pictures,
+  });
+  const tree = new TreeView({ tree: byId("tasks"), count: byId("tasks-count") });
+  const fluents = new FluentsView({ list: byId("fluents"), count: byId("fluents-count") });
+  const modules = new ModulesView({ list: byId("modules") });
+  const log = new LogView({ list: byId("log"), level: byId("level") });
+  const call = (service, args) => session.bridge.call(service, args);
+  const pace = new PaceView({ pause: byId("pause"), step: byId("step"), size: byId("step-size"), speed: byId("speed"), call, failed });
+  const timeline = new Timeline({ slider: byId("moment"), strip: byId("strip"), button: byId("live"), seek, live });
+  new Drive({ pad: byId("pad"), publish: drive, turtle: () => world.chosen });
+  for (const name of ["clear", "reset"]) byId(name).addEventListener("click", () => call(`/${name}`).catch(failed));
+  byId("earlier").addEventListener("click", () => session.earlier());
+
+  const shown = () => past.state ?? session.live;
+  const moment = () => past.stamp ?? session.time;
+  const panels = [
+    () => world.read(),
+    () => tree.render(shown(), moment()),
+    () => fluents.render(shown(), moment(), past.state && session.history),
+    () => modules.render(shown()),
+    () => log.render(past.stamp ?? Infinity),
+    () => {
+      pace.render(session.bridge.open ? session.live.pace : null);
+      setText(byId("clock"), clock(moment()));
+      setText(byId("doing"), session.joined ? doing(session.live.pace) : "");
+    },
+    () => {
+      const { recording, begin, end } = session.live.pace ?? {};
+      const now = session.time;
+      const known = recording ? { start: begin, end } : { start: session.start, end: now };
+      timeline.render({ tasks: session.live.tasks, now, recording, ...known });
+      byId("earlier").hidden = !session.more;
+    },
+  ].map((render) => ({ render, last: -Infinity }));
+
+  function heard(kind, message, sample) {
+    if (sample) world.tick(sample, performance.now());
+    else if (kind === "fluents") fluents.note(message);
+    else if (kind === "pace") world.playback.rate = message.virtual ? message.speed : 1;
+  }
+
+  function anew() {
+    world.forget();
+    fluents.forget();
+    timeline.present();
+  }
+
+  function older() {
+    world.paper.forget();
+    if (past.stamp !== null) seek(past.stamp);
+  }
+
+  function drive(...message) {
+    const { virtual, busy, recording } = session.live.pace ?? {};
+    if (session.bridge.publish(...message) && virtual && !busy && !recording) status.say(STANDS);
+  }
+
+  function rosout(message) {
+    log.add(message, session.live.stamp);
+  }
+
+  function seek(stamp) {
+    if (session.live.pace?.recording) {
+      call("/cramhy/seek", { stamp }).catch(failed).finally(() => (timeline.past = null));
+      return;
+    }
+    past.stamp = stamp;
+    past.state = session.history.at(stamp);
+    world.showPast(session.worldAt(stamp, past.state));
+    byId("past").hidden = false;
+    setText(byId("past"), `as it was at ${clock(stamp)}`);
+    document.body.classList.add("looking-back");
+    hurry();
+    if (stamp <= session.start + 0.02 * (session.time - session.start)) session.earlier();
+  }
+
+  function live() {
+    past.stamp = past.state = null;
+    world.showPast(null);
+    byId("past").hidden = true;
+    document.body.classList.remove("looking-back");
+    hurry();
+  }
+
+  // All panels at their next turn, though they have just been drawn.
+  function hurry() {
+    for (const panel of panels) panel.last = -Infinity;
+  }
+
+  function frame(now) {
+    requestAnimationFrame(frame);
+    world.frame(now);
+    let waiting = null;
+    for (const panel of panels) if (now - panel.last >= PANEL_PAUSE && (!waiting || panel.last < waiting.last)) waiting = panel;
+    if (!waiting) return;
+    waiting.last = now;
+    waiting.render();
+  }
+
+  if (token) session.connect();
+  else status.connection(STATES.REFUSED, "this address has no token");
+  requestAnimationFrame(frame);
+}
+
+start();

@@ -1,0 +1,92 @@
+// Fluents with their values, and the recent past of each as a step line.
+
+import { arrange, el, setText, svg } from "./dom.js";
+import { Series, WINDOW, numberOf } from "./series.js";
+
+const MOST = 80; // rows; of more, the ones that changed last
+const WIDTH = 120;
+const HEIGHT = 22;
+
+export class FluentsView {
+  constructor({ list, count }) {
+    Object.assign(this, { list, count });
+    this.rows = new Map(); // id → row
+    this.live = new Map(); // id → Series
+    this.touched = new Map(); // id → stamp of the last change
+    this.empty = el("li", { class: "nothing" }, "No fluent yet.");
+  }
+
+  forget() {
+    this.live.clear();
+    this.touched.clear();
+  }
+
+  // A Fluents message of the live session.
+  note({ stamp, fluents, complete, removed }) {
+    record(this.live, this.touched, stamp, fluents);
+    if (complete) return;
+    for (const id of removed ?? []) {
+      this.live.delete(id);
+      this.touched.delete(id);
+    }
+  }
+
+  // history: null for the live session, else the History from which the lines before `now` are drawn.
+  render(state, now, history) {
+    const { series, touched } = history ? this.#past(history, now) : { series: this.live, touched: this.touched };
+    let fluents = [...state.fluents.values()];
+    setText(this.count, fluents.length ? String(fluents.length) : "");
+    if (fluents.length > MOST) {
+      const latest = new Set([...fluents].sort((one, other) => (touched.get(other.id) ?? 0) - (touched.get(one.id) ?? 0)).slice(0, MOST));
+      fluents = fluents.filter((fluent) => latest.has(fluent));
+    }
+    for (const id of this.rows.keys()) if (!state.fluents.has(id)) this.rows.delete(id);
+    const nodes = fluents.map((fluent) => this.#row(fluent, series.get(fluent.id), now, touched.get(fluent.id)));
+    arrange(this.list, nodes.length ? nodes : [this.empty]);
+  }
+
+  #past(history, now) {
+    const series = new Map();
+    const touched = new Map();
+    const before = history.at(now - WINDOW);
+    record(series, touched, before.stamp, before.fluents.values());
+    for (const { message } of history.between("fluents", now - WINDOW, now)) record(series, touched, message.stamp, message.fluents);
+    return { series, touched };
+  }
+
+  #row(fluent, series, now, changed) {
+    let row = this.rows.get(fluent.id);
+    if (!row) this.rows.set(fluent.id, (row = newRow()));
+    setText(row.name, fluent.name);
+    setText(row.value, fluent.value);
+    row.node.classList.toggle("fresh", changed != null && now - changed < 0.6);
+    const d = series?.path(now, WIDTH, HEIGHT) ?? "";
+    if (row.d !== d) {
+      row.line.setAttribute("d", (row.d = d));
+      row.node.classList.toggle("drawn", d !== "");
+    }
+    return row.node;
+  }
+}
+
+function record(series, touched, stamp, fluents) {
+  for (const fluent of fluents) {
+    touched.set(fluent.id, stamp);
+    const number = numberOf(fluent);
+    if (number === null) {
+      series.delete(fluent.id); // a line has no place for what is no number
+      continue;
+    }
+    if (!series.has(fluent.id)) series.set(fluent.id, new Series());
+    series.get(fluent.id).push(stamp, number);
+  }
+}
+
+function newRow() {
+  const name = el("span", { class: "name" });
+  const value = el("span", { class: "value" });
+  const line = svg("path");
+  const box = `-1 -2 ${WIDTH + 2} ${HEIGHT + 4}`;
+  const spark = svg("svg", { class: "spark", viewBox: box, preserveAspectRatio: "none", "aria-hidden": "true" }, line);
+  return { node: el("li", { class: "fluent" }, name, spark, value), name, value, line };
+}

@@ -1,0 +1,40 @@
+// The session as it was at one moment: tasks, fluents, process modules, pace and turtles. It is built by applying the messages of
+// the topics one after the other; messages are never changed, so a copy shares them and costs little.
+
+export class State {
+  constructor() {
+    this.stamp = 0;
+    this.tasks = new Map(); // id → Task, in the order of their beginning
+    this.fluents = new Map(); // id → Fluent
+    this.modules = [];
+    this.pace = null;
+    this.world = null; // {stamp, turtles, strokes: number of lines, epoch}
+  }
+
+  copy() {
+    const other = new State();
+    Object.assign(other, this);
+    other.tasks = new Map(this.tasks);
+    other.fluents = new Map(this.fluents);
+    return other;
+  }
+
+  // kind: "world", "tasks", "fluents", "modules" or "pace".
+  apply(kind, message) {
+    if (message.stamp != null) this.stamp = Math.max(this.stamp, message.stamp);
+    if (kind === "tasks") merge(this.tasks, message.tasks, message);
+    else if (kind === "fluents") merge(this.fluents, message.fluents, message);
+    else if (kind === "modules") this.modules = message.modules;
+    else this[kind] = message;
+    return this;
+  }
+}
+
+function merge(known, changed, { complete, removed }) {
+  if (complete) known.clear();
+  for (const one of changed) known.set(one.id, one);
+  for (const id of removed ?? []) known.delete(id);
+}
+
+// JSON has no NaN: a time that has not come is null on the wire.
+export const told = (number) => typeof number === "number" && !Number.isNaN(number);

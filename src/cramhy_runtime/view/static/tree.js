@@ -1,0 +1,167 @@
+// The task tree: what every task of the plans does, since when, what it waits for and where in the text. One line per task, kept
+// from one look to the next, so that only what has changed is touched. It is an ARIA tree: one stop for the tabulator, arrow keys within.
+
+import { arrange, el, setAttribute, setText, svg } from "./dom.js";
+import { duration, plural } from "./format.js";
+import { alive, outline } from "./outline.js";
+import { told } from "./state.js";
+
+const MARKS = {
+  CREATED: "M6 5.2a.8.8 0 1 0 .01 0z",
+  RUNNING: "M3.5 2.5v7l6-3.5z",
+  WAITING: "M6 1.8a4.2 4.2 0 1 0 .01 0zM6 3.8V6l1.6 1",
+  SUSPENDED: "M4.2 2.8v6.4M7.8 2.8v6.4",
+  SUCCEEDED: "M2.2 6.4 5 9l4.8-6",
+  FAILED: "M2.8 2.8l6.4 6.4M9.2 2.8 2.8 9.2",
+  EVAPORATED: "M3 6h6",
+};
+
+export class TreeView {
+  constructor({ tree, count }) {
+    Object.assign(this, { tree, count });
+    this.rows = new Map(); // key → row
+    this.choices = new Map();
+    this.wide = new Set();
+    this.shown = [];
+    this.current = null; // key of the row that has the tabulator's stop
+    this.empty = el("p", { class: "nothing" }, "No plan has run yet. ", el("code", {}, "(top-level …)"), " starts one.");
+    tree.addEventListener("keydown", (event) => this.#key(event));
+    tree.addEventListener("click", (event) => this.#click(event));
+    tree.addEventListener("focusin", ({ target }) => this.#stop(target.closest("[role=treeitem]")?.dataset.key));
+  }
+
+  // state: a State. now: plan time, s.
+  render(state, now) {
+    this.state = state;
+    this.now = now;
+    const rows = (this.shown = outline(state.tasks, this.choices, this.wide));
+    const keys = new Set(rows.map(({ key }) => key));
+    const focused = this.tree.contains(document.activeElement);
+    for (const key of this.rows.keys()) if (!keys.has(key)) this.rows.delete(key);
+    if (!keys.has(this.current)) this.current = rows[0]?.key ?? null;
+    arrange(this.tree, rows.length ? rows.map((row) => this.#row(row).node) : [this.empty]);
+    if (focused && !this.tree.contains(document.activeElement)) this.rows.get(this.current)?.node.focus();
+    let running = 0;
+    for (const task of state.tasks.values()) running += alive(task);
+    setText(this.count, state.tasks.size ? `${running} alive, ${state.tasks.size - running} ended` : "");
+  }
+
+  #row(row) {
+    let known = this.rows.get(row.key);
+    if (!known) this.rows.set(row.key, (known = row.task ? taskRow(row.key) : moreRow(row.key)));
+    const { node } = known;
+    setAttribute(node, "aria-level", row.level);
+    setAttribute(node, "tabindex", row.key === this.current ? "0" : "-1");
+    if (known.level !== row.level) {
+      known.level = row.level;
+      node.style.setProperty("--level", Math.min(row.level - 1, 12));
+    }
+    if (row.task) this.#fill(known, row);
+    else setText(known.text, `${plural(row.hidden, "task")} more that ended`);
+    return known;
+  }
+
+  #fill(known, { task, index, of, children, open }) {
+    const { node, name, operator, waits, place, time } = known;
+    setAttribute(node, "aria-expanded", children ? String(open) : null);
+    setAttribute(node, "aria-posinset", index);
+    setAttribute(node, "aria-setsize", of);
+    if (known.task !== task) {
+      known.task = task;
+      const doing = stateOf(task);
+      if (node.dataset.state !== doing) {
+        node.dataset.state = doing;
+        known.mark.setAttribute("d", MARKS[doing] ?? MARKS.CREATED);
+        setText(known.state, doing.toLowerCase());
+      }
+      setText(name, task.name);
+      setText(operator, task.operator && !task.name.includes(task.operator) ? task.operator.toLowerCase() : "");
+      setText(waits, remark(task));
+      setText(place, task.place.replace(/^.*[/\\]/, ""));
+      setAttribute(place, "title", task.place || null);
+    }
+    setText(time, told(task.began) ? duration(Math.max(0, (told(task.ended) ? task.ended : this.now) - task.began)) : "");
+  }
+
+  #click(event) {
+    const key = event.target.closest("[role=treeitem]")?.dataset.key;
+    if (key == null) return;
+    this.#stop(key);
+    this.rows.get(key).node.focus({ preventScroll: true });
+    this.#toggle(key);
+  }
+
+  #toggle(key, open) {
+    const row = this.shown.find((one) => one.key === key);
+    if (row?.hidden) this.wide.add(row.parent);
+    else if (row?.children) this.choices.set(key, open ?? !row.open);
+    this.render(this.state, this.now);
+  }
+
+  #key(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const at = this.shown.findIndex(({ key }) => key === this.current);
+    const row = this.shown[at];
+    if (!row) return;
+    const above = this.shown.findLastIndex((one, place) => place < at && one.level < row.level);
+    const actions = {
+      ArrowDown: () => this.#go(at + 1),
+      ArrowUp: () => this.#go(at - 1),
+      Home: () => this.#go(0),
+      End: () => this.#go(this.shown.length - 1),
+      ArrowRight: () => (row.open ? this.#go(at + 1) : this.#toggle(row.key, true)),
+      ArrowLeft: () => (row.open ? this.#toggle(row.key, false) : this.#go(above)),
+      Enter: () => this.#toggle(row.key),
+      " ": () => this.#toggle(row.key),
+    };
+    if (!actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key]();
+  }
+
+  #go(index) {
+    const row = this.shown[index];
+    if (!row) return;
+    this.#stop(row.key);
+    const { node } = this.rows.get(row.key);
+    node.focus();
+    node.scrollIntoView({ block: "nearest" });
+  }
+
+  #stop(key) {
+    if (key == null || key === this.current) return;
+    const before = this.rows.get(this.current)?.node;
+    if (before) setAttribute(before, "tabindex", "-1");
+    this.current = key;
+    const node = this.rows.get(key)?.node;
+    if (node) setAttribute(node, "tabindex", "0");
+  }
+}
+
+// The original has a state WAITING that it never gives; here a task that runs and waits for something is shown as one that waits.
+const stateOf = (task) => (task.state === "RUNNING" && task.waits_for ? "WAITING" : task.state);
+
+// What a task is about now: what it waits for while it lives, what became of it after.
+function remark(task) {
+  if (alive(task)) return task.waits_for ? `waits for ${task.waits_for}` : "";
+  return task.result ? `${task.state === "FAILED" ? "failed with" : "gave"} ${task.result}` : "";
+}
+
+function taskRow(key) {
+  const kinds = ["unseen", "name", "operator", "waits", "place", "time"];
+  const [state, name, operator, waits, place, time] = kinds.map((kind) => el("span", { class: kind }));
+  const mark = svg("path");
+  const node = el("div", { role: "treeitem", class: "task" },
+    el("span", { class: "twist", "aria-hidden": "true" }),
+    svg("svg", { class: "mark", viewBox: "0 0 12 12", "aria-hidden": "true" }, mark),
+    el("span", { class: "title" }, name, state, operator), time, el("span", { class: "more" }, waits, place));
+  node.dataset.key = key;
+  return { node, mark, state, name, operator, waits, place, time };
+}
+
+function moreRow(key) {
+  const text = el("span");
+  const node = el("div", { role: "treeitem", class: "task rest" }, text);
+  node.dataset.key = key;
+  return { node, text };
+}

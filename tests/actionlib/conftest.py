@@ -1,0 +1,25 @@
+"""Actions in Lisp text, in virtual time, on both back ends: a package with both libraries, a node, and a server to ask."""
+
+import itertools
+
+import pytest
+
+from cramhy_runtime import image, kernel
+from cramhy_runtime.lisp.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+from lisp_text import LispText
+from tests_of_actions import PRELUDE
+
+image.boot()
+
+_numbers = itertools.count(1)
+
+
+@pytest.fixture(params=["threads", "greenlet"])
+def lisp(request, capsys):
+    from cramhy_runtime.repl.session import Session
+
+    session = Session(time="virtual", turtlesim=False, backend=request.param, time_limit=3600)
+    yield LispText(session, PRELUDE.format(name=f"ACTION-TEST-{next(_numbers)}"))
+    PACKAGE.value = COMMON_LISP_USER
+    kernel.stop()

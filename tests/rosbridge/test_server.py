@@ -1,0 +1,254 @@
+"""The server with real sockets: it answers at the prompt, in wall and in virtual time, on both back ends, and ends with the kernel."""
+
+from __future__ import annotations
+
+import os
+import stat
+import urllib.request
+
+import pytest
+
+from bridge_clients import Wire
+from cramhy_runtime import kernel, rosbridge
+from cramhy_runtime.rosbridge import sessions
+from cramhy_runtime.ros import graph
+
+
+@pytest.mark.parametrize("time", ["virtual", "wall"])
+def test_a_client_is_answered_while_the_prompt_waits(serve, outside, time, backend):
+    server = serve(time, backend)
+
+    def client():
+        with Wire(server.address) as wire:
+            assert wire.call("/spawn", x=1.0, y=2.0, name="anna")["values"] == {"name": "anna"}
+            wire.send(op="subscribe", topic="/anna/pose")
+            assert wire.call("/anna/teleport_absolute", x=3.0, y=4.0)["result"]
+            while time == "wall" and wire.until(op="publish")["msg"]["x"] != 3.0:
+                pass
+
+    outside(client)
+
+
+def test_plan_time_passes_at_the_prompt_only_as_far_as_an_answer_needs(serve, outside, backend):
+    server = serve(backend=backend)
+
+    def client():
+        with Wire(server.address) as wire:
+            for _ in range(5):
+                wire.call("/rosapi/topics")
+            wire.call("/clear")
+
+    outside(client)
+    assert 0 < kernel.now() <= 0.032
+
+
+def test_an_answer_that_never_comes_does_not_drive_the_clock_for_ever(serve, outside, backend):
+    from cramhy_runtime.ros.messages import service_type_exact
+    from cramhy_runtime.ros.services import Service
+
+    class Silent(Service):
+        def submit(self, call):
+            self.pending.add(call)
+
+    server = serve(backend=backend)
+    here = server.graph.node("silent")
+    here.add_service(Silent(here, "/silence", service_type_exact("std_srvs/Empty"), None))
+
+    def client():
+        with Wire(server.address) as wire:
+            wire.send(op="call_service", service="/silence")
+            while kernel.active().clock.wanted or not kernel.active().now():
+                wire.call("/rosapi/get_time")
+
+    outside(client)
+    assert 600 <= kernel.now() < 601
+
+
+def test_no_plan_time_passes_while_a_client_owes_the_plan_an_answer(serve, outside, beside, backend):
+    from cramhy_runtime.ros import services
+    from cramhy_runtime.ros.messages import service_type_exact
+
+    server = serve(backend=backend)
+    kind = service_type_exact("roscpp_tutorials/TwoInts")
+
+    def client():
+        with Wire(server.address) as wire:
+            wire.send(op="advertise_service", service="/sum", type="roscpp_tutorials/TwoInts")
+            request = wire.until(op="call_service")
+            assert wire.call("/rosapi/service_type", service="/sum")["values"] == {"type": "roscpp_tutorials/TwoInts"}
+            wire.send(op="service_response", id=request["id"], service="/sum", values={"sum": 3}, result=True)
+            wire.call("/rosapi/topics")
+
+    answered = beside(client)
+    while "/sum" not in server.graph.services:
+        kernel.sleep(0.01)
+    began = kernel.now()
+    call = services.exchange(server.graph.services["/sum"], kind.request(a=1, b=2))
+    assert (call.failure, call.lost) == (None, False)
+    assert call.response.sum == 3
+    assert kernel.now() == began
+    answered()
+
+
+def test_the_server_ends_with_the_kernel(serve, outside, backend):
+    server = serve(backend=backend)
+    assert server.file.exists()
+    wires = []
+
+    def client():
+        wires.append(Wire(server.address))
+        wires[0].call("/rosapi/topics")
+
+    outside(client)
+    kernel.stop()
+    assert wires[0].closed() == (1001, "The session has ended.")
+    assert not server.file.exists()
+    assert not server.company.alive and server.company.failure is None
+
+
+def test_closing_twice_does_nothing(serve):
+    server = serve()
+    server.close()
+    server.close()
+    assert rosbridge.start().port != 0
+
+
+def test_one_server_per_session(serve):
+    from cramhy_runtime.rosbridge.server import ServerError
+
+    server = serve()
+    with pytest.raises(ServerError) as caught:
+        rosbridge.start()
+    assert str(caught.value) == f"This session has a server already, on port {server.port}. Close it first, or use it."
+
+
+def test_a_port_that_is_taken_is_told(serve):
+    from cramhy_runtime.rosbridge.server import ServerError
+
+    server = serve()
+    port = server.port
+    import socket
+
+    server.close()
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", port))
+        taken.listen()
+        with pytest.raises(ServerError) as caught:
+            rosbridge.start(port=port)
+    assert str(caught.value) == (f"The server cannot listen on port {port} of 127.0.0.1: Address already in use. Choose another port, or "
+                                 "none for a free one.")
+
+
+def test_it_listens_on_loopback_only(serve):
+    server = serve()
+    assert server.socket.getsockname()[0] == "127.0.0.1"
+
+
+# ------------------------------------------------------------------------------------------------------------------ sessions
+
+
+def test_the_session_is_found_by_its_file(serve, outside, tmp_path):
+    server = serve()
+    found = outside(sessions.current)
+    assert (found.port, found.token, found.pid, found.address, found.url) == (
+        server.port, server.token, os.getpid(), server.address, server.url)
+    folder = tmp_path / f"cramhy-{os.getuid()}"
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    assert [stat.S_IMODE(path.stat().st_mode) for path in folder.iterdir()] == [0o600]
+    kernel.stop()
+    assert sessions.current() is None
+
+
+def test_the_newest_living_session_is_current_and_dead_ones_are_swept_away(serve, outside, tmp_path):
+    server = serve()
+    folder = server.file.parent
+    text = server.file.read_text()
+    closed, nobody, broken = folder / "session-1-1.json", folder / "session-2-2.json", folder / "session-3-3.json"
+    import json
+
+    values = json.loads(text)
+    closed.write_text(json.dumps({**values, "port": 1, "started": values["started"] + 1}))
+    nobody.write_text(json.dumps({**values, "pid": 2**22 + 1, "started": values["started"] + 2}))
+    broken.write_text("{")
+    for path in (closed, nobody, broken):
+        path.chmod(0o600)
+    assert outside(sessions.current).port == server.port
+    assert list(folder.iterdir()) == [server.file]
+
+
+def test_a_process_that_got_the_number_of_a_dead_one_is_no_session(serve, outside):
+    import json
+
+    server = serve()
+    values = json.loads(server.file.read_text())
+    server.file.write_text(json.dumps({**values, "process": "1"}))
+    assert outside(sessions.current) is None
+
+
+def test_a_folder_that_others_can_enter_is_not_trusted(tmp_path):
+    folder = tmp_path / f"cramhy-{os.getuid()}"
+    folder.mkdir()
+    folder.chmod(0o755)
+    with pytest.raises(sessions.Unsafe) as caught:
+        sessions.current()
+    assert str(caught.value) == (f"{folder} is not a folder that belongs to this user alone, so no session is announced or looked for "
+                                 f"there. Remove it, or type: chmod 700 {folder}")
+
+
+def test_where_no_session_can_be_announced_nothing_is_looked_for_and_no_server_stays(serve, tmp_path, monkeypatch):
+    from cramhy_runtime.rosbridge.server import ServerError, running
+
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "file"))
+    assert sessions.current() is None
+    with pytest.raises(ServerError) as caught:
+        serve()
+    assert str(caught.value) == (
+        f"The server cannot be announced to the other programs of this user. {tmp_path / 'file' / f'cramhy-{os.getuid()}'}, where "
+        "sessions are announced, cannot be made: Not a directory. Set XDG_RUNTIME_DIR to a folder of your own.")
+    assert running() is None and "/rosapi" not in graph.active().nodes
+
+
+def test_a_file_that_others_can_read_is_not_trusted(serve):
+    server = serve()
+    server.file.chmod(0o644)
+    with pytest.raises(sessions.Unsafe) as caught:
+        sessions.living()
+    assert str(caught.value) == f"{server.file} can be read or written by others than this user, so it is not trusted. Remove it."
+
+
+# --------------------------------------------------------------------------------------------------------------------- pages
+
+
+def test_pages_have_their_headers(serve, outside):
+    server = serve(pages={"/": ("<p>turtle</p>", "text/html"), "/view.js": (b"1;", "text/javascript", {"Cache-Control": "max-age=5"})})
+
+    def fetch(path):
+        with urllib.request.urlopen(f"http://127.0.0.1:{server.port}{path}", timeout=20) as answer:
+            return answer.read(), dict(answer.headers)
+
+    body, headers = outside(fetch, "/")
+    assert body == b"<p>turtle</p>"
+    assert {name.lower(): value for name, value in headers.items() if name.lower() != "connection"} == {
+        "content-type": "text/html; charset=utf-8", "content-length": "13",
+        "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; "
+        "connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        "x-content-type-options": "nosniff", "x-frame-options": "DENY", "referrer-policy": "no-referrer",
+        "cross-origin-opener-policy": "same-origin", "cross-origin-resource-policy": "same-origin", "cache-control": "no-store",
+    }
+    body, headers = outside(fetch, "/view.js")
+    assert headers["cache-control"] == "max-age=5"
+
+
+def test_what_is_not_installed_is_named(monkeypatch):
+    from importlib import metadata
+
+    from cramhy_runtime.rosbridge.server import ServerError
+
+    def version(name):
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(metadata, "version", version)
+    with pytest.raises(ServerError) as caught:
+        rosbridge.start()
+    assert str(caught.value) == "The server needs uvicorn, websockets, which are not installed: pip install 'cramhy[web]'"

@@ -1,0 +1,258 @@
+"""The page in a real Chromium, with a session that says what the test wants: what it shows, and what it sends."""
+
+from __future__ import annotations
+
+import pytest
+from fake_session import MIDDLE, fluent, stroke, task, turtle
+
+PIXEL = """([x, y]) => {
+  const canvas = document.getElementById("paper");
+  const side = canvas.width;
+  const [column, row] = [(x * 45 + 0.5) / 500 * side, (499 - y * 45 + 0.5) / 500 * side];
+  return Array.from(canvas.getContext("2d").getImageData(Math.round(column), Math.round(row), 1, 1).data.slice(0, 3));
+}"""
+READING = "(name) => document.querySelector(`[data-reading=${name}]`).textContent"
+BLUE = [69, 86, 255]
+
+
+def pixel(page, x, y):
+    """The colour that is seen at a place of the world."""
+    return page.evaluate(PIXEL, [x, y])
+
+
+def near(colour, other):
+    """Whether two colours look alike: the picture is scaled to the screen."""
+    return all(abs(one - two) <= 3 for one, two in zip(colour, other))
+
+
+def wait_for_pixel(page, x, y, colour):
+    page.wait_for_function(f"([place, colour]) => ({PIXEL})(place).every((part, index) => Math.abs(part - colour[index]) <= 3)",
+                           arg=[[x, y], colour])
+
+
+def wait_for_text(page, selector, text):
+    page.wait_for_function("([selector, text]) => document.querySelector(selector)?.textContent.includes(text)", arg=[selector, text])
+
+
+def wait_for_reading(page, name, text):
+    page.wait_for_function(f"([name, text]) => ({READING})(name) === text", arg=[name, text])
+
+
+def rows(page, attributes=("name", "time", "waits", "place")):
+    """The rows of the task tree, as (level, the texts of their parts)."""
+    return page.evaluate("""(parts) => [...document.querySelectorAll("#tasks [role=treeitem]")].map((row) =>
+        [Number(row.getAttribute("aria-level")), ...parts.map((part) => row.querySelector(`.${part}`)?.textContent ?? "")])""",
+                         list(attributes))
+
+
+# --------------------------------------------------------------------------------------------------------------- the world
+
+
+def test_the_turtle_moves_and_the_read_out_follows(fake, visit):
+    page = visit(fake.address)
+    wait_for_reading(page, "x", "5.54")
+    fake.drive(50, speed=2.0)
+    wait_for_reading(page, "x", "7.14")
+    wait_for_reading(page, "speed", "2.00")
+    assert near(pixel(page, MIDDLE, MIDDLE), [179, 184, 255])
+    assert near(pixel(page, 9.0, 9.0), BLUE)
+
+
+def test_the_line_has_the_colour_and_the_width_of_the_pen(fake, visit):
+    page = visit(fake.address)
+    red = (255, 0, 0)
+    fake.world([turtle(x=10.0, y=10.0)], [stroke(2, 2, 6, 2, red, 10), stroke(2, 4, 6, 4, (0, 255, 0), 1)])
+    wait_for_pixel(page, 4, 2, list(red))
+    assert all(near(pixel(page, 4, 2 + offset), red) for offset in (4 / 45, -4 / 45))
+    assert all(near(pixel(page, 4, 2 + offset), BLUE) for offset in (7 / 45, -7 / 45))
+
+
+def test_a_clean_paper_has_its_own_colour(fake, visit):
+    page = visit(fake.address)
+    fake.world([turtle(x=10, y=10)], [stroke(1, 1, 9, 1, (255, 0, 0), 9)])
+    wait_for_pixel(page, 4, 1, [255, 0, 0])
+    fake.world([turtle(x=10, y=10)], [stroke(1, 5, 9, 5, (0, 0, 0), 9)], cleared=(20, 120, 40))
+    wait_for_pixel(page, 4, 1, [20, 120, 40])
+    assert near(pixel(page, 4, 5), [0, 0, 0])
+
+
+def test_who_comes_late_sees_all_that_was_drawn(fake, visit):
+    fake.world([turtle(x=10, y=10)], [stroke(1, 1, 9, 1, (255, 0, 0), 9)])
+    page = visit(fake.address)
+    wait_for_pixel(page, 4, 1, [255, 0, 0])
+
+
+def test_the_turtle_turns_with_its_heading(fake, visit):
+    page = visit(fake.address)
+    fake.world([turtle(x=5, y=5, theta=0.0)])
+    page.wait_for_function(f"() => JSON.stringify(({PIXEL})([5.38, 5])) !== '{BLUE}'.replaceAll(' ', '')")
+    assert near(pixel(page, 5.0, 4.56), BLUE)  # beside it, between its feet
+    fake.world([turtle(x=5, y=5, theta=-1.5707963)])
+    page.wait_for_function(f"() => JSON.stringify(({PIXEL})([5, 4.62])) !== '{BLUE}'.replaceAll(' ', '')")  # now the head is there
+
+
+def test_several_turtles_have_names_and_one_is_chosen(fake, visit):
+    page = visit(fake.address)
+    assert not page.locator("#turtles").is_visible()
+    fake.world([turtle("turtle1", 2, 2), turtle("turtle2", 8, 8, picture=3)])
+    page.get_by_role("radio", name="turtle2").click()
+    wait_for_reading(page, "x", "8.00")
+    page.keyboard.press("ArrowLeft")  # within the choice of turtles arrows choose
+    wait_for_reading(page, "x", "2.00")
+    box = page.locator("#paper").bounding_box()
+    page.mouse.click(box["x"] + box["width"] * 8 * 45 / 500, box["y"] + box["height"] * (499 - 8 * 45) / 500)
+    wait_for_reading(page, "x", "8.00")
+    page.locator("#paper").press("ArrowUp")
+    fake.wait(lambda message: message["op"] == "publish" and message["topic"] == "/turtle2/cmd_vel")
+    fake.world([turtle("turtle1", 2, 2)])  # turtle2 was killed
+    wait_for_reading(page, "x", "2.00")
+
+
+def test_a_pose_that_is_no_number_is_said_and_hurts_nobody(fake, visit):
+    page = visit(fake.address)
+    fake.world([{**turtle(), "x": None, "y": None, "theta": None}])
+    wait_for_reading(page, "x", "NaN")
+    fake.world([turtle(x=3, y=3)])
+    wait_for_reading(page, "x", "3.00")
+
+
+# -------------------------------------------------------------------------------------------------------------- driving
+
+
+@pytest.mark.parametrize(("key", "linear", "angular"),
+                         [("ArrowUp", 2, 0), ("ArrowDown", -2, 0), ("ArrowLeft", 0, 2), ("ArrowRight", 0, -2)])
+def test_the_arrow_keys_drive(fake, visit, key, linear, angular):
+    page = visit(fake.address)
+    page.keyboard.press(key)
+    fake.wait(lambda message: message == {"op": "advertise", "topic": "/turtle1/cmd_vel", "type": "geometry_msgs/Twist"})
+    sent = fake.wait(lambda message: message["op"] == "publish")
+    assert sent["topic"] == "/turtle1/cmd_vel"
+    assert sent["msg"] == {"linear": {"x": linear, "y": 0, "z": 0}, "angular": {"x": 0, "y": 0, "z": angular}}
+
+
+def test_a_key_that_is_held_repeats(fake, visit):
+    page = visit(fake.address)
+    for _ in range(5):  # what the keyboard sends while a key is held
+        page.keyboard.down("ArrowUp")
+    page.keyboard.up("ArrowUp")
+    fake.wait(lambda message: len([one for one in fake.heard if one["op"] == "publish"]) == 5)
+
+
+def test_a_button_that_is_held_repeats_until_it_is_let_go(fake, visit):
+    page = visit(fake.address)
+    page.get_by_role("button", name="turn left").hover()
+    page.mouse.down()
+    count = lambda: len([one for one in fake.heard if one["op"] == "publish"])  # noqa: E731
+    fake.wait(lambda message: count() >= 4)
+    page.mouse.up()
+    page.evaluate("() => new Promise((done) => setTimeout(done, 0))")
+    page.keyboard.press("ArrowUp")
+    fake.wait(lambda message: message["op"] == "publish" and message["msg"]["linear"]["x"] == 2)
+    sent = count()
+    page.evaluate("() => new Promise((done) => setTimeout(done, 200))")  # four repetitions long
+    assert count() == sent
+
+
+def test_clear_and_reset_call_their_services_and_say_what_went_wrong(fake, visit):
+    page = visit(fake.address)
+    page.get_by_role("button", name="Clear paper").click()
+    assert fake.wait_for_call("/clear") == {}
+
+    def refuse(request):
+        raise ValueError("Service /reset is not there.")
+
+    fake.services["/reset"] = refuse
+    page.get_by_role("button", name="Reset world").click()
+    wait_for_text(page, "#notice", "Service /reset is not there.")
+
+
+# -------------------------------------------------------------------------------------------- tasks, fluents, modules, log
+
+
+def par(fake):
+    """The tasks of the par form on the slides."""
+    fake.tasks(task("1", "[TOP-LEVEL]", waits_for="the branches of PAR", place="<repl 3>:3:9"),
+               task("2", "[PAR-CHILD-#1/2]", "1", waits_for="the fluent #<FLUENT DONE [NIL]>", place="<repl 3>:4:13"),
+               task("3", "[PAR-CHILD-#2/2]", "1", waits_for="the time 2 s (sleep 0.5)", place="/a/folder/plans.lisp:13:15"))
+
+
+def test_the_task_tree_shows_what_each_task_does(fake, visit):
+    page = visit(fake.address)
+    wait_for_text(page, "#tasks", "No plan has run yet.")
+    fake.stamp = 1.5
+    par(fake)
+    wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
+    assert rows(page) == [
+        [1, "[TOP-LEVEL]", "1.50 s", "waits for the branches of PAR", "<repl 3>:3:9"],
+        [2, "[PAR-CHILD-#1/2]", "1.50 s", "waits for the fluent #<FLUENT DONE [NIL]>", "<repl 3>:4:13"],
+        [2, "[PAR-CHILD-#2/2]", "1.50 s", "waits for the time 2 s (sleep 0.5)", "plans.lisp:13:15"],
+    ]
+    wait_for_text(page, "#tasks-count", "3 alive, 0 ended")
+    fake.tasks(task("3", "[PAR-CHILD-#2/2]", "1", "FAILED", began=0, ended=1.5, result="SIMPLE-PLAN-FAILURE: no way"))
+    wait_for_text(page, "#tasks", "failed with SIMPLE-PLAN-FAILURE: no way")
+    fake.tasks(removed=["2", "3"])
+    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 1")
+
+
+def test_a_branch_can_be_closed_and_stays_closed(fake, visit):
+    page = visit(fake.address)
+    par(fake)
+    page.get_by_role("treeitem", name="TOP-LEVEL").first.click()
+    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 1")
+    fake.tasks(task("4", "[PAR-CHILD-#3/3]", "1"))
+    wait_for_text(page, "#tasks-count", "4 alive")
+    assert len(rows(page)) == 1
+
+
+def test_thousands_of_tasks_do_not_stop_the_page(fake, visit):
+    page = visit(fake.address)
+    children = [task(str(number), f"[CHILD-{number}]", "top", "SUCCEEDED", ended=1.0) for number in range(3000)]
+    fake.tasks(task("top", "[TOP-LEVEL]"), *children)
+    wait_for_text(page, "#tasks-count", "1 alive, 3000 ended")
+    assert len(rows(page)) == 26  # the plan, its newest 24, and a line for the others
+    page.get_by_text("2,976 tasks more that ended").click()
+    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 500")
+
+
+def test_fluents_have_their_values_and_a_line_of_the_recent_past(fake, visit):
+    page = visit(fake.address)
+    fake.fluents(fluent("1", "DISTANCE", "3.5", 3.5), fluent("2", "POSE", "x 1 y 2"))
+    wait_for_text(page, "#fluents", "x 1 y 2")
+    fake.stamp = 10.0
+    fake.fluents(fluent("1", "DISTANCE", "1.25", 1.25))
+    wait_for_text(page, "#fluents", "1.25")
+    page.wait_for_function("() => document.querySelector('#fluents .drawn path').getAttribute('d') === 'M60.0 0.0H120.0V22.0H120'")
+    assert page.locator("#fluents .spark:visible").count() == 1
+    fake.fluents(removed=["1"])
+    page.wait_for_function("() => document.querySelectorAll('#fluents .fluent').length === 1")
+
+
+def test_process_modules_have_what_they_execute_and_their_queue(fake, visit):
+    page = visit(fake.address)
+    wait_for_text(page, "#modules", "No process module is running.")
+    fake.modules(("NAVIGATION", "RUNNING", "#<MOTION ((TYPE MOVING))>", ["#<MOTION ((TYPE DRIVING))>"] * 11),
+                 ("PEN-CONTROL", "WAITING", "", []))
+    wait_for_text(page, "#modules", "#<MOTION ((TYPE MOVING))>")
+    assert page.locator("#modules .queue li").all_text_contents() == ["#<MOTION ((TYPE DRIVING))>"] * 8 + ["3 requests more"]
+    wait_for_text(page, "#modules .module:nth-child(2)", "executes nothing")
+
+
+def test_the_log_has_the_levels_that_are_wanted(fake, visit):
+    page = visit(fake.address)
+    for level, text in ((1, "a detail"), (2, "as usual"), (4, "Oh no! I hit the wall!"), (8, "broken"), (16, "over")):
+        fake.say(text, level)
+    wait_for_text(page, "#log", "over")
+    shown = lambda: page.locator("#log .line:visible .text").all_text_contents()  # noqa: E731
+    assert shown() == ["as usual", "Oh no! I hit the wall!", "broken", "over"]
+    page.locator("#level").select_option("errors")
+    assert shown() == ["broken", "over"]
+    page.locator("#level").select_option("debug")
+    assert shown()[0] == "a detail"
+    for number in range(1500):
+        fake.say(f"line {number}")
+    wait_for_text(page, "#log", "line 1499")
+    assert page.locator("#log .line").count() <= 600
+    page.wait_for_function("""() => {
+      const { scrollTop, clientHeight, scrollHeight } = document.getElementById("log");
+      return scrollHeight - scrollTop - clientHeight < 2;
+    }""")

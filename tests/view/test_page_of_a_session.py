@@ -1,0 +1,199 @@
+"""The page of a real session, from the prompt to the picture: a REPL with ``--view`` in a process of its own, and Chromium."""
+
+from __future__ import annotations
+
+import os
+import queue
+import subprocess
+import sys
+import threading
+
+import pytest
+from test_page import near, pixel, rows, wait_for_pixel, wait_for_reading, wait_for_text
+from test_page_time import seek
+
+PATIENCE = 120  # s; the first session of a checkout compiles the language
+COURSE = """(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)
+(in-package :tut)
+(start-ros-node "turtle1")
+(init-ros-turtle "turtle1")"""
+PAR = """\
+(top-level
+  (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)
+    (let ((goal (desig:a motion (type moving) (goal (9 9 0)))))
+      (cpl:par
+        (pm-execute 'turtlesim-navigation goal)
+        (dotimes (i 4)
+          (pm-execute 'turtlesim-pen-control
+            (let ((?r (if (evenp i) 255 0)))
+              (desig:a motion (type setting-pen) (r ?r) (g 40) (b 0) (width 8))))
+          (sleep 0.5))))))"""
+
+
+class Repl:
+    """A REPL that lines are typed into. ``url``: of its page."""
+
+    def __init__(self, folder, *options):
+        environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--view", *options], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        self.printed = queue.Queue()
+        self.text = ""
+        threading.Thread(target=self._read, daemon=True).start()
+        self.url = next(line for line in self.process.stderr if "http://" in line).split()[-1]
+
+    def _read(self):
+        while text := os.read(self.process.stdout.fileno(), 1 << 16):
+            self.printed.put(text.decode())
+        self.printed.put(None)
+
+    def type(self, text):
+        self.process.stdin.write(text + "\n")
+        self.process.stdin.flush()
+
+    def wait_for(self, text):
+        """Wait until the REPL has printed it."""
+        while text not in self.text:
+            self.text += self.printed.get(timeout=PATIENCE) or f"\nIt has ended, and never printed {text}"
+            assert "It has ended" not in self.text, self.text
+
+    def close(self):
+        self.process.stdin.close()
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:  # a plan that a failed test has left paused
+            self.process.kill()
+            self.process.wait()
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+
+@pytest.fixture
+def repl(tmp_path):
+    pytest.importorskip("uvicorn", reason="pip install 'cramhy[web]'")
+    made = []
+
+    def start(*options):
+        made.append(Repl(tmp_path, *options))
+        return made[-1]
+
+    yield start
+    for one in made:
+        one.close()
+
+
+def plan_time(page):
+    """What the page's clock shows when it stands still, in seconds."""
+    clock = "document.getElementById('clock').textContent"
+    return page.evaluate(f"""async () => {{
+        for (;;) {{
+            const seen = {clock}
+            await new Promise(later => setTimeout(later, 250))
+            if ({clock} === seen) return parseFloat(seen)
+        }}
+    }}""")
+
+
+@pytest.fixture
+def course(repl, visit):
+    """The REPL with the course's package, and its page."""
+    session = repl("--time", "virtual")
+    page = visit(session.url)
+    session.type(COURSE)
+    wait_for_reading(page, "x", "5.54")
+    session.type('"ready"')
+    session.wait_for('"ready"')
+    wait_for_text(page, "#doing", "the prompt waits")
+    return session, page
+
+
+def test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at(course):
+    session, page = course
+    begin = plan_time(page)
+    session.type(PAR)
+    wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
+    wait_for_text(page, "#modules", "(GOAL (9 9 0))")
+    wait_for_text(page, "#doing", "a form runs")
+    wait_for_text(page, "#log", "TurtleSim pen control invoked with motion designator")
+    page.get_by_role("button", name="Pause").click()
+    page.wait_for_function("() => document.querySelector('#pause').textContent === 'Resume'")
+    wait_for_text(page, "#tasks", "PAR-CHILD-#1/2")
+    shown = {row[1]: row[2:] for row in rows(page)}
+    assert shown["[TOP-LEVEL]"][1] == "waits for the branches of PAR"
+    assert shown["[PAR-CHILD-#2/2]"][1].endswith("(sleep 0.5)") and shown["[PAR-CHILD-#2/2]"][2] == "<repl 6>:10:11"
+    assert "[TURTLESIM-NAVIGATION]" in shown
+    stood = plan_time(page)
+    page.locator("#step-size").select_option("0.1 s")
+    page.get_by_role("button", name="Step").click()
+    page.wait_for_function("(end) => Math.abs(parseFloat(document.getElementById('clock').textContent) - end) < 0.02", arg=stood + 0.1)
+    page.locator("#speed").select_option("unbounded")
+    page.get_by_role("button", name="Resume").click()
+    session.wait_for("\nT\nTUT> ")
+    wait_for_text(page, "#tasks-count", "0 alive")
+    wait_for_text(page, "#modules", "No process module is running.")
+    wait_for_pixel(page, 6.0, 6.0, [255, 40, 0])
+    seek(page, begin + 0.3)  # the turtle has driven half a metre
+    wait_for_text(page, "#past", "as it was at")
+    assert near(pixel(page, 8.5, 8.5), [69, 86, 255])
+    page.get_by_role("button", name="Live").click()
+    session.type("(call-set-pen 0 0 0 1 0)")
+    wait_for_reading(page, "pen", "1 px")
+
+
+def test_the_keys_drive_the_turtle_while_the_prompt_waits(course):
+    session, page = course
+    page.keyboard.press("ArrowUp")
+    wait_for_text(page, "#notice", "Virtual time stands still while the prompt waits. Step lets some of it pass.")
+    session.type("(sleep 1.5)")
+    page.wait_for_function("() => parseFloat(document.querySelector('[data-reading=x]').textContent) > 7.5")
+    page.get_by_role("button", name="Clear paper").click()
+    wait_for_pixel(page, 6.5, 5.544, [69, 86, 255])
+    wait_for_text(page, "#log", "Clearing turtlesim.")
+    page.get_by_role("button", name="Reset world").click()
+    wait_for_reading(page, "x", "5.54")
+    assert page.locator("#notice").get_attribute("data-kind") == "good"
+
+
+def test_a_step_moves_the_clock_though_nothing_else_happens(course):
+    session, page = course
+    page.get_by_role("button", name="Pause").click()
+    wait_for_text(page, "#doing", "paused")
+    stood = float(page.locator("#clock").text_content().split()[0])
+    page.locator("#step-size").select_option("1 s")
+    page.get_by_role("button", name="Step").click()
+    page.wait_for_function("(stood) => Math.abs(parseFloat(document.getElementById('clock').textContent) - stood - 1) < 0.02", arg=stood)
+
+
+def test_a_page_that_comes_late_sees_what_was_before(course, visit):
+    session, page = course
+    session.type("(drive 2 2)\n(sleep 1.0)\n(call-set-pen 255 0 0 5 0)\n(drive 2 0)\n(sleep 1.0)")
+    wait_for_reading(page, "pen", "5 px")
+    page.wait_for_function("() => parseFloat(document.getElementById('clock').textContent) >= 2")
+    late = visit(session.url)
+    late.wait_for_function("() => Number(document.getElementById('moment').max) - Number(document.getElementById('moment').min) >= 1.9")
+    x = page.evaluate("() => document.querySelector('[data-reading=x]').textContent")
+    wait_for_reading(late, "x", x)
+    seek(late, 0.5)
+    late.wait_for_function("(x) => document.querySelector('[data-reading=x]').textContent !== x", arg=x)
+    wait_for_reading(late, "pen", "3 px")
+
+
+def test_in_wall_time_the_turtle_moves_and_cannot_be_paused(repl, visit):
+    session = repl("--time", "wall")
+    page = visit(session.url)
+    session.type('(roslisp:start-ros-node "wall")')
+    wait_for_reading(page, "x", "5.54")
+    page.keyboard.press("ArrowUp")
+    wait_for_reading(page, "speed", "2.00")
+    wait_for_reading(page, "speed", "0.00")  # it stops by itself, a second later
+    assert float(page.locator("[data-reading=x]").text_content()) > 7.0
+    assert page.locator("#pause").is_disabled()
+
+
+def test_when_the_session_ends_the_page_says_so(repl, visit):
+    session = repl("--time", "virtual")
+    page = visit(session.url)
+    session.type("(quit)")
+    wait_for_text(page, "#connection", "connection lost")
+    page.complaints.clear()  # Chromium itself writes to the console that it could not connect

@@ -1,0 +1,27 @@
+"""The parts of the page that need no browser, under Node: history, playback, lines, the task tree's outline, the connection."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+NODE = shutil.which("node")
+
+
+@pytest.mark.skipif(NODE is None, reason="no node is on the PATH to run the page's unit tests")
+def test_the_modules_of_the_page_pass_their_unit_tests(tmp_path):
+    version = subprocess.run([NODE, "--version"], capture_output=True, text=True).stdout
+    if int(version.lstrip("v").partition(".")[0]) < 20:
+        pytest.skip(f"node {version.strip()} has no mock timers; 20 or later has")
+    for file in resources.files("cramhy_runtime.view").joinpath("static").iterdir():
+        if file.name.endswith(".js"):
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "package.json").write_text('{"type": "module"}')
+    test = tmp_path / "units.test.mjs"
+    test.write_bytes((Path(__file__).parent / "units.test.mjs").read_bytes())
+    done = subprocess.run([NODE, "--test", test], capture_output=True, text=True, cwd=tmp_path, timeout=120)
+    assert done.returncode == 0, done.stdout + done.stderr
