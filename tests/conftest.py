@@ -31,17 +31,3 @@ def session():
     yield made
     kernel.stop()
     PACKAGE.value = COMMON_LISP_USER
-
-
-KNOWN = ("test_symbols.py::test_the_symbol_answers_as_in_sbcl[objects that cannot be read]", "test_describe.py::test_classes_and_instances",
-         "test_board.py::test_the_past_is_there_in_chapters", "TestMessages::test_a_field_that_does_not_exist",
-         "test_page_of_a_session.py::test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at",
-         "test_types_against_sbcl.py::test_classes_and_their_types_answer_as_in_sbcl",
-         "test_clos_against_sbcl.py::test_objects_and_their_errors_answer_as_in_sbcl")
-"""Tests that failed in the last run on two processes, most of them by the order in which files then run; to be mended first."""
-
-
-def pytest_collection_modifyitems(items):
-    for item in items:
-        if any(name in item.nodeid for name in KNOWN):
-            item.add_marker(pytest.mark.xfail(reason="fails in some orders of the test files (closing note of issue 6)", strict=False))
