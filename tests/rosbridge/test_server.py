@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import urllib.request
+from time import sleep
 
 import pytest
 
@@ -104,6 +105,23 @@ def test_the_server_ends_with_the_kernel(serve, outside, backend):
     assert wires[0].closed() == (1001, "The session has ended.")
     assert not server.file.exists()
     assert not server.company.alive and server.company.failure is None
+
+
+def test_every_client_hears_why_the_session_ends_however_busy_the_server_is(serve, outside, backend):
+    """uvicorn closes whom it still finds with a mere number; so it is told only when all have had their reason."""
+    server = serve(backend=backend)
+    wires = []
+
+    def clients():
+        for _ in range(20):
+            wires.append(Wire(server.address))
+            wires[-1].call("/rosapi/topics")
+        wires.append(Wire(server.address.rpartition("/")[0]))  # it has not shown its token
+
+    outside(clients)
+    server.company.call(lambda: sleep(0.3))  # so uvicorn, which looks around every 0.1 s, does so at once afterwards
+    kernel.stop()
+    assert {wire.closed() for wire in wires} == {(1001, "The session has ended.")}
 
 
 def test_closing_twice_does_nothing(serve):

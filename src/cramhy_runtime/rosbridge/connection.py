@@ -48,6 +48,7 @@ class Connection:
         self._ending = None
         self._sending = False
         self._tasks = ()
+        self._task = None
 
     # ---------------------------------------------------------------------------------------------------------- letting in
 
@@ -67,6 +68,7 @@ class Connection:
             return
         offered = self.scope.get("subprotocols") or ()
         await self._send({"type": "websocket.accept", "subprotocol": "rosbridge_v2" if "rosbridge_v2" in offered else None})
+        self._task = asyncio.current_task()
         self.server.connections.add(self)
         try:
             if token is None:
@@ -98,6 +100,9 @@ class Connection:
         except TimeoutError:
             raise Left(POLICY, f"No token came within {self.limits.first_message:g} s. The first message must be "
                                '{"op": "auth", "token": "..."}.') from None
+        except asyncio.CancelledError:
+            self._leave_if_asked()
+            raise
         except Malformed:
             message = None
         finally:
@@ -204,9 +209,13 @@ class Connection:
                     reminder.cancel()
 
     def end(self, code, reason):
-        """Close the connection soon."""
+        """Close the connection soon; returns the task that ends with it."""
         self._ending = code, reason
-        self.stir()
+        if self._tasks:
+            self.stir()
+        else:
+            self._task.cancel()  # it still waits for the token
+        return self._task
 
     async def _close(self, code, reason):
         farewell = {"type": "websocket.close", "code": code, "reason": reason_text(reason)}

@@ -62,7 +62,7 @@ class Server:
         self.closed = False
         self._out = deque()
         self._called = False
-        self._uvicorn = None
+        self._uvicorn = self._stopping = None
         self.kernel.count_outside(1)  # with the baton, so that the next prompt knows; `outside_source` is for other threads
         self.company = Company(self._main, "cramhy rosbridge", self.kernel)
         self.task = self.kernel.spawn(self._stay, name=f"rosbridge server on port {self.port}", parent=self.kernel.main)
@@ -155,8 +155,13 @@ class Server:
         await self._uvicorn.serve([self.socket])
 
     def _stop_soon(self):
-        for connection in list(self.connections):
-            connection.end(1001, "The session has ended.")
+        self._stopping = asyncio.ensure_future(self._stop())  # the loop itself keeps no task alive
+
+    async def _stop(self):
+        """End the connections, each with the reason, and then uvicorn, which would close them with a mere number."""
+        ending = [connection.end(1001, "The session has ended.") for connection in list(self.connections)]
+        if ending:
+            await asyncio.wait(ending, timeout=self.limits.closing)
         if self._uvicorn is not None:
             self._uvicorn.should_exit = True
 
