@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from image_as_it_was import image_as_it_was
 
 REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
@@ -16,6 +17,13 @@ def shared():
     if not SHARED.is_dir():
         pytest.skip("the shared references are not beside this checkout")
     return SHARED
+
+
+@pytest.fixture(autouse=True, scope="module")
+def image_for_the_next_file():
+    """Each file of tests finds the image as the one before it found it, whatever their order."""
+    with image_as_it_was():
+        yield
 
 
 @pytest.fixture

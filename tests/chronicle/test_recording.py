@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from course_in_process import course_in_process
+from image_as_it_was import image_as_it_was
 
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import chronicler, recorder
@@ -283,7 +283,7 @@ def test_the_lecture_is_recorded_whole(tmp_path):
     try:
         graph.active().node("onlooker", hidden=True).subscribe(
             "/turtle1/pose", message_class_exact("turtlesim/Pose"), lambda pose: seen.append(to_json(pose)))
-        with course_in_process(), chronicle.record(tmp_path / "x.mcap"):
+        with image_as_it_was(), chronicle.record(tmp_path / "x.mcap"):
             for form in lectures.LECTURE_38:
                 session.evaluate_text(form)
     finally:

@@ -4,12 +4,11 @@ import itertools
 import re
 
 import pytest
+from image_as_it_was import image_as_it_was
 from lisp_text import LispLine
 
 from cramhy_runtime import image, kernel
-from cramhy_runtime.designators import classes, language_support, locations
 from cramhy_runtime.lisp.data import all_values
-from cramhy_runtime.prolog.facts import fact_group_names, remove_fact_group
 from cramhy_runtime.repl.session import Session
 
 image.boot()
@@ -36,19 +35,8 @@ def fresh_kernel(request):
 @pytest.fixture
 def no_rules_left():
     """Fact groups, generators, validators, types and create functions that a test defines are forgotten."""
-    groups = set(fact_group_names())
-    registries = [(registry, list(registry.entries), set(registry.disabled)) for registry in (locations.generators, locations.validators)]
-    types, makers = dict(classes._classes), list(language_support._create_functions)
-    yield
-    for name in fact_group_names():
-        if name not in groups:
-            remove_fact_group(name)
-    for registry, entries, disabled in registries:
-        registry.entries, registry.disabled = entries, disabled
-    classes._classes.clear()
-    for type_, cls in types.items():
-        classes.register_designator_class(type_, cls)
-    language_support._create_functions[:] = makers
+    with image_as_it_was():
+        yield
 
 
 class Lisp(LispLine):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from image_as_it_was import image_as_it_was
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, Object, action_grounding, equate, motion_grounding
@@ -23,8 +24,7 @@ from cramhy_runtime.process_modules import (
     running_module,
     status,
 )
-from cramhy_runtime.prolog import P, V, fact_group, findall, kw, remove_fact_group
-from cramhy_runtime.prolog.facts import fact_group_names
+from cramhy_runtime.prolog import P, V, fact_group, findall, kw
 
 
 class Driving(Motion):
@@ -41,11 +41,8 @@ class Fetching(Action):
 
 @pytest.fixture(autouse=True)
 def nothing_left():
-    before = fact_group_names()
-    yield
-    for name in fact_group_names():
-        if name not in before:
-            remove_fact_group(name)
+    with image_as_it_was():
+        yield
 
 
 @pytest.fixture

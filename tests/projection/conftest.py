@@ -5,15 +5,14 @@ import itertools
 import re
 
 import pytest
+from image_as_it_was import image_as_it_was
 from lisp_text import LispLine
 
 from cramhy_runtime import image
 from cramhy_runtime.cpl import past_plans, task_variables
 from cramhy_runtime.episodes import auto_tracing, backends, tracing
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-from cramhy_runtime.lisp.printer.print_controls import PACKAGE
 from cramhy_runtime.projection import environments
-from cramhy_runtime.prolog import facts, rete
+from cramhy_runtime.prolog import rete
 from cramhy_runtime.repl.console import report
 from cramhy_runtime.repl.session import Session
 
@@ -66,13 +65,9 @@ def lisp(request, monkeypatch, tmp_path):
     monkeypatch.setattr(backends, "_stores", {})
     monkeypatch.setattr(backends, "_restores", {})
     past_plans.forget()
-    groups = set(facts.fact_group_names())
-    yield Lisp(request.param)
-    for name in facts.fact_group_names():
-        if name not in groups:
-            facts.remove_fact_group(name)
+    with image_as_it_was():
+        yield Lisp(request.param)
     rete.clear_alpha_network()
     auto_tracing.disable_auto_tracing()
     tracing.disable_fluent_tracing()
     past_plans.forget()
-    PACKAGE.value = COMMON_LISP_USER

@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from course_in_process import course_in_process
+from image_as_it_was import image_as_it_was
 
 from cramhy_runtime import kernel, rosbridge
 
@@ -82,7 +82,7 @@ def joined(robot):
 
 
 def test_the_plan_of_the_course_drives_the_turtle_of_the_other_process(robot, joined):
-    with course_in_process():
+    with image_as_it_was():
         drive_by_the_plan_of_the_course(robot, *joined)
 
 

@@ -20,6 +20,7 @@ WHERE = {
     "equality": "equal",
     "files.namestrings": "namestring native_namestring",
     "objects.classes": "class_name find_class make_instance",
+    "objects.clos_printing": "print_class",
     "objects.instances": "initialize_from_python",
     "objects.slots": "missing_value",
     "objects.structures": "slots_of",

@@ -22,7 +22,7 @@ from . import print_controls as controls
 from .pretty import NO_OBJECT, call_logical_block
 from .print_arrays import print_array
 from .print_controls import PRINT_ESCAPE, PRINT_PRETTY, bound, deeper, length_limit, too_deep
-from .print_names import integer_text, string_text, symbol_text, symbol_with_prefix
+from .print_names import integer_text, string_text, symbol_text
 from .printer import class_symbol, define_printer, escaping, output_object, print_unreadable
 
 
@@ -36,7 +36,7 @@ def print_python_object(obj, stream):
     elif isinstance(obj, (str, float)):
         output_object(str(obj) if isinstance(obj, str) else float(obj), stream)
     elif isinstance(obj, type):
-        _print_class(obj, stream)
+        late.print_class(obj, stream)
     elif getattr(cls, "lisp_name", None) is not None:
         print_unreadable(obj, stream, type_=True, identity=True)
     elif callable(obj):
@@ -231,24 +231,6 @@ def function_name(function):
     return None
 
 
-def _print_class(cls, stream):
-    metaclass = type(cls)
-    kind = getattr(metaclass, "lisp_name", None)
-    if kind is None:
-        if getattr(cls, "lisp_name", None) is None and cls.__module__ != __name__:
-            print_unreadable(cls, stream, "PYTHON " + repr(cls))
-            return
-        kind = (
-            "CONDITION-CLASS"
-            if issubclass(cls, Condition)
-            else "STRUCTURE-CLASS"
-            if hasattr(cls, "lisp_structure")
-            else "STANDARD-CLASS"
-        )
-    kind = symbol_name(kind) if is_symbol(kind) else kind.rpartition(":")[2]
-    print_unreadable(cls, stream, f"{kind} {symbol_with_prefix(class_symbol(cls))}")
-
-
 def _print_complex(number, stream):
     stream.write("#C(")
     real, imaginary = parts(number)
@@ -304,7 +286,6 @@ def _register():
         (object, print_python_object),
         (Condition, _print_condition),
         (Restart, _print_restart),
-        (type, _print_class),
         (list, print_array),
         (LispArray, print_array),
         (complex, _print_complex),
