@@ -14,6 +14,7 @@ from cramhy_runtime.lisp.packages import COMMON_LISP, COMMON_LISP_USER, find_pac
 from cramhy_runtime.lisp.systems import systems
 from cramhy_runtime.process_modules import registry
 from cramhy_runtime.prolog import facts
+from cramhy_runtime.testing import plans
 
 COURSE = "cram-my-beginner-tutorial"
 _KEPT = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data", "reads", "writes")
@@ -47,6 +48,7 @@ def image_as_it_was():
     registry._defined.clear()
     registry._defined.update(modules)
     systems.forget_system(COURSE)
+    plans._compiled.clear()  # their definitions may be among what was taken back
 
 
 class _Contents:

@@ -144,6 +144,7 @@ SIMPLE-ERROR:
   at <repl 1>:1:1
     (roslisp:make-message "turtlesim/Color" :nosuch 1)
     ^
+  turtlesim/Color has the fields r g b.
 """
         assert "Could not find field NOSUCH in (VECTOR3" in tried("(roslisp:publish-msg *pub* (:nosuch :linear) 1)", before=PUBLISHER)
 

@@ -58,6 +58,7 @@ def visit(browser):
         opened.goto(address)
         if connected:
             opened.wait_for_selector("#connection[data-state=open]")
+            opened.wait_for_selector("#doing:not(:empty)")  # it has the state, so all it subscribed to is heard from now on
         return opened
 
     yield open_page

@@ -76,7 +76,7 @@ def test_readers_of_the_screen_are_told_what_things_are(fake, visit):
     wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
     for role, name in (("tree", "Tasks"), ("log", "Log"), ("slider", "Time line"), ("application", "The turtles' paper"),
                        ("radiogroup", "Turtle that is"), ("heading", "Process modules"), ("status", None)):
-        assert page.get_by_role(role, name=name).count() >= 1, (role, name)
+        page.get_by_role(role, name=name).first.wait_for(state="attached")
     top = page.locator("#tasks [role=treeitem]").first
     assert [top.get_attribute(f"aria-{name}") for name in ("level", "expanded", "posinset", "setsize")] == ["1", "true", "1", "1"]
     assert page.evaluate("""() => [...document.querySelectorAll("button, select, input")].filter((control) =>

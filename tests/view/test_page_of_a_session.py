@@ -9,7 +9,7 @@ import sys
 import threading
 
 import pytest
-from test_page import near, pixel, rows, wait_for_pixel, wait_for_reading, wait_for_text
+from test_page import rows, wait_for_pixel, wait_for_reading, wait_for_text
 from test_page_time import seek
 
 PATIENCE = 120  # s; the first session of a checkout compiles the language
@@ -135,7 +135,7 @@ def test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at(course)
     wait_for_pixel(page, 6.0, 6.0, [255, 40, 0])
     seek(page, begin + 0.3)  # the turtle has driven half a metre
     wait_for_text(page, "#past", "as it was at")
-    assert near(pixel(page, 8.5, 8.5), [69, 86, 255])
+    wait_for_pixel(page, 8.5, 8.5, [69, 86, 255])  # it is drawn with the next frame
     page.get_by_role("button", name="Live").click()
     session.type("(call-set-pen 0 0 0 1 0)")
     wait_for_reading(page, "pen", "1 px")
@@ -170,10 +170,16 @@ def test_a_page_that_comes_late_sees_what_was_before(course, visit):
     session.type("(drive 2 2)\n(sleep 1.0)\n(call-set-pen 255 0 0 5 0)\n(drive 2 0)\n(sleep 1.0)")
     wait_for_reading(page, "pen", "5 px")
     page.wait_for_function("() => parseFloat(document.getElementById('clock').textContent) >= 2")
+    wait_for_text(page, "#doing", "the prompt waits")
     late = visit(session.url)
     late.wait_for_function("() => Number(document.getElementById('moment').max) - Number(document.getElementById('moment').min) >= 1.9")
-    x = page.evaluate("() => document.querySelector('[data-reading=x]').textContent")
-    wait_for_reading(late, "x", x)
+    late.wait_for_function("""() => {
+        const x = document.querySelector('[data-reading=x]').textContent, rests = x && x === window.before;
+        window.before = x;
+        return rests;
+    }""", polling=200)
+    x = late.evaluate("() => document.querySelector('[data-reading=x]').textContent")
+    wait_for_reading(page, "x", x)
     seek(late, 0.5)
     late.wait_for_function("(x) => document.querySelector('[data-reading=x]').textContent !== x", arg=x)
     wait_for_reading(late, "pen", "3 px")

@@ -12,18 +12,19 @@ from .sums import KINDS
 MOST = 60_000
 """Things that are kept: about 20 MB; eight minutes of one turtle that drives and draws."""
 CHAPTER = 2_000
-"""Things after which a new chapter begins."""
+"""Things in the messages of a chapter after which a new one begins, if they are not fewer than what its state costs."""
 
 
 class Chapter:
-    """``number`` counts from 1. ``begin`` and ``end`` are plan times, ``state`` is the `State` at the beginning, ``later`` is by kind."""
+    """``number`` counts from 1. ``begin`` and ``end`` are plan times, ``state`` is the `State` at the beginning, ``later`` is by kind.
+    ``first`` and ``size`` say how much the state holds, and how much that and the messages do."""
 
-    __slots__ = ("number", "begin", "end", "state", "later", "size")
+    __slots__ = ("number", "begin", "end", "state", "later", "first", "size")
 
     def __init__(self, number, now, state):
         self.number, self.begin, self.end, self.state = number, now, now, state
         self.later = {kind: [] for kind in KINDS}
-        self.size = 1 + len(state) // 4  # most of it is shared with other chapters
+        self.first = self.size = 1 + len(state) // 4  # most of it is shared with other chapters
 
 
 class History:
@@ -36,10 +37,10 @@ class History:
 
     def add(self, published, state):
         """Note what was published at one moment, pairs (kind, message); ``state`` is the `State` that it led to."""
-        if not self.chapters or self.chapters[-1].size >= self.chapter:
+        chapter = self.chapters[-1] if self.chapters else None
+        if chapter is None or chapter.size - chapter.first >= max(self.chapter, chapter.first):
             self._begin(published[-1][1].stamp, state)
             return
-        chapter = self.chapters[-1]
         for kind, message in published:
             size = _size(message)
             chapter.later[kind].append(message)

@@ -1,9 +1,10 @@
-"""The plans of the anomaly loop bring kernels of their own, and leave nothing behind for other tests."""
+"""The plans of the anomaly loop bring kernels of their own, and what they define is there for one file of tests."""
 
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.prolog.facts import fact_group_names, remove_fact_group
+
+from . import harness
 
 
 @pytest.fixture(autouse=True)
@@ -11,9 +12,7 @@ def fresh_kernel():
     kernel.stop()
 
 
-@pytest.fixture(scope="package", autouse=True)
-def facts_are_forgotten():
-    before = set(fact_group_names() or ())
+@pytest.fixture(scope="module", autouse=True)
+def plans_of_this_file():
     yield
-    for name in set(fact_group_names() or ()) - before:
-        remove_fact_group(name)
+    harness.forget()

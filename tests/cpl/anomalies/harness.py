@@ -17,15 +17,17 @@ from cramhy_runtime.testing.plans import plan_of, with_lisp
 from . import acting_plans, guards
 
 TIME_LIMIT = 100.0
-_ready = False
 _functions = {}
+
+
+def forget():
+    """Forget the compiled plans: the next one finds another image, without what these defined."""
+    _functions.clear()
 
 
 def function_of(plan):
     """The compiled plan."""
-    global _ready
-    if not _ready:
-        _ready = True
+    if not _functions:
         with_lisp(guards.define)
         plan_of(guards.MACROS)
         plan_of(acting_plans.HELPERS)
