@@ -61,8 +61,7 @@ def test_a_room_imports_only_from_floors_below_its_own(path):
         assert FLOOR[other] < FLOOR[room] or (room, other) in ALLOWED_UPWARDS, f"{room} imports {other}"
 
 
-@pytest.mark.parametrize("room", ["kernel", "lisp", "utilities", "transforms", "cpl", "prolog", "ros", "designators", "turtlesim",
-                                  "episodes", "occasions", "process_modules", "projection", "chronicle", "ros_tools", "repl", "testing"])
+@pytest.mark.parametrize("room", FLOOR)
 def test_the_modules_of_a_room_import_each_other_without_circles(room):
     """Not even within functions: what a lower module needs of a higher one goes through one seam, as ``lisp/late.py``."""
     modules = {".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__"): path

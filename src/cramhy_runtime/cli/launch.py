@@ -1,4 +1,4 @@
-"""Launch files: which programs and parameters a file describes, for ``roslaunch``.
+"""``roslaunch``, and launch files: which programs and parameters a file describes.
 
 Tags: ``launch``, ``group``, ``node``, ``param``, ``rosparam``, ``remap``, ``arg``, ``include``, with ``if``, ``unless``, ``ns`` and the
 substitutions ``$(arg x)``, ``$(find package)``, ``$(env X)``, ``$(optenv X default)``, ``$(dirname)``, ``$(anon x)``. An unknown tag or a
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple
@@ -16,8 +17,9 @@ from xml.etree import ElementTree
 
 from cramhy_runtime.ros.names import plain_value
 from cramhy_runtime.ros_tools import yaml_reading
+from cramhy_runtime.ros_tools.hosting import PROGRAMS
 
-from .programs import Program
+from .programs import Program, rosrun, run
 from .workspace import folder_of, packages
 
 DEEPEST = 20  # launch files that include each other
@@ -281,6 +283,27 @@ def _spread(parameters, name, value):
 
 
 _DO = {"group": _group, "node": _node, "param": _param, "rosparam": _rosparam, "remap": _remap, "arg": _arg, "include": _include}
+
+
+def roslaunch(arguments):
+    """``roslaunch PACKAGE FILE.launch [arg:=value]`` or ``roslaunch FILE.launch``; also an executable, as the slides have it."""
+    words = [word for word in arguments if ":=" not in word and not word.startswith("-")]
+    values = dict(word.split(":=", 1) for word in arguments if ":=" in word)
+    if not words:
+        print("Usage: roslaunch [options] [package] <filename> [arg_name:=value...]\n       roslaunch [options] <filename> "
+              "[<filename>...] [arg_name:=value...]\n\nroslaunch: error: you must specify at least one input file", file=sys.stderr)
+        return 2
+    if len(words) == 2 and words[0] == "turtlesim" and words[1] in PROGRAMS:
+        return rosrun(words + [word for word in arguments if ":=" in word])
+    try:
+        launched = load(words, values)
+    except LaunchError as problem:
+        print(f"RLException: {problem}", file=sys.stderr)
+        return 1
+    print(summary(launched))
+    for name in launched.arguments_unused:
+        print(f"WARNING: there is no <arg name=\"{name}\"> in the launch file", file=sys.stderr)
+    return run(launched.programs, launched.parameters)
 
 
 def summary(launched):

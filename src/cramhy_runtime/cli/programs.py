@@ -1,4 +1,4 @@
-"""``roscore``, ``rosrun`` and ``roslaunch``, and ``cramhy turtlesim`` and ``teleop``: programs that run on the graph, and their terminals.
+"""``roscore`` and ``rosrun``, and ``cramhy turtlesim`` and ``teleop``: programs that run on the graph, and their terminals.
 
 All nodes live in one process, the session; a terminal that starts a program shows its log and ends it with Ctrl-C. Where does it run?
 In the session of this machine, if there is one (`ros_tools.hosting`). If there is none, this process becomes a session itself, with the
@@ -70,31 +70,6 @@ def _known(package, executable):
     if package == "turtlesim":
         print(f"[rosrun] turtlesim has the executables {', '.join(sorted(PROGRAMS))}.", file=sys.stderr)
     return 3
-
-
-def roslaunch(arguments):
-    """``roslaunch PACKAGE FILE.launch [arg:=value]`` or ``roslaunch FILE.launch``; also an executable, as the slides have it."""
-    from . import launch
-
-    words = [word for word in arguments if ":=" not in word and not word.startswith("-")]
-    values = dict(word.split(":=", 1) for word in arguments if ":=" in word)
-    if not words:
-        print("Usage: roslaunch [options] [package] <filename> [arg_name:=value...]\n       roslaunch [options] <filename> "
-              "[<filename>...] [arg_name:=value...]\n\nroslaunch: error: you must specify at least one input file", file=sys.stderr)
-        return 2
-    from cramhy_runtime.ros_tools.hosting import PROGRAMS
-
-    if len(words) == 2 and words[0] == "turtlesim" and words[1] in PROGRAMS:
-        return rosrun(words + [word for word in arguments if ":=" in word])
-    try:
-        launched = launch.load(words, values)
-    except launch.LaunchError as problem:
-        print(f"RLException: {problem}", file=sys.stderr)
-        return 1
-    print(launch.summary(launched))
-    for name in launched.arguments_unused:
-        print(f"WARNING: there is no <arg name=\"{name}\"> in the launch file", file=sys.stderr)
-    return run(launched.programs, launched.parameters)
 
 
 # ------------------------------------------------------------------------------------------------------------ where to run

@@ -14,7 +14,8 @@ from cramhy_runtime.ros_tools import running
 
 _HOMES = {
     **dict.fromkeys(("catkin_create_pkg", "catkin_make", "rosls", "rospack", "rosversion", "roscd"), "workspace"),
-    **dict.fromkeys(("roscore", "rosrun", "roslaunch"), "programs"),
+    **dict.fromkeys(("roscore", "rosrun"), "programs"),
+    "roslaunch": "launch",
 }
 TOOLS = (*(name for name in _HOMES if name != "roscd"), *running.TOOLS)
 _MARK = "made by cramhy ros-shims"
