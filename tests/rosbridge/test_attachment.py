@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import subprocess
 import sys
+import threading
 
 import pytest
 from image_as_it_was import image_as_it_was
@@ -204,8 +206,8 @@ def test_where_nobody_answers(serve):
 
 
 @pytest.mark.parametrize("address, text", [
-    ("ws://127.0.0.1:{port}/wrong", "{url} is refused: the token in this address is wrong. The session prints its address with the right "
-     "one when it starts with --serve (docs/ros-bridge.md)."),
+    ("ws://127.0.0.1:{port}/wrong", "{url} is refused: the server answered 403 Forbidden. If it is a session of cramhy, the token in this "
+     "address is wrong. The session prints its address with the right one when it starts with --serve (docs/ros-bridge.md)."),
     ("ws://127.0.0.1:{port}", "{url} is refused: the token is missing in this address. The session prints its address with the right "
      "one when it starts with --serve (docs/ros-bridge.md)."),
     ("wss://127.0.0.1:{port}/x", "The server at {url} does not speak TLS. Try ws://127.0.0.1:{port}/x"),
@@ -225,6 +227,87 @@ def test_a_refusal_is_told_in_one_line_and_no_library_writes_a_log(robot, capfd,
     kernel.stop()
     assert str(caught.value) == text.format(url=url, port=robot.port)
     assert "".join(capfd.readouterr()) == ""
+
+
+@pytest.mark.parametrize("answer, text", [
+    ("401 Unauthorized", "{url} is refused: the server answered 401 Unauthorized. If it is a session of cramhy, the token in this address "
+     "is wrong. The session prints its address with the right one when it starts with --serve (docs/ros-bridge.md)."),
+    ("404 Not Found", "{url} is refused: the server answered 404 Not Found. Is it a rosbridge server, and is this its address?"),
+    ("503", "{url} is refused: the server answered 503. Is it a rosbridge server, and is this its address?"),
+])  # fmt: skip
+def test_what_another_server_answers_is_told(answer, text):
+    from cramhy_runtime.repl.session import Session
+    from cramhy_runtime.rosbridge.server import ServerError
+
+    Session(time="wall")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def say_no():
+            client, _ = server.accept()
+            with client:
+                client.recv(65536)
+                client.sendall(f"HTTP/1.1 {answer}\r\nContent-Length: 0\r\n\r\n".encode())
+
+        threading.Thread(target=say_no, daemon=True).start()
+        url = f"ws://127.0.0.1:{server.getsockname()[1]}/x"
+        with pytest.raises(ServerError) as caught:
+            rosbridge.attach(url)
+    kernel.stop()
+    assert str(caught.value) == text.format(url=url)
+
+
+def test_an_answer_that_comes_too_late_is_waited_for_no_more(robot, joined, monkeypatch):
+    from cramhy_runtime.lisp.condition_types import Condition
+    from cramhy_runtime.rosbridge import attachment
+
+    _, link = joined
+    monkeypatch.setattr(attachment, "PATIENCE", 0.1)
+    monkeypatch.setattr(link, "call", lambda name, values, done, failed: link._waiting.setdefault(7, failed) and 7)
+    with pytest.raises(Condition) as caught:
+        link.ask("/rosapi/topics")
+    assert caught.value.report() == f"/rosapi/topics cannot be asked at {robot.address}: no answer came within 0.1 s"
+    assert 7 not in link._waiting
+
+
+def test_a_service_whose_type_is_not_known_here_is_asked_about_once(joined, monkeypatch):
+    _, link = joined
+    asked = []
+
+    def call(name, values, done, failed):
+        asked.append(values["service"])
+        done({"type": "nowhere_msgs/Fly"})
+
+    monkeypatch.setattr(link, "call", call)
+    there = [name for name in link.graph.services if name in link.node.services]
+    for names in (["/fly"], ["/fly"], [], ["/fly"]):
+        link._services_are(there + names)
+    assert asked == ["/fly", "/fly"]
+
+
+def test_what_the_other_side_complains_of_is_logged(robot, joined, capsys):
+    evaluate, link = joined
+    evaluate('(roslisp:start-ros-node "lisp")')
+    evaluate('(defparameter *p* (roslisp:advertise "/turtle1/pose" "std_msgs/String"))')
+    said = ""
+    while "complains" not in said:
+        kernel.sleep(0.05)
+        said += capsys.readouterr().out
+    assert f"{robot.address} complains: The topic /turtle1/pose has messages of the type turtlesim/Pose, not std_msgs/String." in said
+
+
+def test_where_ros_2_is_a_parameter_stays_here_and_that_is_said_once(graph, capsys):
+    from cramhy_runtime.ros.parameter_tree import ParameterTree
+    from cramhy_runtime.rosbridge.attachment import NearParameters
+
+    before = ParameterTree()
+    before.set("/old", 1)
+    parameters = NearParameters(before, "ws://robot:9090")
+    parameters.set("/a/b", 2)
+    parameters.set("/c", 3)
+    assert capsys.readouterr().out.partition(": ")[2] == (
+        "The parameter /a/b is set in this session only: at ws://robot:9090 is ROS 2, where each parameter belongs to one node. "
+        "Set it there with: ros2 param set NODE NAME VALUE\n")
+    assert parameters.names() == ["/a/b", "/c", "/old"] and parameters.get("/a/b") == 2
 
 
 def test_ros_2_spells_times_and_headers_its_own_way():

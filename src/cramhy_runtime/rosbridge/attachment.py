@@ -5,11 +5,13 @@ The far graph is mirrored by a node ``/rosbridge_client`` of ours, so that nothi
 * What a node here publishes is published there; what it subscribes to is subscribed to there. A topic that is used on both sides
   here goes over the bridge too, so that every message arrives once.
 * Services there are offered here, under their names; services that the plan registers are offered there.
-* Parameters are those of ROS 1's server. ROS 2 has none that belong to all, so there they stay in this session.
+* Parameters are those of ROS 1's server. ROS 2 has none that belong to all, so there they stay in this session, and the first that is
+  set says so.
 
 Types are spelled as the other side spells them, ``geometry_msgs/msg/Twist`` in ROS 2, and times likewise. While the connection is lost no
 service is there, calls that wait fail, with the reason, and both loss and return are logged; roslibpy connects anew. All of it is in
-wall time: a robot does not wait for a virtual clock. What roslibpy's thread brings is posted to the kernel.
+wall time: a robot does not wait for a virtual clock. What roslibpy's thread brings is posted to the kernel. What the other side's rosbridge
+complains of is logged.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from ..lisp.condition_types import SimpleError
 from ..ros import graph, services
 from ..ros.message_json import MessageJsonError, from_json, service_named, to_json
 from ..ros.messages import message_class_exact
+from ..ros.parameter_tree import ParameterTree
 from ..ros.roslisp import logging
 from ..ros.roslisp.services import LispService
 from .no_answers import reason
@@ -87,6 +90,20 @@ class FarParameters:
         return sorted(self._ask("/rosapi/get_param_names")["names"])
 
 
+class NearParameters(ParameterTree):
+    """The parameters of this session, where the other side is ROS 2: the user is told once that they are nobody else's."""
+
+    def __init__(self, before, url):
+        self.root, self._url, self._told = before.root, url, False
+
+    def set(self, name, value):
+        super().set(name, value)
+        if not self._told:
+            self._told = True
+            logging.log_text(logging.WARN, TOPIC, f"The parameter {name} is set in this session only: at {self._url} is ROS 2, where each "
+                                                  "parameter belongs to one node. Set it there with: ros2 param set NODE NAME VALUE")
+
+
 class Link:
     """The connection; made by `join`. ``connected``; ``ros2``: whether the other side is ROS 2."""
 
@@ -98,12 +115,15 @@ class Link:
         self.connected, self.closed, self.ros2 = True, False, False
         self._incoming, self._outgoing, self._offered = {}, {}, {}
         self._waiting = {}
+        self._not_known = set()  # services whose types no package here defines
+        self._timers = ()
         self._delivering = False
         self._numbers = 0
         self._parameters = here.parameters
         here.before_first_node.clear()  # our turtle is not started: the robot is there
         self.kernel.count_outside(1)
         ros.on("close", lambda *_: self.kernel.post(self._lost))
+        refusal.complained = lambda text: self.kernel.post(lambda: self._hear(text))
 
     # ------------------------------------------------------------------------------------------------------ beginning and end
 
@@ -111,8 +131,7 @@ class Link:
         """Look what is there, and mirror it from now on."""
         types = self.ask("/rosapi/topics")["types"]
         self.ros2 = any(kind.count("/") == 2 for kind in types)
-        if not self.ros2:
-            self.graph.parameters = FarParameters(self)
+        self.graph.parameters = NearParameters(self._parameters, self.url) if self.ros2 else FarParameters(self)
         self._services_are(self.ask("/rosapi/services")["services"])
         self._timers = [self.kernel.call_every(LOOK, self.look), self.kernel.call_every(ASK, self._ask_for_services)]
         self.graph.on_change.append(self._changed)
@@ -123,7 +142,7 @@ class Link:
         if self.closed:
             return
         self.closed = True
-        for timer in getattr(self, "_timers", ()):
+        for timer in self._timers:
             timer.cancel()
         if self._changed in self.graph.on_change:
             self.graph.on_change.remove(self._changed)
@@ -151,14 +170,21 @@ class Link:
             self.connected = True
             logging.log_text(logging.WARN, TOPIC, f"The connection to {self.url} is there again.")
 
+    def _hear(self, text):
+        if not self.closed:
+            logging.log_text(logging.WARN, TOPIC, f"{self.url} complains: {text}")
+
     # --------------------------------------------------------------------------------------------------------------- calling
 
     def call(self, name, values, done, failed):
-        """Call a service there: DONE gets the values of the answer, FAILED a text. With the baton, and so are these called."""
+        """Call a service there: DONE gets the values of the answer, FAILED a text. With the baton, and so are these called.
+
+        Returns the number under which the answer is waited for in ``_waiting``; ``None`` when it is not."""
         import roslibpy
 
         if not self.ros.is_connected:
-            return failed(f"there is no connection to {self.url}")
+            failed(f"there is no connection to {self.url}")
+            return None
         self._numbers += 1
         number = self._numbers
         self._waiting[number] = failed
@@ -175,6 +201,7 @@ class Link:
 
         roslibpy.Service(self.ros, name, "").call(
             roslibpy.ServiceRequest(values), over(lambda found: done(dict(found))), over(lambda problem: failed(str(problem))))
+        return number
 
     def ask(self, name, /, **values):
         """The values of the answer of a service there; waits for it. An error when none comes."""
@@ -184,10 +211,13 @@ class Link:
             outcome.append(found)
             kernel.unpark(task)
 
-        self.call(name, values, lambda found: arrive(found, None), lambda text: arrive(None, text))
+        number = self.call(name, values, lambda found: arrive(found, None), lambda text: arrive(None, text))
         until = kernel.now() + PATIENCE
-        while not outcome and kernel.now() < until:
-            kernel.park(f"the answer of {name} at {self.url}", until)
+        try:
+            while not outcome and kernel.now() < until:
+                kernel.park(f"the answer of {name} at {self.url}", until)
+        finally:
+            self._waiting.pop(number, None)  # an answer that comes later wakes nobody
         found, problem = outcome[0] if outcome else (None, f"no answer came within {PATIENCE:g} s")
         if problem is not None:
             if self._refusal.why and not self._begun:
@@ -317,13 +347,14 @@ class Link:
         self.call("/rosapi/services", {}, lambda found: self._services_are(found["services"]), lambda text: None)
 
     def _services_are(self, names):
-        names = set(names)
+        there = set(names)
         if names:
             self._is_back()
-        for name in [name for name, service in self.node.services.items() if isinstance(service, FarService) and name not in names]:
+        for name in [name for name, service in self.node.services.items() if isinstance(service, FarService) and name not in there]:
             self.node.withdraw(name)
+        self._not_known &= there
         for name in names:
-            if name not in self.graph.services:
+            if name not in self.graph.services and name not in self._not_known:
                 self.call("/rosapi/service_type", {"service": name}, self._type_is(name), lambda text: None)
 
     def _type_is(self, name):
@@ -333,7 +364,8 @@ class Link:
             try:
                 kind = service_named(found["type"])
             except MessageJsonError:
-                return  # of a package whose definitions are not here: nobody here could call it
+                self._not_known.add(name)  # of a package whose definitions are not here: nobody here could call it
+                return
             self.node.add_service(FarService(self, name, kind))
 
         return known

@@ -1,7 +1,8 @@
-"""Why a rosbridge server does not let us in, as far as roslibpy's connection tells it: what the user can do something about.
+"""Why a rosbridge server does not let us in, and what it complains of later, as far as roslibpy's connection tells it.
 
-Autobahn only logs such a reason, and roslibpy tries for ever. Here the protocol of a `roslibpy.Ros` is replaced by one that keeps the
-reason and ends the wait for the connection. The logs of both libraries are left to those who ask for them.
+Autobahn only logs such a reason, and roslibpy tries for ever; it has no ear for the operation ``status`` either. Here the protocol of a
+`roslibpy.Ros` is replaced by one that keeps the reason, ends the wait for the connection, and hands complaints on. The logs of both
+libraries are left to those who ask for them.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ import logging
 import re
 
 ADDRESS = "The session prints its address with the right one when it starts with --serve (docs/ros-bridge.md)."
-WRONG = "{url} is refused: the token in this address is wrong. " + ADDRESS
+REFUSED = "{url} is refused: the server answered {answer}. If it is a session of cramhy, the token in this address is wrong. " + ADDRESS
+OTHER = "{url} is refused: the server answered {answer}. Is it a rosbridge server, and is this its address?"
 MISSING = "{url} is refused: the token is missing in this address. " + ADDRESS
 PLAIN = "The server at {url} does not speak TLS. Try {plain}"
 
@@ -31,10 +33,12 @@ def connect(url):
 
 class Refusal:
     """Why the server at ``url`` refuses us: ``why``, a text, or ``None`` as long as it does not. ``waited_for``: whether somebody waits
-    for the connection, so that a refusal shall end the wait; roslibpy's topics, which wait for its return, shall not be told."""
+    for the connection, so that a refusal shall end the wait; roslibpy's topics, which wait for its return, shall not be told.
+    ``complained``: gets the text of each status of the server's, in roslibpy's thread."""
 
     def __init__(self, url):
         self.url, self.why, self.waited_for = url, None, True
+        self.complained = lambda text: None
         for library in ("twisted", "autobahn", "roslibpy"):
             logger = logging.getLogger(library)
             if not logger.handlers:
@@ -50,6 +54,10 @@ class Refusal:
         refusal = self
 
         class Watched(usual):
+            def __init__(self, *arguments, **keywords):
+                super().__init__(*arguments, **keywords)
+                self._message_handlers["status"] = lambda message: refusal.complained(str(message.get("msg", "")))
+
             def onClose(self, wasClean, code, reason):
                 super().onClose(wasClean, code, reason)
                 refusal.closed(self.factory, str(reason))
@@ -62,8 +70,9 @@ class Refusal:
 
     def closed(self, factory, reason):
         """The connection ended with this REASON of the server's, or of autobahn's. In roslibpy's thread."""
-        if re.search(r"upgrade failed \[40[13]", reason):
-            self._is(factory, WRONG)
+        answer = re.search(r'upgrade failed \[(\d+)\]: ([^"]*)', reason)
+        if answer:
+            self._is(factory, REFUSED if answer[1] in ("401", "403") else OTHER, " ".join(answer.groups()).rstrip())
         elif '"op": "auth"' in reason:
             self._is(factory, MISSING)
 
@@ -72,7 +81,7 @@ class Refusal:
         if self.url.startswith("wss:") and re.search("wrong version number|unknown protocol|record layer", repr(problem)):
             self._is(factory, PLAIN)
 
-    def _is(self, factory, text):
-        self.why = text.format(url=self.url, plain=re.sub("^wss", "ws", self.url))
+    def _is(self, factory, text, answer=""):
+        self.why = text.format(url=self.url, answer=answer, plain=re.sub("^wss", "ws", self.url))
         if self.waited_for:
             factory.emit("ready", None)
