@@ -1,8 +1,9 @@
 """Tests share a process, and so an image of Lisp; what one defines for all must not be there for the next.
 
-Packages of a test's own harm nobody and stay. Taken back is what other tests would meet: the contents of COMMON-LISP-USER and CRAM-USER,
-the values of Common Lisp's variables, fact groups, generators and validators of locations, classes of designators, process modules, and
-the course's system, which extends CRAM's predicates and refuses all locations but its own. Whoever needs it next loads it anew.
+Packages of a test's own harm nobody and stay. Taken back is what other tests would meet: the contents of COMMON-LISP-USER, CRAM-USER
+and TESTING-USER, the values of Common Lisp's variables, fact groups, generators and validators of locations, classes of designators,
+process modules, and the course's system, which extends CRAM's predicates and refuses all locations but its own. Whoever needs it next
+loads it anew.
 """
 
 from contextlib import contextmanager
@@ -24,7 +25,8 @@ _KEPT = ("value", "function", "macro", "setf_function", "plist", "special", "con
 def image_as_it_was():
     """A context after which the image is for other tests as it was before; it may be nested."""
     image.boot()
-    packages = [_Contents(package) for package in (COMMON_LISP_USER, find_package("CRAM-USER"))]
+    users = COMMON_LISP_USER, find_package("CRAM-USER"), find_package("TESTING-USER")
+    packages = [_Contents(package) for package in users]
     variables = {symbol: symbol.value for name, symbol in COMMON_LISP.external.items()
                  if name.startswith("*") and name.endswith("*") and symbol.value is not UNBOUND}  # some get a value on a later import
     groups = set(facts.fact_group_names())
@@ -36,7 +38,7 @@ def image_as_it_was():
     for package in packages:
         package.restore()
     for name in facts.fact_group_names():
-        if name not in groups and not name.package.built_in:  # a room that was made on demand keeps its own
+        if name not in groups and (name.package in users or not name.package.built_in):  # a room that was made on demand keeps its own
             facts.remove_fact_group(name)
     for each, entries, disabled in registries:
         each.entries, each.disabled = entries, disabled

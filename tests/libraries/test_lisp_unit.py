@@ -99,7 +99,8 @@ Unit Test Summary
 
 def test_an_expansion_that_differs(printed):
     assert printed("""(define-test expanding (assert-expands (list 1) (unless-nil 1 2)))
-                      (let ((*print-failures* t)) (run-tests '(expanding)))""").startswith(""" | Failed Form: (UNLESS-NIL 1 2)
+                      (let ((*print-failures* t) (*gensym-counter* 1000))
+                        (run-tests '(expanding)))""").startswith(""" | Failed Form: (UNLESS-NIL 1 2)
  | Should have expanded to (LIST 1)
  | but saw (LET ((#:G""")
 
