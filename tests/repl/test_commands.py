@@ -10,6 +10,8 @@ import sys
 
 import pytest
 
+from .terminal import Terminal
+
 BAD_REQUEST = {"output": "", "values": [], "error": {
     "type": "CRAMHY::BAD-REQUEST", "message": 'Not understood: a line must be a JSON object {"form": "..."}.', "restarts": ["ABORT"]}}
 
@@ -182,3 +184,13 @@ class TestShims:
         done = cramhy("ros-shims")
         assert "a ROS is installed here" in done.stderr and "roscore" in done.stderr
         assert "roscore()" not in done.stdout and "catkin_make()" in done.stdout
+
+
+@pytest.mark.parametrize(("form", "shown"), [("(print 1)", "\n1 \n"), ('(format t "a~%")', "a\n"), ("(+ 1 2)", "")])
+def test_a_program_in_a_terminal_leaves_the_prompt_a_line_of_its_own_and_a_pipe_what_it_wrote(cramhy, tmp_path, form, shown):
+    program = tmp_path / "x.lisp"
+    program.write_text(form)
+    with Terminal("run", str(program)) as terminal:
+        assert terminal.status() == 0
+        assert terminal.text == shown
+    assert cramhy("run", "x.lisp").stdout == (shown if form != "(print 1)" else "\n1 ")

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import socket
-import sys
-import types
 from contextlib import ExitStack
 
 import pytest
 
 from cramhy_runtime.cli import openings, options
-from cramhy_runtime.turtlesim.pictures import is_replay
 
 
 def parsed(*words):
     return options.parser().parse_args(words)
 
 
+class Pace:
+    virtual = False
+
+
 @pytest.fixture
 def rooms(monkeypatch):
     """Rooms that only note what is asked of them, in a list."""
-    import cramhy_runtime.rosbridge.server  # noqa: F401 - the errors are the real ones, also below a room that is made up
-
     done = []
 
     class Opened:
@@ -41,29 +40,22 @@ def rooms(monkeypatch):
 
         return work
 
-    for name in ("rosbridge.start", "rosbridge.attach", "view.start", "chronicle.record", "chronicle.replay", "turtlesim.pictures.save",
-                 "turtlesim.pictures.keep_history"):
-        home, _, function = name.rpartition(".")
-        full = f"cramhy_runtime.{home}"
-        if full not in sys.modules or not getattr(sys.modules[full], "made_up", False):
-            module = types.ModuleType(full)
-            module.made_up = True
-            monkeypatch.setitem(sys.modules, full, module)
-        setattr(sys.modules[full], function, worker(name))
-    sys.modules["cramhy_runtime.turtlesim.pictures"].is_replay = is_replay
+    for name in ("rosbridge.start", "rosbridge.attach", "view.start", "chronicle.record", "turtlesim.pictures.keep_history"):
+        monkeypatch.setattr(f"cramhy_runtime.{name}", worker(name))
     monkeypatch.setattr(openings, "find_spec", lambda module: module)
     monkeypatch.setattr("cramhy_runtime.ros_tools.hosting.Host", lambda: done.append("host"))
+    monkeypatch.setattr("cramhy_runtime.kernel.pace", lambda: Pace)
     return done
 
 
 @pytest.mark.parametrize(("words", "expected"), [
     (["repl"], []),
-    (["repl", "--serve"], ["rosbridge.start port=None", "host", "close rosbridge.start"]),
-    (["repl", "--serve", "--port", "9090"], ["rosbridge.start port=9090", "host", "close rosbridge.start"]),
+    (["repl", "--serve"], ["rosbridge.start port=None origins=()", "host", "close rosbridge.start"]),
+    (["repl", "--serve", "--port", "9090"], ["rosbridge.start port=9090 origins=()", "host", "close rosbridge.start"]),
     (["repl", "--serve", "--origin", "http://a", "--origin", "http://b"],
      ["rosbridge.start port=None origins=('http://a', 'http://b')", "host", "close rosbridge.start"]),
     (["repl", "--view", "--origin", "http://a", "--port", "9"],
-     ["rosbridge.start port=9 origins=('http://a',)", "view.start port=None", "host", "close view.start", "close rosbridge.start"]),
+     ["rosbridge.start port=9 origins=('http://a',)", "view.start", "host", "close view.start", "close rosbridge.start"]),
     (["eval", "--view", "--serve", "--port", "8080"], ["view.start port=8080", "host", "close view.start"]),
     (["run", "x", "--record", "x.mcap", "--ros", "ws://robot:9090"],
      ["chronicle.record x.mcap ['x']", "rosbridge.attach ws://robot:9090", "close rosbridge.attach", "close chronicle.record"]),
@@ -84,6 +76,14 @@ def test_the_address_of_the_page_is_told(rooms, capsys):
     with ExitStack() as closings:
         openings.open_session(parsed("repl", "--view"), closings)
     assert capsys.readouterr() == ("", "; The page: http://127.0.0.1:8080/#token=x\n")
+
+
+def test_that_the_page_gives_virtual_time_a_pace_is_told(rooms, capsys, monkeypatch):
+    monkeypatch.setattr(Pace, "virtual", True)
+    with ExitStack() as closings:
+        openings.open_session(parsed("repl", "--view"), closings)
+    assert capsys.readouterr().err.splitlines()[1:] == [
+        "; Virtual time passes as the wall's does, so that there is something to see; the page can change its speed."]
 
 
 def test_the_address_for_other_programs_is_told(rooms, capsys):
@@ -138,12 +138,6 @@ def test_what_cannot_be_done_is_told_before_anything_begins(cramhy, words, messa
 def test_a_port_is_a_number_of_16_bits(cramhy):
     done = cramhy("repl", "--serve", "--port", "65536")
     assert done.returncode == 2 and done.stderr.endswith("cramhy repl: error: argument --port: invalid port value: '65536'\n")
-
-
-def test_a_room_that_is_not_there_is_named():
-    with pytest.raises(openings.NotPossible) as caught:
-        openings.works("nowhere.start", "--fly")
-    assert str(caught.value) == "--fly is not part of this version of cramhy: it has no cramhy_runtime.nowhere."
 
 
 def test_a_picture_of_the_whole_way(cramhy, tmp_path):

@@ -129,6 +129,7 @@ def _run(options):
         return 2
     handle_interrupts()
     with ExitStack() as closings:
+        closings.callback(_end_line)
         try:
             made = session(options, closings=closings)
             if options.picture:
@@ -144,6 +145,15 @@ def _run(options):
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
+
+
+def _end_line():
+    """Let a terminal's prompt begin on a line of its own, after output such as PRINT's; a file or a pipe gets what the program wrote."""
+    from cramhy_runtime.lisp.streams import streams
+
+    if sys.stdout is not None and sys.stdout.isatty():
+        streams.CONSOLE_OUTPUT.fresh_line()
+        streams.CONSOLE_OUTPUT.flush()
 
 
 def _test(options):

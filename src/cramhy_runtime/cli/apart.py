@@ -56,22 +56,21 @@ def _has_page(session):
 
 def replay(path, port=None):
     """Show the recording in the file ``path`` in the page, until Ctrl-C."""
-    from cramhy_runtime import image, kernel
+    from cramhy_runtime import chronicle, image, kernel
     from cramhy_runtime.repl.session import handle_interrupts
 
     try:
         openings.require("replay", "cramhy replay")
-        play = openings.works("chronicle.replay", "cramhy replay")
         kernel.start(clock="wall")
         image.boot()
         handle_interrupts()
         with ExitStack() as closings:
             closings.callback(kernel.stop)
             try:
-                closings.callback(play(path).close)
+                closings.callback(chronicle.replay(path).close)
             except ValueError as problem:
                 raise openings.NotPossible(str(problem)) from None
-            openings.serve(closings, port, view=True)
+            openings.serve(closings, port, with_page=True)
             while True:
                 kernel.park("Ctrl-C, which ends the replay")
     except openings.NotPossible as problem:

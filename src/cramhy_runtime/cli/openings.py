@@ -1,18 +1,19 @@
 """What a session opens to the outside when an option asks for it: the server, the page, the recorder, a real ROS, a picture.
 
-Each is a room of its own, imported when it is asked for, so that a session that opens nothing pays nothing. What an option needs
-and is not installed is named before the session begins, with the extra that brings it. Everything that was opened is closed when
-the session has ended, the last first, and after the plan's cleanup, which may still have something to tell (law 2).
+Each is a room of its own, whose parts are imported when it is asked for, so that a session that opens nothing pays nothing. What an
+option needs and is not installed is named before the session begins, with the extra that brings it. Everything that was opened is
+closed when the session has ended, the last first, and after the plan's cleanup, which may still have something to tell (law 2).
 """
 
 from __future__ import annotations
 
-import importlib
 import sys
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import urlsplit
+
+from cramhy_runtime import chronicle, rosbridge, view
 
 NEEDS = {
     "serve": ("web", ("uvicorn", "websockets")),
@@ -22,9 +23,6 @@ NEEDS = {
     "ros": ("ros", ("roslibpy",)),
 }
 """The extra that an option needs, and its modules that have to be there."""
-WORKERS = {"serve": "rosbridge.start", "view": "view.start", "record": "chronicle.record", "ros": "rosbridge.attach",
-           "picture": "turtlesim.pictures.save"}
-"""What does the work that an option asks for."""
 PICTURES = (".png", ".svg", ".gif")
 
 
@@ -40,21 +38,6 @@ def require(what, asked):
         verb = "is" if len(missing) == 1 else "are"
         raise NotPossible(f"{asked} needs {', '.join(modules)}, and {', '.join(missing)} {verb} not installed. Type: "
                           f"pip install 'cramhy[{extra}]'")
-
-
-def works(name, asked):
-    """The function that does what the words ``asked`` want; ``name`` says where it is, as ``"rosbridge.start"``."""
-    home, _, function = name.rpartition(".")
-    missing = f"cramhy_runtime.{name}"
-    try:
-        found = getattr(importlib.import_module(f"cramhy_runtime.{home}"), function, None)
-        if found is not None:
-            return found
-    except ModuleNotFoundError as problem:
-        missing = problem.name or missing
-        if not missing.startswith("cramhy_runtime."):
-            raise NotPossible(f"{asked} needs the Python module {missing}, which is not installed.") from None
-    raise NotPossible(f"{asked} is not part of this version of cramhy: it has no {missing}.")
 
 
 def check(options):
@@ -76,11 +59,9 @@ def check(options):
         raise NotPossible("--port says where --serve and --view listen; give one of them, too.")
     if getattr(options, "origin", None) and not (options.serve or options.view):
         raise NotPossible("--origin says whose pages may connect to --serve and --view; give one of them, too.")
-    for what, name in WORKERS.items():
-        if getattr(options, what, None):
-            if what in NEEDS:
-                require(what, f"--{what}")
-            works(name, f"--{what}")
+    for what in ("serve", "view", "record", "ros"):
+        if getattr(options, what):
+            require(what, f"--{what}")
 
 
 def _is_address(text):
@@ -95,17 +76,17 @@ def _is_address(text):
 def open_session(options, closings):
     """Open what ``options`` ask for, in the session that has just begun. ``closings`` is an `contextlib.ExitStack`."""
     if options.record:
-        closings.callback(works("chronicle.record", "--record")(options.record, program_of(options)).close)
+        closings.callback(chronicle.record(options.record, program_of(options)).close)
     if options.ros:
         with server_errors_told():
-            closings.callback(works("rosbridge.attach", "--ros")(options.ros).close)
+            closings.callback(rosbridge.attach(options.ros).close)
     if getattr(options, "picture", None):
-        from cramhy_runtime.turtlesim.pictures import is_replay
+        from cramhy_runtime.turtlesim import pictures
 
-        if is_replay(options.picture):  # it shows what happened from the beginning
-            works("turtlesim.pictures.keep_history", "--picture")()
+        if pictures.is_replay(options.picture):  # it shows what happened from the beginning
+            pictures.keep_history()
     if options.view or options.serve:
-        server = serve(closings, options.port, options.view, options.origin)
+        server, _ = serve(closings, options.port, options.view, options.origin)
         if not options.view:
             print(f"; Clients of rosbridge: {server.address}", file=sys.stderr, flush=True)
 
@@ -126,24 +107,30 @@ def program_of(options):
     return [*options.load, *([options.file] if getattr(options, "file", None) else [])]
 
 
-def serve(closings, port=None, view=False, origins=()):
-    """Start the server, with the page when ``view`` says so, and let other terminals start programs here; the address is told.
+def serve(closings, port=None, with_page=False, origins=()):
+    """Start the server, with the page when ``with_page`` says so, and let other terminals start programs here; the page's address is told.
 
-    origins: pages of other servers that may connect. Returns the server, or the page; raises `NotPossible`.
+    origins: pages of other servers that may connect. Returns the server, or the page, and the `Host`; raises `NotPossible`.
     """
-    trust = {"origins": tuple(origins)} if origins else {}
     with server_errors_told():
-        if view and trust:  # the page takes the server that there is
-            closings.callback(works("rosbridge.start", "--serve")(port=port, **trust).close)
-            port, trust = None, {}
-        server = works(*("view.start", "--view") if view else ("rosbridge.start", "--serve"))(port=port, **trust)
+        if with_page and not origins:
+            server = view.start(port=port)
+        else:
+            server = rosbridge.start(port=port, origins=tuple(origins))
         closings.callback(server.close)
+        if with_page and origins:  # the page takes the server that there is
+            server = view.start()
+            closings.callback(server.close)
+    from cramhy_runtime import kernel
     from cramhy_runtime.ros_tools.hosting import Host
 
-    Host()
-    if view:
+    host = Host()
+    if with_page:
         print(f"; The page: {server.url}", file=sys.stderr, flush=True)
-    return server
+        if kernel.pace().virtual:
+            print("; Virtual time passes as the wall's does, so that there is something to see; the page can change its speed.",
+                  file=sys.stderr, flush=True)
+    return server, host
 
 
 def save_picture(path):
@@ -151,9 +138,10 @@ def save_picture(path):
     from cramhy_runtime.lisp.conditions import Condition
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import condition_of
+    from cramhy_runtime.turtlesim import pictures
 
     try:
-        works("turtlesim.pictures.save", "--picture")(path)
+        pictures.save(path)
     except (Exception, Condition) as problem:
         report(condition_of(problem))
         sys.exit(1)

@@ -182,7 +182,6 @@ def _run_here(programs, parameters, port, view):
     from cramhy_runtime.repl.session import handle_interrupts
     from cramhy_runtime.ros import graph
     from cramhy_runtime.ros.services import Refusal
-    from cramhy_runtime.ros_tools.hosting import Host
 
     from . import openings
 
@@ -195,8 +194,7 @@ def _run_here(programs, parameters, port, view):
     with ExitStack() as closings:
         closings.callback(kernel.stop)
         try:
-            openings.serve(closings, port, view)
-            host = Host()
+            _, host = openings.serve(closings, port, view)
             for name, value in (parameters or {}).items():
                 graph.active().parameters.set(name, value)
             nodes = []
