@@ -161,9 +161,6 @@ def test_types_that_only_the_session_knows_are_asked_for(far_shell, tmp_path):
         graph.active().node("odd").serve("/odd", odd, lambda request: odd.response(request.points[1].x == 3.0))
     finally:
         definition_files.forget_package_directory(tmp_path / "packages")
-    from cramhy_runtime.ros_tools import definitions
-
-    definitions._package.cache_clear()
     assert far_shell("rosservice info /odd").endswith("Type: hidden_msgs/Odd\nArgs: points\n")
     far_shell(["rosservice", "call", "/odd", "[{x: 1}, {x: 3, y: 2}]"])
     assert far_shell.said == ("ok: True\n", "", 0)

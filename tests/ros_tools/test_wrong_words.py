@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from cramhy_runtime import kernel
@@ -127,3 +129,20 @@ def test_negative_numbers_need_no_dashes(shell, simulator):
 def test_a_topic_that_looks_misspelled_is_waited_for_and_the_right_one_named(shell):
     shell("rostopic echo /turtle1/pos", patience=1.0)
     assert shell.said == ("", "WARNING: topic [/turtle1/pos] does not appear to be published yet\nDid you mean /turtle1/pose?\n", None)
+
+
+def test_a_package_that_comes_to_the_path_later_is_found(shell, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    assert "unknown package [later_msgs]" in shell("rosmsg show later_msgs/Thing") + shell.errors and shell.status == 1
+    (tmp_path / "later_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "later_msgs" / "msg" / "Thing.msg").write_text("int8 size\n")
+    assert shell("rosmsg show later_msgs/Thing") == "int8 size\n\n"
+
+
+def test_what_the_session_refuses_is_told_in_one_line(far_shell):
+    from cramhy_runtime.rosbridge.server import running
+
+    hub = running().hub
+    hub.limits = replace(hub.limits, subscriptions=0)
+    far_shell("rostopic echo /turtle1/pose")
+    assert far_shell.said == ("", "ERROR: You subscribe to 0 topics; more are not allowed. Unsubscribe from some.\n", 1)

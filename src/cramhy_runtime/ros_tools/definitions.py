@@ -1,7 +1,7 @@
 """The definitions of messages and services as the tools need them: by their type's name, without a session and without Lisp.
 
 They are read from the same files from which a session makes its classes (`ros.definition_files`); what no folder of this machine has is
-asked for where a session was reached.
+asked for where a session was reached. What was found is kept; what was not may come to the path later, while the prompt goes on.
 """
 
 from __future__ import annotations
@@ -13,7 +13,23 @@ from . import reach
 from .words import CommandError
 
 
-@functools.cache
+def _kept(find):
+    """FIND, a function of texts, called once for each of its results that is not ``None``."""
+    found = {}
+
+    @functools.wraps(find)
+    def look(*words):
+        if words not in found:
+            result = find(*words)
+            if result is None:
+                return None
+            found[words] = result
+        return found[words]
+
+    return look
+
+
+@_kept
 def _package(name):
     try:
         return definition_files.read(name)
@@ -31,7 +47,7 @@ def service_definition(ros_type):
     return _definition(ros_type, "services", "service_elsewhere")
 
 
-@functools.cache
+@_kept
 def _definition(ros_type, table, elsewhere):
     package, _, name = ros_type.partition("/")
     found = getattr(_package(package), table, {}).get(name)

@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 from . import yaml_reading, yaml_writing
-from .reach import Refused
 from .words import TOOLS, CommandError, command, global_name, one, option
 
 
@@ -63,10 +62,7 @@ def _store(terminal, name, value, told):
         raise CommandError(f"ERROR: a parameter cannot be null. To remove it: rosparam delete {name}")
     if told:
         terminal.line(f"set parameter [{name}] to [{value}]")
-    try:
-        terminal.graph.set_parameter(name, value)
-    except Refused as problem:
-        raise CommandError(f"ERROR: {problem}") from None
+    terminal.graph.set_parameter(name, value)
 
 
 @command("rosparam", "delete", "parameter", "removes a parameter", option("-v", "tell what is done"))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 
 from . import words
-from .reach import NoSession, SessionEnded
+from .reach import NoSession, Refused, SessionEnded
 from .words import CommandError
 
 _HOMES = {
@@ -63,7 +63,7 @@ def run(command_words, terminal):
     except NoSession as problem:
         terminal.complain(f"ERROR: Unable to communicate with master!\n{str(problem) or NO_SESSION}\n")
         return 1
-    except SessionEnded as problem:
+    except (Refused, SessionEnded) as problem:
         terminal.complain(f"ERROR: {problem}\n")
         return 1
     except KeyboardInterrupt:
