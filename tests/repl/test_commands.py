@@ -165,15 +165,25 @@ class TestShims:
             if shutil.which(shell):
                 assert subprocess.run([shell, "-n"], input=done.stdout, text=True, capture_output=True).stderr == ""
 
-    def test_they_are_installed_into_a_folder(self, cramhy, tmp_path):
+    def test_they_are_installed_into_a_folder(self, cramhy, tmp_path, private):
         assert cramhy("ros-shims", "--install", str(tmp_path / "bin")).returncode == 0
         roscore = tmp_path / "bin" / "roscore"
         assert os.access(roscore, os.X_OK)
         from .conftest import environment
 
         done = subprocess.run([roscore], capture_output=True, text=True, env=environment())
-        assert (done.returncode, done.stdout) == (0, "No master is needed: the ROS graph lives in the process of roslisp_repl.\n")
+        assert (done.returncode, done.stdout) == (0, "No master is needed: the ROS graph lives in the process of roslisp_repl.\n"
+                                                  "No session serves here yet. Start one with: roslisp_repl --serve, or rosrun turtlesim "
+                                                  "turtlesim_node\n")
         assert cramhy("ros-shims", "--install", str(tmp_path / "bin")).returncode == 0  # over our own, once more
+
+    def test_a_folder_that_cannot_be_had_is_named(self, cramhy, tmp_path):
+        (tmp_path / "file").write_text("")
+        done = cramhy("ros-shims", "--install", "file")
+        assert (done.returncode, done.stderr) == (
+            1, "cramhy: the programs cannot be written into file: file: File exists. Choose another folder.\n")
+        done = cramhy("ros", "catkin_create_pkg", "file")
+        assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists\n")
 
     def test_a_real_ros_on_the_path_is_left_alone(self, cramhy, tmp_path, monkeypatch):
         real = tmp_path / "real"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cramhy_runtime.cli import launch
+from cramhy_runtime.cli.programs import summary
 
 EVERYTHING = """
 <launch>
@@ -25,7 +26,7 @@ EVERYTHING = """
       <param name="background_r" value="$(arg red)"/>
       <remap from="a" to="b"/>
     </node>
-    <node pkg="turtlesim" type="draw_square" name="square" ns="inner" args="_x:=1 y:=z" if="$(arg square)"/>
+    <node pkg="turtlesim" type="draw_square" name="square" ns="inner" args="_x:='1 2' y:=z" if="$(arg square)"/>
   </group>
   <node pkg="turtlesim" type="mimic" name="mimic" unless="$(arg square)"/>
   <include file="$(dirname)/inner.launch" ns="inside"><arg name="who" value="$(optenv NOBODY_SETS_THIS me you)"/></include>
@@ -44,7 +45,7 @@ def test_everything_that_a_launch_file_may_say(folder):
     launched = launch.load([str(folder / "all.launch")], {"square": "1", "red": "20", "nobody": "x"})
     assert [(program.label, program.executable, program.arguments) for program in launched.programs] == [
         ("left/sim", "turtlesim_node", ["__name:=sim", "__ns:=/left/", "turtle1/cmd_vel:=cmd", "a:=b"]),
-        ("left/inner/square", "draw_square", ["__name:=square", "__ns:=/left/inner/", "turtle1/cmd_vel:=cmd", "_x:=1", "y:=z"]),
+        ("left/inner/square", "draw_square", ["__name:=square", "__ns:=/left/inner/", "turtle1/cmd_vel:=cmd", "_x:=1 2", "y:=z"]),
     ]
     assert launched.parameters == {"/count": 3, "/text": "3", "/flag": True, "/limits/speed": 2.0, "/names": ["a", "b"],
                                    "/left/sim/background_r": 20, "/inside/who": "me you"}
@@ -53,7 +54,7 @@ def test_everything_that_a_launch_file_may_say(folder):
 
 def test_the_summary(folder):
     launched = launch.load([str(folder / "all.launch")], {"square": "false"})
-    assert launch.summary(launched) == """SUMMARY
+    assert summary(launched.parameters, [(program.label, f" ({program.executable})") for program in launched.programs]) == """SUMMARY
 ========
 
 PARAMETERS
@@ -67,9 +68,9 @@ PARAMETERS
 
 NODES
   /left/
-    sim (turtlesim/turtlesim_node)
+    sim (turtlesim_node)
   /
-    mimic (turtlesim/mimic)
+    mimic (mimic)
 """
 
 
@@ -104,6 +105,9 @@ def test_the_launch_file_of_turtlesim():
     ('<launch><param name="a" command="rm x"/></launch>',
      'while processing {path}:\nInvalid <param> tag: cramhy runs no commands and reads no binary files for parameters; give value or '
      'textfile.\n\nThe tag is <param name="a" command="rm x">'),
+    ('<launch><node pkg="turtlesim" type="mimic" name="a" args="\'b"/></launch>',
+     "while processing {path}:\nInvalid <node> tag: the words of args: No closing quotation.\n\n"
+     'The tag is <node pkg="turtlesim" type="mimic" name="a" args="\'b">'),
     ('<launch><include file="$(dirname)/x.launch"/></launch>',
      "while processing {path}:\n20 launch files include each other."),
 ])

@@ -86,7 +86,7 @@ def test_the_arrow_keys_drive_the_turtle_and_leave_the_terminal_as_it_was(privat
         assert repl.end() == 0
 
 
-def test_a_session_in_virtual_time_answers_at_the_prompt(private):
+def test_a_session_in_virtual_time_answers_at_the_prompt(private, tool):
     with Terminal("repl", "--serve", "--time", "virtual") as repl:
         repl.expect("CL-USER> ")
         repl.type('(roslisp:start-ros-node "a")')
@@ -97,6 +97,26 @@ def test_a_session_in_virtual_time_answers_at_the_prompt(private):
             assert graph.call("/spawn", "turtlesim/Spawn", {"x": 2, "y": 2, "theta": 0, "name": "mimi"}) == {"name": "mimi"}
             assert graph.parameter("/turtlesim/background_r") == 69
             assert "/mimi/pose" in graph.topics()
+            core = tool("roscore")[0]
+            assert core == f"""\
+No master is needed: the ROS graph lives in the process of roslisp_repl.
+It runs already, as process {repl.pid}, and serves at {graph.address}.
+
+SUMMARY
+========
+
+PARAMETERS
+ * /turtlesim/background_b: 255
+ * /turtlesim/background_g: 86
+ * /turtlesim/background_r: 69
+
+NODES
+  /
+    a
+    rosout
+    turtlesim
+
+"""
         finally:
             graph.close()
         repl.type("(+ 1 2)")

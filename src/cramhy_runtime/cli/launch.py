@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import sys
 from difflib import get_close_matches
 from pathlib import Path
@@ -19,9 +20,11 @@ from cramhy_runtime.ros.names import plain_value
 from cramhy_runtime.ros_tools import yaml_reading
 from cramhy_runtime.ros_tools.hosting import PROGRAMS
 
-from .programs import Program, rosrun, run
+from .programs import Program, rosrun, run, summary
 from .workspace import folder_of, packages
 
+USAGE = """Usage: roslaunch [options] [package] <filename> [arg_name:=value...]
+       roslaunch [options] <filename> [<filename>...] [arg_name:=value...]"""
 DEEPEST = 20  # launch files that include each other
 _IGNORED = {"env", "machine", "test"}
 _ATTRIBUTES = {
@@ -220,7 +223,11 @@ def _node(launched, tag, scope, values, used):
             raise _wrong(scope, each, "it has no place in a <node>")
         if isinstance(each.tag, str) and each.tag != "env" and _wanted(each, scope):
             _DO[each.tag](launched, each, inner, values, used)
-    words = [f"__name:={name}", f"__ns:={namespace}", *inner.remappings, *_text(tag, "args", scope, "").split()]
+    try:
+        given = shlex.split(_text(tag, "args", scope, ""))
+    except ValueError as problem:
+        raise _wrong(scope, tag, f"the words of args: {problem}") from None
+    words = [f"__name:={name}", f"__ns:={namespace}", *inner.remappings, *given]
     launched.programs.append(Program(package, executable, words, f"{namespace}{name}".lstrip("/")))
 
 
@@ -287,11 +294,13 @@ _DO = {"group": _group, "node": _node, "param": _param, "rosparam": _rosparam, "
 
 def roslaunch(arguments):
     """``roslaunch PACKAGE FILE.launch [arg:=value]`` or ``roslaunch FILE.launch``; also an executable, as the slides have it."""
+    if arguments[:1] in (["-h"], ["--help"]):
+        print(USAGE)
+        return 0
     words = [word for word in arguments if ":=" not in word and not word.startswith("-")]
     values = dict(word.split(":=", 1) for word in arguments if ":=" in word)
     if not words:
-        print("Usage: roslaunch [options] [package] <filename> [arg_name:=value...]\n       roslaunch [options] <filename> "
-              "[<filename>...] [arg_name:=value...]\n\nroslaunch: error: you must specify at least one input file", file=sys.stderr)
+        print(USAGE + "\n\nroslaunch: error: you must specify at least one input file", file=sys.stderr)
         return 2
     if len(words) == 2 and words[0] == "turtlesim" and words[1] in PROGRAMS:
         return rosrun(words + [word for word in arguments if ":=" in word])
@@ -300,26 +309,7 @@ def roslaunch(arguments):
     except LaunchError as problem:
         print(f"RLException: {problem}", file=sys.stderr)
         return 1
-    print(summary(launched))
+    print(summary(launched.parameters, [(program.label, f" ({program.package}/{program.executable})") for program in launched.programs]))
     for name in launched.arguments_unused:
         print(f"WARNING: there is no <arg name=\"{name}\"> in the launch file", file=sys.stderr)
     return run(launched.programs, launched.parameters)
-
-
-def summary(launched):
-    """What roslaunch prints before it starts anything."""
-    lines = ["SUMMARY", "========", "", "PARAMETERS"]
-    lines += [f" * {name}: {_shown(value)}" for name, value in sorted(launched.parameters.items())]
-    lines += ["", "NODES"]
-    spaces = {}
-    for program in launched.programs:
-        space, _, name = ("/" + program.label).rpartition("/")
-        spaces.setdefault(space + "/", []).append(f"    {name} ({program.package}/{program.executable})")
-    for space, nodes in spaces.items():
-        lines += [f"  {space}", *sorted(nodes)]
-    return "\n".join([*lines, ""])
-
-
-def _shown(value):
-    text = str(value)
-    return text if len(text) <= 20 else text[:17] + "..."

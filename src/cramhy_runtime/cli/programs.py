@@ -32,8 +32,40 @@ class Program(NamedTuple):
 
 
 def roscore(arguments):
-    """``roscore``: there is nothing to start."""
+    """``roscore``: there is nothing to start. What the original tells of the master it tells of the session that runs here, if one does."""
+    from cramhy_runtime.ros_tools import there
+    from cramhy_runtime.ros_tools.reach import NoSession, SessionEnded
+
     print("No master is needed: the ROS graph lives in the process of roslisp_repl.")
+    try:
+        graph = there.current()
+        try:
+            parameters = {name: graph.parameter(name) for name in graph.parameter_names()}
+            print(f"It runs already, as process {graph.pid}, and serves at {graph.address}.\n")
+            print(summary(parameters, [(name, "") for name in graph.nodes()]))
+        finally:
+            graph.close()
+    except (NoSession, SessionEnded) as problem:
+        print(str(problem) or "No session serves here yet. Start one with: roslisp_repl --serve, or rosrun turtlesim turtlesim_node")
+
+
+def summary(parameters, nodes):
+    """What roscore and roslaunch print of parameters, values by name, and of nodes, pairs of a name and what is said of it."""
+    lines = ["SUMMARY", "========", "", "PARAMETERS"]
+    lines += [f" * {name}: {_shown(value)}" for name, value in sorted(parameters.items())]
+    lines += ["", "NODES"]
+    spaces = {}
+    for name, about in nodes:
+        space, _, last = ("/" + name.lstrip("/")).rpartition("/")
+        spaces.setdefault(space + "/", []).append(f"    {last}{about}")
+    for space, found in spaces.items():
+        lines += [f"  {space}", *sorted(found)]
+    return "\n".join([*lines, ""])
+
+
+def _shown(value):
+    text = str(value)
+    return text if len(text) <= 20 else text[:17] + "..."
 
 
 def rosrun(arguments):

@@ -37,11 +37,16 @@ def run(folder=None):
             print('roscd() { local to; to="$(cramhy ros roscd "$@")" && cd "$to"; }')
         return 0
     target = Path(folder)
-    target.mkdir(parents=True, exist_ok=True)
-    for tool in tools:
-        program = target / tool
-        program.write_text(f'#!/bin/sh\n# {_MARK}\nexec "{sys.executable}" -m cramhy_runtime.cli ros {tool} "$@"\n')
-        program.chmod(0o755)
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        for tool in tools:
+            program = target / tool
+            program.write_text(f'#!/bin/sh\n# {_MARK}\nexec "{sys.executable}" -m cramhy_runtime.cli ros {tool} "$@"\n')
+            program.chmod(0o755)
+    except OSError as problem:
+        print(f"cramhy: the programs cannot be written into {target}: {problem.filename}: {problem.strerror}. Choose another folder.",
+              file=sys.stderr)
+        return 1
     print(f"Wrote {', '.join(tools)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
           'eval "$(cramhy ros-shims)"')
     return 0
@@ -61,7 +66,13 @@ def tool(name, arguments):
     if name not in _HOMES:
         print(f"cramhy: there is no command {name} here; there are {', '.join(TOOLS)} and roscd.", file=sys.stderr)
         return 2
-    return getattr(import_module(f".{_HOMES[name]}", __package__), name)(arguments) or 0
+    try:
+        return getattr(import_module(f".{_HOMES[name]}", __package__), name)(arguments) or 0
+    except BrokenPipeError:
+        raise
+    except OSError as problem:  # a folder that cannot be read, or written to
+        print(f"{name}: {problem.filename}: {problem.strerror}", file=sys.stderr)
+        return 1
 
 
 def _graph_command(words):
