@@ -173,6 +173,14 @@ def test_after_going_back_it_goes_on_from_there(fresh, path, whole):
     assert audience.sums() == until(whole, 100)
 
 
+def test_that_it_is_another_time_is_told_before_what_was_heard_last_then(fresh, path):
+    """A page keeps of its log what comes after that."""
+    player, audience = replayed(path)
+    player.seek(2)
+    told = [topic in TOPICS.values() for _, topic, _ in audience.heard]
+    assert told[0] and not told[-1] and told == sorted(told, reverse=True)
+
+
 def test_times_that_are_not_there_are_the_nearest_that_are(fresh, path):
     player, _ = replayed(path)
     player.seek(-5)

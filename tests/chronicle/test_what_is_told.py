@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cramhy_runtime import kernel
-from cramhy_runtime.chronicle import fluents, plans
+from cramhy_runtime.chronicle import chronicler, fluents, plans
 from cramhy_runtime.ros.message_json import to_json
 
 
@@ -155,6 +155,14 @@ def test_a_fluent_that_is_gone_is_told(session, looker):
     session.evaluate_text("(sleep 1)")
     ids = [fluent.id for message in looker.told["fluents"] for fluent in message.fluents if fluent.name == "short-lived"]
     assert ids[-1] in [gone for message in looker.told["fluents"] for gone in message.removed]
+
+
+def test_a_fluent_that_is_only_garbage_is_not_told_to_who_begins_to_look(session):
+    session.evaluate_text("""(let ((f (make-fluent :name "garbage" :value 1))) (setf (value f) (list f)) nil)""")
+    made = chronicler.active()
+    made.look()
+    assert "garbage" not in [fluent.name for fluent in made.state.messages()["fluents"].fluents]
+    chronicler.dismiss()
 
 
 def test_only_fluents_that_were_told_are_told_to_be_gone(session, looker, monkeypatch):

@@ -8,6 +8,11 @@ import shutil
 import pytest
 
 LIMIT = 60_000  # ms; for a machine that is busy with other things
+SLOW = int(os.environ.get("CRAMHY_SLOW_FRAMES", "0"))  # ms by which each frame comes late: finds tests that read what is drawn later
+SLOWED = f"""{{
+  const real = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => real(draw), {SLOW});
+}}"""
 
 
 def chromium_path():
@@ -52,6 +57,8 @@ def visit(browser):
         opened = context.new_page()
         opened.add_init_script("window.violations = []; document.addEventListener('securitypolicyviolation', "
                                "(event) => window.violations.push(`${event.violatedDirective} ${event.blockedURI}`));")
+        if SLOW:
+            opened.add_init_script(SLOWED)
         opened.on("pageerror", lambda error: complaints.append(f"error: {error}"))
         opened.on("console", lambda line: complaints.append(f"console: {line.text}") if line.type == "error" else None)
         opened.complaints = complaints

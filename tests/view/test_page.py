@@ -38,6 +38,16 @@ def wait_for_reading(page, name, text):
     page.wait_for_function(f"([name, text]) => ({READING})(name) === text", arg=[name, text])
 
 
+def wait_for_texts(page, selector, texts):
+    """Wait until the elements are seen that have these texts, and no others."""
+    page.wait_for_function("""([selector, texts]) => JSON.stringify([...document.querySelectorAll(selector)]
+        .filter((node) => node.checkVisibility()).map((node) => node.textContent)) === JSON.stringify(texts)""", arg=[selector, texts])
+
+
+def wait_for_count(page, selector, count):
+    page.wait_for_function("([selector, count]) => document.querySelectorAll(selector).length === count", arg=[selector, count])
+
+
 def rows(page, attributes=("name", "time", "waits", "place")):
     """The rows of the task tree, as (level, the texts of their parts)."""
     return page.evaluate("""(parts) => [...document.querySelectorAll("#tasks [role=treeitem]")].map((row) =>
@@ -85,6 +95,7 @@ def test_who_comes_late_sees_all_that_was_drawn(fake, visit):
 def test_the_turtle_turns_with_its_heading(fake, visit):
     page = visit(fake.address)
     fake.world([turtle(x=5, y=5, theta=0.0)])
+    wait_for_reading(page, "x", "5.00")
     page.wait_for_function(f"() => JSON.stringify(({PIXEL})([5.38, 5])) !== '{BLUE}'.replaceAll(' ', '')")
     assert near(pixel(page, 5.0, 4.56), BLUE)  # beside it, between its feet
     fake.world([turtle(x=5, y=5, theta=-1.5707963)])
@@ -112,8 +123,36 @@ def test_a_pose_that_is_no_number_is_said_and_hurts_nobody(fake, visit):
     page = visit(fake.address)
     fake.world([{**turtle(), "x": None, "y": None, "theta": None}])
     wait_for_reading(page, "x", "NaN")
+    wait_for_pixel(page, 0.1, 0.1, BLUE)  # it is nowhere, also not in the corner
     fake.world([turtle(x=3, y=3)])
     wait_for_reading(page, "x", "3.00")
+
+
+PAPERS = """async () => {
+  const [{ Paper }, { Strokes }] = await Promise.all([import("/paper.js"), import("/strokes.js")]);
+  const [all, some] = [new Strokes(Infinity), new Strokes(100)];
+  const [whole, paper] = [new Paper(all), new Paper(some)];
+  const line = (at) => ({ x1: at % 11, y1: 0, x2: 11 - at % 11, y2: 11, r: at % 256, g: 200, b: 100, width: 1 + at % 9 });
+  const looked = []; // at the past, while the present goes on
+  for (let at = 0; at < 1000; at++) {
+    const message = { stamp: at, clears: at < 700 ? 1 : 2, r: 69, g: 86, b: 255, strokes: [line(at)] };
+    all.add(message);
+    some.add(message);
+    if (some.full) paper.settle();
+    if (at % 150 === 40) looked.push(paper.show(some.at(at - 10).strokes, some.at(at - 10).epoch));
+  }
+  const seen = (strokes, one) => {
+    const { strokes: end, epoch } = strokes.at(1000);
+    one.show(end, epoch);
+    return one.pen.getImageData(0, 0, 1000, 1000).data;
+  };
+  const [expected, found] = [seen(all, whole), seen(some, paper)];
+  return [looked.every(Boolean), some.length <= 100, expected.every((part, index) => Math.abs(part - found[index]) <= 2)];
+}"""
+
+
+def test_of_very_many_lines_the_oldest_become_a_picture_also_while_the_past_is_looked_at(fake, visit):
+    assert visit(fake.address).evaluate(PAPERS) == [True, True, True]
 
 
 # -------------------------------------------------------------------------------------------------------------- driving
@@ -191,14 +230,14 @@ def test_the_task_tree_shows_what_each_task_does(fake, visit):
     fake.tasks(task("3", "[PAR-CHILD-#2/2]", "1", "FAILED", began=0, ended=1.5, result="SIMPLE-PLAN-FAILURE: no way"))
     wait_for_text(page, "#tasks", "failed with SIMPLE-PLAN-FAILURE: no way")
     fake.tasks(removed=["2", "3"])
-    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 1")
+    wait_for_count(page, "#tasks [role=treeitem]", 1)
 
 
 def test_a_branch_can_be_closed_and_stays_closed(fake, visit):
     page = visit(fake.address)
     par(fake)
     page.get_by_role("treeitem", name="TOP-LEVEL").first.click()
-    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 1")
+    wait_for_count(page, "#tasks [role=treeitem]", 1)
     fake.tasks(task("4", "[PAR-CHILD-#3/3]", "1"))
     wait_for_text(page, "#tasks-count", "4 alive")
     assert len(rows(page)) == 1
@@ -211,7 +250,7 @@ def test_thousands_of_tasks_do_not_stop_the_page(fake, visit):
     wait_for_text(page, "#tasks-count", "1 alive, 3000 ended")
     assert len(rows(page)) == 26  # the plan, its newest 24, and a line for the others
     page.get_by_text("2,976 tasks more that ended").click()
-    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 500")
+    wait_for_count(page, "#tasks [role=treeitem]", 500)
 
 
 def test_fluents_have_their_values_and_a_line_of_the_recent_past(fake, visit):
@@ -224,7 +263,7 @@ def test_fluents_have_their_values_and_a_line_of_the_recent_past(fake, visit):
     page.wait_for_function("() => document.querySelector('#fluents .drawn path').getAttribute('d') === 'M60.0 0.0H120.0V22.0H120'")
     assert page.locator("#fluents .spark:visible").count() == 1
     fake.fluents(removed=["1"])
-    page.wait_for_function("() => document.querySelectorAll('#fluents .fluent').length === 1")
+    wait_for_count(page, "#fluents .fluent", 1)
 
 
 def test_process_modules_have_what_they_execute_and_their_queue(fake, visit):

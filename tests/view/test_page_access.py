@@ -6,7 +6,7 @@ import math
 
 import pytest
 from fake_session import fluent, stroke, task, turtle
-from test_page import par, wait_for_reading, wait_for_text
+from test_page import par, wait_for_count, wait_for_reading, wait_for_text
 
 FOCUSED = """() => {
   const { id, className, role, textContent } = document.activeElement;
@@ -147,7 +147,7 @@ def test_nothing_sticks_out_at_any_width(fake, visit, width):
     wait_for_text(page, "#log", "Clamping")
     wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
     wait_for_text(page, "#modules", "TURTLESIM-NAVIGATION")
-    page.wait_for_function("() => document.querySelectorAll('#turtles [role=radio]').length === 8")
+    wait_for_count(page, "#turtles [role=radio]", 8)
     assert page.evaluate("() => document.documentElement.scrollWidth") <= width
     outside = page.evaluate("""() => [...document.querySelectorAll("body *")]
         .filter((node) => node.checkVisibility() && !node.closest(".scroll, .turtles, .unseen, select, svg"))

@@ -9,7 +9,7 @@ import sys
 import threading
 
 import pytest
-from test_page import rows, wait_for_pixel, wait_for_reading, wait_for_text
+from test_page import READING, rows, wait_for_pixel, wait_for_reading, wait_for_text
 from test_page_time import seek
 
 PATIENCE = 120  # s; the first session of a checkout compiles the language
@@ -83,16 +83,10 @@ def repl(tmp_path):
         one.close()
 
 
-def plan_time(page):
-    """What the page's clock shows when it stands still, in seconds."""
-    clock = "document.getElementById('clock').textContent"
-    return page.evaluate(f"""async () => {{
-        for (;;) {{
-            const seen = {clock}
-            await new Promise(later => setTimeout(later, 250))
-            if ({clock} === seen) return parseFloat(seen)
-        }}
-    }}""")
+def plan_time(page, doing):
+    """What the page's clock shows, in seconds, once it says that time stands still because of ``doing``; it draws both at once."""
+    wait_for_text(page, "#doing", doing)
+    return page.evaluate("() => parseFloat(document.getElementById('clock').textContent)")
 
 
 @pytest.fixture
@@ -110,20 +104,22 @@ def course(repl, visit):
 
 def test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at(course):
     session, page = course
-    begin = plan_time(page)
+    page.get_by_role("button", name="Pause").click()
+    begin = plan_time(page, "paused")
     session.type(PAR)
+    page.locator("#speed").select_option("× 0.1")  # so that it is still in the middle when the pause comes
+    page.get_by_role("button", name="Resume").click()
     wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
     wait_for_text(page, "#modules", "(GOAL (9 9 0))")
     wait_for_text(page, "#doing", "a form runs")
     wait_for_text(page, "#log", "TurtleSim pen control invoked with motion designator")
     page.get_by_role("button", name="Pause").click()
-    page.wait_for_function("() => document.querySelector('#pause').textContent === 'Resume'")
-    wait_for_text(page, "#tasks", "PAR-CHILD-#1/2")
+    stood = plan_time(page, "paused")
+    wait_for_text(page, "#tasks", "(sleep 0.5)")
     shown = {row[1]: row[2:] for row in rows(page)}
     assert shown["[TOP-LEVEL]"][1] == "waits for the branches of PAR"
     assert shown["[PAR-CHILD-#2/2]"][1].endswith("(sleep 0.5)") and shown["[PAR-CHILD-#2/2]"][2] == "<repl 6>:10:11"
     assert "[TURTLESIM-NAVIGATION]" in shown
-    stood = plan_time(page)
     page.locator("#step-size").select_option("0.1 s")
     page.get_by_role("button", name="Step").click()
     page.wait_for_function("(end) => Math.abs(parseFloat(document.getElementById('clock').textContent) - end) < 0.02", arg=stood + 0.1)
@@ -158,8 +154,7 @@ def test_the_keys_drive_the_turtle_while_the_prompt_waits(course):
 def test_a_step_moves_the_clock_though_nothing_else_happens(course):
     session, page = course
     page.get_by_role("button", name="Pause").click()
-    wait_for_text(page, "#doing", "paused")
-    stood = float(page.locator("#clock").text_content().split()[0])
+    stood = plan_time(page, "paused")
     page.locator("#step-size").select_option("1 s")
     page.get_by_role("button", name="Step").click()
     page.wait_for_function("(stood) => Math.abs(parseFloat(document.getElementById('clock').textContent) - stood - 1) < 0.02", arg=stood)
@@ -167,19 +162,14 @@ def test_a_step_moves_the_clock_though_nothing_else_happens(course):
 
 def test_a_page_that_comes_late_sees_what_was_before(course, visit):
     session, page = course
-    session.type("(drive 2 2)\n(sleep 1.0)\n(call-set-pen 255 0 0 5 0)\n(drive 2 0)\n(sleep 1.0)")
+    session.type("(drive 2 2)\n(sleep 0.5)\n(call-set-pen 255 0 0 5 0)\n(drive 2 0)\n(sleep 1.5)")
     wait_for_reading(page, "pen", "5 px")
-    page.wait_for_function("() => parseFloat(document.getElementById('clock').textContent) >= 2")
+    wait_for_reading(page, "speed", "0.00")  # a second after the last command
+    x = page.evaluate(READING, "x")
     wait_for_text(page, "#doing", "the prompt waits")
     late = visit(session.url)
     late.wait_for_function("() => Number(document.getElementById('moment').max) - Number(document.getElementById('moment').min) >= 1.9")
-    late.wait_for_function("""() => {
-        const x = document.querySelector('[data-reading=x]').textContent, rests = x && x === window.before;
-        window.before = x;
-        return rests;
-    }""", polling=200)
-    x = late.evaluate("() => document.querySelector('[data-reading=x]').textContent")
-    wait_for_reading(page, "x", x)
+    wait_for_reading(late, "x", x)
     seek(late, 0.5)
     late.wait_for_function("(x) => document.querySelector('[data-reading=x]').textContent !== x", arg=x)
     wait_for_reading(late, "pen", "3 px")
@@ -191,9 +181,8 @@ def test_in_wall_time_the_turtle_moves_and_cannot_be_paused(repl, visit):
     session.type('(roslisp:start-ros-node "wall")')
     wait_for_reading(page, "x", "5.54")
     page.keyboard.press("ArrowUp")
-    wait_for_reading(page, "speed", "2.00")
+    page.wait_for_function("() => parseFloat(document.querySelector('[data-reading=x]').textContent) > 7.0")
     wait_for_reading(page, "speed", "0.00")  # it stops by itself, a second later
-    assert float(page.locator("[data-reading=x]").text_content()) > 7.0
     assert page.locator("#pause").is_disabled()
 
 

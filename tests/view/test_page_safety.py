@@ -7,7 +7,7 @@ import re
 from importlib import resources
 
 from fake_session import fluent, task, turtle
-from test_page import wait_for_reading, wait_for_text
+from test_page import wait_for_count, wait_for_reading, wait_for_text
 
 MARKUP = "<img src=x onerror='window.hit = 1'><script>window.hit = 1</script>"
 
@@ -44,8 +44,8 @@ def test_names_of_objects_properties_are_names_like_others(fake, visit):
         fake.world([turtle(name, 3, 3), turtle("other", 4, 4)])
         wait_for_text(page, "#modules .name", name)
         wait_for_text(page, "#turtles", name)
-    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 3")
-    page.wait_for_function("() => document.querySelectorAll('#fluents .fluent').length === 3")
+    wait_for_count(page, "#tasks [role=treeitem]", 3)
+    wait_for_count(page, "#fluents .fluent", 3)
 
 
 def test_messages_that_are_none_leave_the_page_as_it_is(fake, visit):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from fake_session import fluent, stroke, task, turtle
-from test_page import BLUE, near, pixel, rows, wait_for_pixel, wait_for_reading, wait_for_text
+import threading
+
+from fake_session import PATIENCE, fluent, stroke, task, turtle
+from test_page import BLUE, near, pixel, rows, wait_for_count, wait_for_pixel, wait_for_reading, wait_for_text, wait_for_texts
 
 
 def seek(page, stamp):
@@ -42,6 +44,18 @@ def test_a_pace_that_is_refused_does_not_stay_chosen(fake, visit):
     assert page.locator("#speed").input_value() == "1"
 
 
+def test_what_is_asked_for_before_the_last_answer_came_keeps_what_was_asked_before(fake, visit):
+    page = visit(fake.address)
+    answer, set_pace = threading.Event(), fake.services["/cramhy/set_pace"]
+    fake.services["/cramhy/set_pace"] = lambda request: answer.wait(PATIENCE) and set_pace(request)
+    page.locator("#speed").select_option("× 5")
+    page.get_by_role("button", name="Pause").click()
+    answer.set()
+    fake.wait(lambda message: message.get("service") == "/cramhy/set_pace" and message["args"] == {"paused": True, "speed": 5})
+    page.locator("#pause", has_text="Resume").click()
+    fake.wait(lambda message: message.get("service") == "/cramhy/set_pace" and message["args"] == {"paused": False, "speed": 5})
+
+
 def test_the_walls_time_cannot_be_held(fake, visit):
     fake.pace(virtual=False)
     page = visit(fake.address)
@@ -77,11 +91,11 @@ def test_the_time_line_shows_everything_as_it_was(fake, visit):
     wait_for_reading(page, "x", "3.00")
     wait_for_pixel(page, 2.2, 9, [255, 0, 0])
     assert near(pixel(page, 2.5, 5), BLUE)
-    assert rows(page) == []
+    wait_for_count(page, "#tasks [role=treeitem]", 0)
     wait_for_text(page, "#clock", "1.50 s")
     wait_for_text(page, "#past", "as it was at 1.50 s")
     wait_for_text(page, "#fluents .value", "4")
-    assert page.locator("#log .line:visible").all_text_contents() == ["info/turtlesimthe first line"]
+    wait_for_texts(page, "#log .line", ["info/turtlesimthe first line"])
     seek(page, 2.5)
     wait_for_text(page, "#tasks .time", "0.50 s")
     wait_for_text(page, "#modules", "#<MOTION>")
@@ -95,7 +109,7 @@ def test_the_time_line_shows_everything_as_it_was(fake, visit):
     wait_for_reading(page, "x", "10.00")
     wait_for_pixel(page, 2.2, 9, [0, 0, 0])
     wait_for_pixel(page, 2.5, 5, [0, 255, 0])
-    page.wait_for_function("() => document.querySelectorAll('#tasks [role=treeitem]').length === 2")
+    wait_for_count(page, "#tasks [role=treeitem]", 2)
     assert not page.locator("#past").is_visible()
 
 
@@ -167,6 +181,9 @@ def test_a_lost_connection_is_said_and_made_again(fake, visit):
 
 def test_another_session_at_the_same_address_begins_anew(fake, visit):
     page = visit(fake.address)
+    fake.tasks(task("1", "[TOP-LEVEL]"), task("2", "[CHILD]", "1"))
+    page.get_by_role("treeitem", name="TOP-LEVEL").first.click()
+    wait_for_count(page, "#tasks [role=treeitem]", 1)
     fake.stamp = 100.0
     fake.world([turtle(x=9, y=9)], [stroke(1, 4, 4, 4, (255, 0, 0), 9)])
     wait_for_pixel(page, 2, 4, [255, 0, 0])
@@ -180,6 +197,7 @@ def test_another_session_at_the_same_address_begins_anew(fake, visit):
     wait_for_pixel(page, 2.9, 4, BLUE)
     wait_for_reading(page, "x", "2.00")
     page.wait_for_function("() => Number(document.getElementById('moment').max) === 1")
+    wait_for_count(page, "#tasks [role=treeitem]", 2)  # what was closed belonged to another plan
     page.complaints.clear()
 
 
@@ -209,6 +227,7 @@ def test_a_recording_is_sought_in_by_the_session(fake, visit):
         fake.state["world"].update(stamp=fake.stamp, turtles=[turtle(x=fake.stamp / 10, y=1)], strokes=[])
         fake.publish("/cramhy/world", {**fake.state["world"], "complete": True})
         fake.pace()
+        fake.say(f"the last line at {fake.stamp:g} s")
         return {"pace": fake.state["pace"]}
 
     fake.services["/cramhy/seek"] = seek_to
@@ -216,10 +235,13 @@ def test_a_recording_is_sought_in_by_the_session(fake, visit):
     page.wait_for_function("() => document.getElementById('moment').max === '60'")
     assert not page.get_by_role("button", name="Live").is_visible()
     assert page.locator("#pause").is_enabled()
+    fake.say("before")
+    wait_for_text(page, "#log", "before")
     seek(page, 45.0)
     wait_for_reading(page, "x", "4.50")
     wait_for_text(page, "#clock", "45.00 s")
     seek(page, 15.0)
     wait_for_reading(page, "x", "1.50")
     wait_for_text(page, "#clock", "15.00 s")
+    wait_for_texts(page, "#log .text", ["the last line at 15 s"])
     assert sought == [45.0, 15.0]

@@ -60,7 +60,6 @@ test("a heading turns the short way round", () => {
 
 test("a teleport is not a move, and neither is a coordinate that is no number", () => {
   assert.equal(between(tick(0, 1), tick(1, 9), 0.5).turtles[0].x, 1);
-  assert.equal(between(tick(0, 1), tick(1, null), 0.5).turtles[0].x, 0.5 * 1);
   assert.equal(between(tick(0, 1), tick(1, NaN), 0.5).turtles[0].x, 1);
 });
 
@@ -178,6 +177,17 @@ test("of poses that follow each other closely the last is kept", () => {
   assert.ok([...history.between("world", 0, 1)].length < 60);
 });
 
+test("what was told between two moments is found without reading all that was before", () => {
+  const history = new History();
+  for (let index = 0; index < 1000; index++) history.add("fluents", { stamp: index, fluents: [], removed: [] });
+  history.add("tasks", { stamp: 1000, tasks: [], removed: [] });
+  for (const [start, end] of [[-5, 3], [255, 257], [256, 256], [700, 2000]]) {
+    const stamps = [...history.between("fluents", start, end)].map(({ stamp }) => stamp);
+    assert.deepEqual([stamps[0], stamps.at(-1)], [Math.max(start, 0), Math.min(end, 999)]);
+    assert.equal(stamps.length, stamps.at(-1) - stamps[0] + 1);
+  }
+});
+
 test("a chapter of the past comes before what is known", () => {
   const history = new History();
   history.restart(new State().apply("tasks", { stamp: 10, tasks: [task("now")], removed: [] }));
@@ -240,6 +250,12 @@ test("fast changes are thinned, except for the last", () => {
 
 test("a paper before there is one has the colour of the original's", () => {
   assert.deepEqual(new Strokes().add({ ...world(0, 0, []), r: 0, g: 0, b: 0 }).epoch.colour, [69, 86, 255]);
+});
+
+test("a recording that is put back draws its line from there", () => {
+  const series = new Series();
+  for (const [stamp, number] of [[0, 0], [10, 1], [20, 2], [5, 3]]) series.push(stamp, number);
+  assert.deepEqual(series.points, [[0, 0], [5, 3]]);
 });
 
 test("numbers and truth are drawn, other values are not", () => {
@@ -410,6 +426,28 @@ test("chapters of the past are fetched one by one", async (t) => {
   assert.deepEqual([...session.history.at(9.5).tasks.keys()], ["a", "t1"]);
   assert.deepEqual([session.worldAt(12).turtles[0].x, session.history.at(21).world.turtles[0].x], [12, 21]);
   assert.deepEqual([seen.older, seen.failed], [2, []]);
+});
+
+test("of the times of a recording that are wanted meanwhile the last one is sought", async (t) => {
+  const { session, sockets, answer } = await visiting(t, STATE(5));
+  let done = false;
+  session.seek(1).then(() => (done = true));
+  for (const stamp of [2, 3, 4]) session.seek(stamp);
+  const sought = () => sockets[0].sent.filter(({ service }) => service === "/cramhy/seek").map(({ args }) => args.stamp);
+  assert.deepEqual(sought(), [1]);
+  await answer("/cramhy/seek", {});
+  assert.deepEqual([sought(), done], [[1, 4], false]);
+  await answer("/cramhy/seek", {});
+  assert.deepEqual([sought(), done], [[1, 4], true]);
+  await assert.rejects((session.seek(9), answer("/cramhy/seek", "no", false), session.seeking), { message: "no" });
+  session.seek(6).catch(() => {});
+  assert.deepEqual(sought(), [1, 4, 9, 6]);
+});
+
+test("a pose that is no number is one again: JSON has none", async (t) => {
+  const { session } = await visiting(t, { ...STATE(5), world: world(5, 1, [], { turtles: [turtle(null, { theta: 0 })] }) });
+  const [{ x, y, theta }] = session.live.world.turtles;
+  assert.deepEqual([x, y, theta], [NaN, 1, 0]);
 });
 
 test("when the state cannot be had, that is said, and it is asked for again", async (t) => {

@@ -6,6 +6,7 @@ fluent counts its pulses; so it is looked at only where that number is another t
 
 from __future__ import annotations
 
+import gc
 import math
 import re
 from weakref import ref
@@ -46,6 +47,7 @@ class Fluents:
         self.gone = []
 
     def begin(self):
+        gc.collect()  # those that nobody has any more, but in circles of their own
         for fluent in living_fluents():
             self.add(fluent)
         on_make_fluent_hook.add(lambda *arguments: self.add(arguments[0]), _KEY)

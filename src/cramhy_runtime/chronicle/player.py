@@ -135,10 +135,10 @@ class Player:
             message.stamp = stamp
             self.board.add(kind, message)
         self.board.history = History()  # it was of another past
-        for topic, message in self.now.last.items():
-            self.publications[topic].publish(message)
         self._seen = self.kernel.now()
         self._publish_now()
+        for topic, message in self.now.last.items():  # after it is told that this is another time: a page begins its log anew then
+            self.publications[topic].publish(message)
 
     def _publish_now(self):
         """Publish on the board though it may be too soon: who has asked for it does not wait."""

@@ -72,12 +72,14 @@ async function start() {
   function heard(kind, message, sample) {
     if (sample) world.tick(sample, performance.now());
     else if (kind === "fluents") fluents.note(message);
+    else if (kind === "tasks" && message.complete && session.live.pace?.recording) log.forget(); // somebody sought
     else if (kind === "pace") world.playback.rate = message.virtual ? message.speed : 1;
   }
 
   function anew() {
     world.forget();
     fluents.forget();
+    tree.forget();
     timeline.present();
   }
 
@@ -97,7 +99,7 @@ async function start() {
 
   function seek(stamp) {
     if (session.live.pace?.recording) {
-      call("/cramhy/seek", { stamp }).catch(failed).finally(() => (timeline.past = null));
+      session.seek(stamp).catch(failed).finally(() => (timeline.past = null));
       return;
     }
     past.stamp = stamp;

@@ -7,7 +7,7 @@ const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRigh
 const SCALE = 2; // m/s and rad/s, the original's
 const FIRST_REPEAT = 500; // ms
 const REPEAT = 50;
-const OWN_ARROWS = "input, select, textarea, [role=tree], [role=radiogroup], [role=log], .scroll"; // these use the arrow keys themselves
+const OWN_ARROWS = "input, select, [role=radiogroup], .scroll"; // these use the arrow keys themselves
 const BUTTONS = [
   ["ArrowUp", "forward", "M6 2.5 10.5 8h-9z"],
   ["ArrowLeft", "turn left", "M2.5 6 8 1.5v9z"],

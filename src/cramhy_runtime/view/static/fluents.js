@@ -13,6 +13,7 @@ export class FluentsView {
     this.rows = new Map(); // id → row
     this.live = new Map(); // id → Series
     this.touched = new Map(); // id → stamp of the last change
+    this.past = { state: null }; // the moment that is looked back at, with what was found out about the time before it
     this.empty = el("li", { class: "nothing" }, "No fluent yet.");
   }
 
@@ -24,16 +25,16 @@ export class FluentsView {
   // A Fluents message of the live session.
   note({ stamp, fluents, complete, removed }) {
     record(this.live, this.touched, stamp, fluents);
-    if (complete) return;
-    for (const id of removed ?? []) {
+    const kept = complete && new Set(fluents.map(({ id }) => id));
+    for (const id of complete ? [...this.touched.keys()].filter((one) => !kept.has(one)) : removed ?? []) {
       this.live.delete(id);
       this.touched.delete(id);
     }
   }
 
-  // history: null for the live session, else the History from which the lines before `now` are drawn.
+  // history: null for the live session, else the History from which the lines before `now` are drawn, once for each `state`.
   render(state, now, history) {
-    const { series, touched } = history ? this.#past(history, now) : { series: this.live, touched: this.touched };
+    const { series, touched } = history ? this.#past(history, state, now) : { series: this.live, touched: this.touched };
     let fluents = [...state.fluents.values()];
     setText(this.count, fluents.length ? String(fluents.length) : "");
     if (fluents.length > MOST) {
@@ -45,13 +46,15 @@ export class FluentsView {
     arrange(this.list, nodes.length ? nodes : [this.empty]);
   }
 
-  #past(history, now) {
+  #past(history, state, now) {
+    if (this.past.state === state) return this.past;
     const series = new Map();
     const touched = new Map();
     const before = history.at(now - WINDOW);
     record(series, touched, before.stamp, before.fluents.values());
     for (const { message } of history.between("fluents", now - WINDOW, now)) record(series, touched, message.stamp, message.fluents);
-    return { series, touched };
+    this.past = { state, series, touched };
+    return this.past;
   }
 
   #row(fluent, series, now, changed) {

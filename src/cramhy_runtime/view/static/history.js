@@ -81,7 +81,8 @@ export class History {
 
   // Messages of `kind` with start <= stamp <= end, oldest first.
   *between(kind, start, end) {
-    for (const chapter of this.chapters) {
+    const first = this.chapters.findLastIndex((chapter) => chapter.stamp < start);
+    for (const chapter of this.chapters.slice(Math.max(first, 0))) {
       for (const entry of chapter.entries) {
         if (entry.stamp > end) return;
         if (entry.stamp >= start && entry.kind === kind) yield entry;

@@ -26,15 +26,22 @@ export class LogView {
     if (this.fresh.length > MOST) this.fresh.splice(0, this.fresh.length - MOST);
   }
 
+  // A recording was put to another time: what was said until then is not known, but for what is told after this.
+  forget() {
+    this.fresh = [];
+    this.lines = [];
+    this.list.replaceChildren();
+  }
+
   // Show the lines until the time `until`; Infinity for all.
   render(until) {
     const { list } = this;
-    const atEnd = list.scrollHeight - list.scrollTop - list.clientHeight < 24;
     if (until !== this.until) {
       this.until = until;
       this.#filter();
     }
     if (!this.fresh.length) return;
+    const atEnd = list.scrollHeight - list.scrollTop - list.clientHeight < 24;
     const lines = this.fresh.splice(0, BURST);
     for (const line of lines) {
       line.node = row(line);
@@ -44,10 +51,6 @@ export class LogView {
     this.lines.push(...lines);
     while (this.lines.length > MOST) this.lines.shift().node.remove();
     if (atEnd) list.scrollTop = list.scrollHeight;
-  }
-
-  get waiting() {
-    return this.fresh.length > 0;
   }
 
   #visible(line) {

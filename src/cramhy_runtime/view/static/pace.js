@@ -9,6 +9,8 @@ export class PaceView {
   constructor({ pause, step, size, speed, call, failed }) {
     Object.assign(this, { pause, step, size, speed, call, failed });
     this.pace = null;
+    this.wanted = {}; // what was asked for and is not answered yet
+    this.open = 0; // questions without an answer
     pause.addEventListener("click", () => this.#set({ paused: !this.pace?.paused }));
     speed.addEventListener("change", () => this.#set({ speed: Number(speed.value) }));
     step.addEventListener("click", () => this.#ask("/cramhy/step", { seconds: Number(size.value) }));
@@ -36,10 +38,12 @@ export class PaceView {
 
   #set(change) {
     const { paused = false, speed = 1 } = this.pace ?? {};
-    return this.#ask("/cramhy/set_pace", { paused, speed, ...change });
+    Object.assign(this.wanted, change);
+    return this.#ask("/cramhy/set_pace", { paused, speed, ...this.wanted });
   }
 
   async #ask(service, args) {
+    this.open++;
     try {
       const { pace } = await this.call(service, args);
       if (pace) this.render(pace);
@@ -48,6 +52,8 @@ export class PaceView {
       const { pace } = this;
       this.pace = undefined;
       this.render(pace); // what was chosen did not come true
+    } finally {
+      if (--this.open === 0) this.wanted = {};
     }
   }
 }

@@ -34,12 +34,11 @@ export class Paper {
   show(end, epoch) {
     if (!epoch || (epoch === this.epoch && end === this.drawn)) return false;
     this.#paint(end, epoch);
-    if (this.strokes.full && end === this.strokes.end) this.#settle();
     return true;
   }
 
   #paint(end, epoch) {
-    if (epoch !== this.epoch || end < this.drawn) this.#restart(end, epoch);
+    if (epoch !== this.epoch || end < this.drawn || this.drawn < this.strokes.first) this.#restart(end, epoch);
     while (this.drawn < end) {
       const next = Math.min(end, this.drawn + BETWEEN_COPIES - (this.drawn % BETWEEN_COPIES));
       this.#draw(Math.max(this.drawn, this.strokes.first), next);
@@ -48,8 +47,8 @@ export class Paper {
     }
   }
 
-  // Turn the oldest quarter of the lines into a copy, the ground for all later times.
-  #settle() {
+  // Turn the oldest quarter of the lines into a copy, the ground for all later times. What is shown stays.
+  settle() {
     const { strokes } = this;
     const end = strokes.first + Math.ceil(strokes.length / 4);
     const ground = new Paper(strokes);

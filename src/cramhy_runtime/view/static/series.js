@@ -19,6 +19,7 @@ export class Series {
 
   push(stamp, number) {
     const { points } = this;
+    while (points.length && points.at(-1)[0] > stamp) points.pop(); // a recording that was put back
     const before = points.at(-2);
     if (before && stamp - before[0] < SPACING) points[points.length - 1] = [stamp, number];
     else points.push([stamp, number]);

@@ -15,6 +15,7 @@ const TOPICS = {
 };
 const KINDS = Object.keys(TOPICS);
 const CHANGING = KINDS.filter((kind) => kind !== "pace"); // those that the past is told of
+const POSE = ["x", "y", "theta", "linear_velocity", "angular_velocity"];
 const QUEUE = { queue_length: 0 }; // every line counts
 const ANEW = 1500; // ms after which the state is asked for again when that failed
 const MOST_OLDER = 400_000; // lines of earlier chapters
@@ -30,6 +31,8 @@ export class Session {
     this.arrival = 0; // ms, of the last stamp
     this.chapter = null; // the oldest one that was fetched: {chapter, oldest}
     this.fetching = false;
+    this.wanted = null; // the time of the recording that is to be sought next
+    this.seeking = null; // a promise, while one is being sought
     this.bridge = new Connection({ url, token, make, changed: (state, detail) => {
       if (state !== "open") this.joined = false;
       connection(state, detail);
@@ -74,6 +77,22 @@ export class Session {
   async earlier() {
     if (!this.more || this.fetching) return;
     await this.#fetch(this.chapter.chapter - 1);
+  }
+
+  // Go to a time of the recording that is replayed; the promise ends when the session is there. Of times that are wanted while it is
+  // on its way only the last one counts: a slider tells sixty a second.
+  seek(stamp) {
+    this.wanted = stamp;
+    this.seeking ??= this.#seek().finally(() => (this.seeking = null));
+    return this.seeking;
+  }
+
+  async #seek() {
+    while (this.wanted !== null) {
+      const stamp = this.wanted;
+      this.wanted = null;
+      await this.bridge.call("/cramhy/seek", { stamp });
+    }
   }
 
   async #join() {
@@ -123,6 +142,7 @@ export class Session {
   #sample(kind, message, strokes) {
     if (kind !== "world") return { message, sample: null };
     const { stamp, turtles } = message;
+    for (const turtle of turtles) for (const key of POSE) turtle[key] ??= NaN; // JSON has none
     return { message: { stamp, turtles }, sample: { stamp, turtles, ...strokes.add(message) } };
   }
 

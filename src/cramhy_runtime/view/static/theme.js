@@ -2,8 +2,7 @@
 
 import { setText } from "./dom.js";
 
-const NAMES = { auto: "auto", light: "light", dark: "dark" };
-const ORDER = Object.keys(NAMES);
+const THEMES = ["auto", "light", "dark"];
 const KEY = "cramhy-theme";
 
 export function offerThemes(button) {
@@ -14,13 +13,13 @@ export function offerThemes(button) {
     // a browser that keeps nothing for pages: then the choice lasts as long as the page
   }
   const enter = (chosen) => {
-    theme = chosen in NAMES ? chosen : "auto";
+    theme = THEMES.includes(chosen) ? chosen : "auto";
     document.documentElement.dataset.theme = theme;
-    setText(button.lastElementChild, NAMES[theme]);
+    setText(button.lastElementChild, theme);
   };
   enter(theme);
   button.addEventListener("click", () => {
-    enter(ORDER[(ORDER.indexOf(theme) + 1) % ORDER.length]);
+    enter(THEMES[(THEMES.indexOf(theme) + 1) % THEMES.length]);
     try {
       localStorage.setItem(KEY, theme);
     } catch {

@@ -30,6 +30,12 @@ export class TreeView {
     tree.addEventListener("focusin", ({ target }) => this.#stop(target.closest("[role=treeitem]")?.dataset.key));
   }
 
+  // Another session begins: its tasks have nothing to do with those of before, though they be numbered alike.
+  forget() {
+    this.choices.clear();
+    this.wide.clear();
+  }
+
   // state: a State. now: plan time, s.
   render(state, now) {
     this.state = state;

@@ -29,7 +29,7 @@ export class WorldView {
   // A tick {stamp, turtles, strokes, epoch} of the live world.
   tick(sample, arrival) {
     this.playback.push(sample, arrival);
-    if (document.hidden && this.strokes.full && !this.past) this.paper.show(sample.strokes, sample.epoch); // no frame would do it
+    if (this.strokes.full) this.paper.settle(); // also while nobody draws: the page is hidden, or the past is looked at
   }
 
   forget() {
