@@ -93,6 +93,13 @@ def test_afterwards_nothing_is_left(session, tmp_path):
     assert chronicler.there() is None and not here.on_change and not [name for name in here.nodes if "cramhy" in name]
 
 
+def test_the_file_is_a_recording_from_the_first_moment_on(session, tmp_path):
+    made = chronicle.record(tmp_path / "x.mcap", ["errand.lisp"])
+    found = chronicle.read(tmp_path / "x.mcap")
+    assert (found.count, found.about["program"]) == (0, "errand.lisp") and found.cut.startswith(f"The recording {tmp_path / 'x.mcap'} is ")
+    made.close()
+
+
 def test_in_wall_time_what_happened_is_in_the_file_while_nothing_happens(tmp_path, monkeypatch):
     from cramhy_runtime.repl.session import Session
 
@@ -236,17 +243,22 @@ def test_a_process_that_ends_by_an_error_closes_its_recording(tmp_path):
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no disk that is always full")
 def test_a_full_disk_ends_the_recording_but_not_the_plan(session, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(recorder, "FLUSH", 10**8)
-    made = chronicle.record("/dev/full")
+    made = chronicle.record(tmp_path / "x.mcap")
+    with open("/dev/full", "wb") as full:
+        os.dup2(full.fileno(), made._file.fileno())
     session.evaluate_text(DRIVE)
     assert made.closed and made.problem == "No space left on device"
     made.close()
-    assert capsys.readouterr().err.count("The recording /dev/full ends here: No space left on device. The plan goes on.") == 1
+    told = " ".join(capsys.readouterr().err.split())
+    assert told.count(f"The recording {tmp_path / 'x.mcap'} ends here: No space left on device. The plan goes on.") == 1
     assert not session.evaluate_text("(sleep 1)")[0]
 
 
 @pytest.mark.parametrize("path, text", [
     ("nowhere/x.mcap", "The recording {0}/nowhere/x.mcap cannot be written: No such file or directory."),
     ("", "The recording {0} cannot be written: Is a directory."),
+    pytest.param("/dev/full", "The recording /dev/full cannot be written: No space left on device.",
+                 marks=pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no disk that is always full")),
 ])
 def test_a_file_that_cannot_be_written_is_told_at_once(session, tmp_path, path, text):
     with pytest.raises(RecordingError) as problem:

@@ -53,11 +53,12 @@ class Recorder:
         self._scene = scene.Scene()
         try:
             self._file = open(self.path, "wb")
+            self._writer = writer.Writer(self._file, chunk_size=CHUNK)
+            self._writer.start(profile="", library=f"cramhy {__version__}")
+            self._writer.add_metadata("cramhy", self._about(program))
+            self._writer.flush()  # whenever the process is killed, the file is a recording
         except OSError as problem:
             raise RecordingError(f"The recording {path} cannot be written: {problem.strerror or problem}.") from None
-        self._writer = writer.Writer(self._file, chunk_size=CHUNK)
-        self._writer.start(profile="", library=f"cramhy {__version__}")
-        self._writer.add_metadata("cramhy", self._about(program))
         self._node = self.graph.node(self._free_name(), hidden=True)
         self._chronicler = chronicler.active()
         for kind, message in self._chronicler.state.messages().items():
