@@ -1,6 +1,7 @@
 """Our drawings of turtles, and pictures of the window in pixels and as vectors."""
 
 import json
+import math
 import re
 from xml.etree import ElementTree
 
@@ -9,6 +10,19 @@ import pytest
 from cramhy_runtime.turtlesim import drawing, measures, pictures, sprites
 
 PEN, GROUND = (179, 184, 255), (69, 86, 255)
+
+
+PICTURE = {name: skin for name, _, _, _, _, skin, _ in drawing.PICTURES}
+
+
+def inside(point, polygon):
+    """Whether a point lies in a polygon: a ray from it crosses the border an odd number of times."""
+    x, y = point
+    crossed = False
+    for (x1, y1), (x2, y2) in zip(polygon, [*polygon[1:], polygon[0]]):
+        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
+            crossed = not crossed
+    return crossed
 
 
 class TestDrawings:
@@ -33,6 +47,19 @@ class TestDrawings:
             pupils = [outline for path in shape["paths"] if path["fill"] == drawing.PUPIL for outline in sprites.outlines(path["d"])]
             assert len(pupils) == 2
             assert all(min(x for x, _ in pupil) > 0.3 for pupil in pupils)
+
+    def test_every_limb_has_a_dark_edge_on_all_sides(self):
+        """Of what lies six millimetres beside a limb, on either side of each of its points, nothing is the ground."""
+        for shape in drawing.shapes():
+            skin = PICTURE[shape["name"]]
+            limbs = [outline for path in shape["paths"] if path["fill"] == skin for outline in sprites.outlines(path["d"])]
+            edges = [outline for path in shape["paths"] if path["fill"] == drawing.OUTLINE for outline in sprites.outlines(path["d"])]
+            for limb in limbs:
+                for (x1, y1), (x2, y2) in zip(limb, limb[1:]):
+                    length = math.hypot(x2 - x1, y2 - y1)
+                    for side in (0.006, -0.006) if length else ():
+                        beside = (x1 + x2) / 2 + (y2 - y1) / length * side, (y1 + y2) / 2 - (x2 - x1) / length * side
+                        assert any(inside(beside, edge) for edge in edges), (shape["name"], beside)
 
     @pytest.mark.parametrize("degrees, place", [(0, (1, 0)), (90, (0, -1)), (180, (-1, 0)), (270, (0, 1))])
     def test_a_sprite_turns_with_the_heading(self, degrees, place):

@@ -110,14 +110,34 @@ def _shrunk(outline, factor):
 
 
 def _swollen(outline):
-    """The outline, `EDGE` further out on all sides."""
-    x, y = _middle(outline)
+    """The outline, `EDGE` further out on all sides, those that look inwards like that of a flipper's bend, too."""
+    start, segments = outline
+    starts = [start, *(segment[2] for segment in segments[:-1])]
+    area = sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in zip(starts, [*starts[1:], start]))
+    side = math.copysign(EDGE, area)
 
-    def move(point):
-        distance = math.hypot(point[0] - x, point[1] - y) or 1.0
-        return point[0] + (point[0] - x) / distance * EDGE, point[1] + (point[1] - y) / distance * EDGE
+    def normal(begin, end):
+        along_x, along_y = end[0] - begin[0], end[1] - begin[1]
+        length = math.hypot(along_x, along_y)
+        return along_y / length * side, -along_x / length * side
 
-    return _moved(outline, move)
+    def moved(point, before, after):
+        """Out so far that the sides before and after it come to lie `EDGE` further out; not quite so far where it is pointed."""
+        share = EDGE**2 / (EDGE**2 + max(before[0] * after[0] + before[1] * after[1], 0.0))
+        return point[0] + (before[0] + after[0]) * share, point[1] + (before[1] + after[1]) * share
+
+    # The directions in which each segment sets out and arrives. The controls of a straight side lie on its ends.
+    out = [normal(begin, first if first != begin else second) for begin, (first, second, _) in zip(starts, segments)]
+    arriving = [normal(second if second != end else first, end) for first, second, end in segments]
+    corners = [moved(point, arriving[index - 1], out[index]) for index, point in enumerate(starts)]
+    swollen = []
+    for index, (first, second, end) in enumerate(segments):
+        corner, following = corners[index], corners[(index + 1) % len(segments)]
+        if second == end:
+            swollen.append((corner, following, following))
+        else:
+            swollen.append((moved(first, out[index], out[index]), moved(second, arriving[index], arriving[index]), following))
+    return corners[0], swollen
 
 
 def _data(outline):
