@@ -11,6 +11,7 @@ from cramhy_runtime.lisp.condition_types import SimpleError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.ros.services import Refusal
+from cramhy_runtime.ros.wire import NEGATIVE_INFINITY, POSITIVE_INFINITY
 from cramhy_runtime.turtlesim import executables, teleop
 from cramhy_runtime.turtlesim.node import each_simulator, running_simulator, simulators, start_turtlesim
 from cramhy_runtime.turtlesim.roscpp import MOST_LINES
@@ -58,8 +59,9 @@ class TestCommandLine:
         keys = executables.start("turtle_teleop_key", ["_scale_linear:=9"])
         assert keys.linear == 2.0
 
-    def test_a_scale_that_is_no_number_is_left_alone(self, simulator):
-        graph.active().parameters.set("/scale_angular", "fast")
+    @pytest.mark.parametrize("value", ["fast", "3", True, [1.0], {"x": 1}])
+    def test_a_scale_that_is_no_number_is_left_alone(self, simulator, value):
+        graph.active().parameters.set("/scale_angular", value)
         assert executables.start("turtle_teleop_key").angular == 2.0
 
     def test_an_illegal_name_is_an_error_that_says_why(self, simulator):
@@ -188,6 +190,17 @@ class TestDrawSquare:
         square = executables.start("draw_square")
         kernel.sleep(2.2)
         assert texts(square) == ["New goal [7.544445 5.544445, 0.000000]", "Reached goal", "New goal [7.448444 5.544445, 1.570796]"]
+
+    def test_a_pose_that_is_infinite_stops_nothing(self, simulator, watch, capsys):
+        simulator.shutdown()
+        other = watch(simulator)
+        square = executables.start("draw_square")
+        poses = other.node.advertise("/turtle1/pose", message_class_exact("turtlesim/Pose"))
+        message = poses.type()
+        message.x, message.theta = NEGATIVE_INFINITY, POSITIVE_INFINITY
+        poses.publish(message)
+        kernel.sleep(0.1)
+        assert capsys.readouterr().err == "" and square.alive
 
     def test_it_commands_every_tick(self, turtle):
         heard = []

@@ -1,12 +1,14 @@
 """The history of a simulator, and pictures that move: an SVG that any browser plays, and a GIF."""
 
 import math
+from fractions import Fraction
 from xml.etree import ElementTree
 
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.condition_types import SimpleError
+from cramhy_runtime.lisp.condition_types import SimpleError, TypeError_, shown
+from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.turtlesim import history, package, pictures, replay
 from cramhy_runtime.turtlesim.history import History
 from cramhy_runtime.turtlesim.node import start_turtlesim
@@ -76,6 +78,15 @@ class TestHistory:
         turtle.drive(math.nan)
         kernel.sleep(1)
         assert len(kept.tracks[0].samples()) == 1
+
+    def test_clears_without_end_are_forgotten_too(self, turtle, monkeypatch):
+        monkeypatch.setattr(history, "MOST_SAMPLES", 100)
+        monkeypatch.setattr(history, "_LOOK", 64)
+        kept = turtle.simulator.keep_history()
+        for _ in range(300):
+            turtle.simulator.clear()
+            kernel.sleep(0.016)
+        assert len(kept.clears) < 165
 
     def test_a_long_one_forgets_its_older_half_but_not_what_is_on_the_paper(self, turtle, monkeypatch):
         monkeypatch.setattr(history, "MOST_SAMPLES", 500)
@@ -217,12 +228,46 @@ class TestMistakes:
             package.save_picture(str(tmp_path / "x.gif"), speed=speed)
         assert error.value.report().startswith("The speed of a replay is a number above zero, such as 2 for twice as fast, but not ")
 
+    @pytest.mark.parametrize("speed", [1e-300, 0.001, Fraction(1, 10**400)])
+    def test_a_speed_with_which_it_would_take_hours(self, turtle, speed, tmp_path):
+        package.record()
+        kernel.sleep(16)
+        with pytest.raises(SimpleError) as error:
+            pictures.save("x.gif", speed=speed)
+        assert error.value.report() == (
+            f"At the speed {shown(speed)} the replay x.gif would take longer than 10 minutes. Give a speed of 0.027 or more, or none.")
+        assert not list(tmp_path.iterdir())
+
+    def test_a_speed_that_no_float_can_hold_is_very_fast(self, turtle, tmp_path):
+        package.record()
+        kernel.sleep(16)
+        package.save_picture(str(tmp_path / "x.replay.svg"), speed=10**400)
+        assert 'dur="2.00s"' not in (tmp_path / "x.replay.svg").read_text()  # nothing moves, so nothing is animated
+
+    def test_a_still_picture_has_no_speed(self, turtle, tmp_path):
+        with pytest.raises(SimpleError) as error:
+            pictures.save("x.png", speed=2)
+        assert error.value.report() == (
+            "The picture x.png shows the window as it is and has no speed. A name that ends in .gif or .replay.svg gets a replay.")
+
+    @pytest.mark.parametrize("thing", [None, 5, sym(":X")])
+    def test_what_is_no_name_of_a_file(self, turtle, thing):
+        with pytest.raises(TypeError_) as error:
+            package.save_picture(thing)
+        assert error.value.datum is thing
+
     def test_no_simulator(self):
         kernel.start()
         with pytest.raises(SimpleError) as error:
             package.save_picture("x.png")
         assert error.value.report() == (
             'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).')
+
+
+def test_a_picture_is_written_where_open_would_write(typed, tmp_path):
+    typed(f'''(let ((*default-pathname-defaults* #p"{tmp_path}/"))
+                (turtlesim:save-picture "here.png") (turtlesim:save-picture #p"p.svg"))''')
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["here.png", "p.svg"]
 
 
 def test_a_student_records_a_drive_and_saves_it(typed, tmp_path):

@@ -1,5 +1,7 @@
 """The simulator's topics, services, parameters and log (turtlesim.md 3, 7, 8, 15)."""
 
+import math
+
 import pytest
 
 from cramhy_runtime import kernel
@@ -209,6 +211,13 @@ class TestGlobalServices:
             "Resetting turtlesim.",
             "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]",
         ]
+
+    @pytest.mark.parametrize("value, red", [
+        (150, 150), (150.0, 150), (10.5, 11), (257, 1), (-1, 255), (math.inf, 69), (math.nan, 69), ("150", 69), (True, 69), ([1], 69)])
+    def test_a_background_of_another_kind_counts_as_in_roscpp(self, turtle, value, red):
+        graph.active().parameters.set("/turtlesim/background_r", value)
+        turtle.call("/clear", "std_srvs/Empty")
+        assert turtle.simulator.canvas.background == (red, 86, 255)
 
     def test_the_background_changes_with_clear_and_not_before(self, turtle):
         graph.active().parameters.set("/turtlesim/background_r", 150)

@@ -23,6 +23,16 @@ def test_a_key_that_does_not_exist_is_an_error_that_names_the_keys(turtle):
     assert error.value.report() == ":JUMP is not a key that moves the turtle. Keys: :up :down :left :right."
 
 
+@pytest.mark.parametrize("act", [lambda name: package.press(sym(":UP"), name), lambda name: package.mimic("turtle1", name), package.mimic,
+                                 package.stop])
+def test_a_name_that_ros_does_not_allow_is_an_error_that_says_why(turtle, act):
+    with pytest.raises(SimpleError) as error:
+        act("my turtle")
+    assert error.value.report() == (
+        '"my turtle" is not the name of a turtle or of a node. Character [ ] at element [2] is not valid in Graph Resource Name '
+        "[my turtle].  Valid characters are a-z, A-Z, 0-9, / and _.")
+
+
 def test_the_paper_can_be_saved(turtle, tmp_path):
     path = str(tmp_path / "turtle.png")
     assert package.save_picture(path) == path

@@ -45,7 +45,7 @@ class DrawSquare(Program):
             start_call(reset, reset.type.request(), lambda call: None)
 
     def _see(self, pose):
-        self.pose = tuple(wire.as_float(value) for value in pose.values())
+        self.pose = tuple(value if math.isfinite(value) else math.nan for value in map(wire.as_float, pose.values()))
 
     def tick(self):
         """What the timer does: one command, and perhaps the next state."""

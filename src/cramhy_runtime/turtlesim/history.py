@@ -14,7 +14,7 @@ from .ink import Ink
 from .measures import EXTENT
 
 MOST_SAMPLES = 250_000
-"""Poses and strokes that are kept: half an hour of one turtle that draws all the time, thirty megabytes."""
+"""Poses, strokes and clears that are kept: half an hour of one turtle that draws all the time, thirty megabytes."""
 _LOOK = 4096  # ticks between two looks at how many they are
 
 
@@ -88,7 +88,7 @@ class History:
             track.see(tick)
         if strokes:
             self.strokes.extend([(tick, *stroke) for stroke in strokes])
-        if not tick % _LOOK and sum(len(track.ticks) for track in self.tracks) + len(self.strokes) > MOST_SAMPLES:
+        if not tick % _LOOK and self._size() > MOST_SAMPLES:
             self._shorten()
 
     def eras(self):
@@ -96,6 +96,9 @@ class History:
         begins = [bisect_left(self.strokes, (tick,)) for tick, _ in self.clears] + [len(self.strokes)]
         return [(tick, background, self.strokes[begins[index] : begins[index + 1]])
                 for index, (tick, background) in enumerate(self.clears)]
+
+    def _size(self):
+        return len(self.strokes) + len(self.clears) + sum(len(track.ticks) for track in self.tracks)
 
     def _shorten(self):
         """Forget the older half, but for what lay on the paper in its middle."""

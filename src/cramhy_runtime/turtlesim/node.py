@@ -7,6 +7,7 @@ The first tick only looks at the time. What nobody subscribes to is not computed
 
 from __future__ import annotations
 
+import math
 from weakref import WeakKeyDictionary
 
 from .. import kernel
@@ -137,7 +138,7 @@ class Turtlesim(Program):
             if talkative:
                 self.log(rosout.DEBUG, f"[{self.node.resolve(turtle.name)}]: pos_x: {turtle.x:f} pos_y: {turtle.y:f} "
                                         f"theta: {turtle.heading:f}")
-            if turtle._segment is not None:
+            if turtle.segment is not None:
                 turtle.draw()
         if self.observers:
             self._show()
@@ -234,13 +235,8 @@ class Turtlesim(Program):
         self._clear()
 
     def _clear(self):
-        colour = []
-        for parameter, default in BACKGROUND:
-            try:
-                colour.append(int(self.graph.parameters.get(self.node.resolve("~" + parameter))) & 255)
-            except (KeyError, TypeError, ValueError):
-                colour.append(default)
-        self.canvas.clear(tuple(colour))
+        values = [(self.number("~" + parameter, default), default) for parameter, default in BACKGROUND]
+        self.canvas.clear([math.floor((value if math.isfinite(value) else default) + 0.5) & 255 for value, default in values])
 
     def _offer_services(self):
         empty = service_type_exact("std_srvs/Empty")

@@ -8,19 +8,25 @@ What only some sessions need is imported when it is called for: a session begins
 from __future__ import annotations
 
 from ..lisp import conditions
+from ..lisp.condition_types import SimpleError, shown
 from ..lisp.data import Symbol
 from ..lisp.faces import define_face
 from ..lisp.packages import string_designator
 from ..lisp.streams.streams import STANDARD_OUTPUT
 from ..ros import graph
+from ..ros.names import check_graph_name
 from .node import Turtlesim, needed_simulator, running_simulator
 from .teleop import KEYS, NAMED_KEYS, Teleop
 
 
 def _name(designator):
-    """What a string or a symbol names: names in ROS have small letters and underscores."""
+    """What a string or a symbol names: names in ROS have small letters and underscores. One that ROS does not allow is a simple error."""
     name = string_designator(designator)
-    return name.lower().replace("-", "_") if isinstance(designator, Symbol) else name
+    name = name.lower().replace("-", "_") if isinstance(designator, Symbol) else name
+    complaint = check_graph_name(name)
+    if complaint:
+        conditions.error(SimpleError("~a", f"{shown(designator)} is not the name of a turtle or of a node. {complaint}"))
+    return name
 
 
 def start(*arguments):
@@ -73,10 +79,12 @@ def stop(name):
 
 def save_picture(path, *, speed=None):
     """Write a picture; returns the path. ``.png`` and ``.svg`` show the window as it is, ``.gif`` and ``.replay.svg`` what has happened
-    since ``(turtlesim:record)``, ``speed`` times as fast as it was."""
+    since ``(turtlesim:record)``, ``speed`` times as fast as it was. The file is the one that ``open`` would open."""
+    from ..lisp.files.files import path_of
+    from ..lisp.files.pathnames import namestring
     from . import pictures
 
-    pictures.save(str(path), speed=speed)
+    pictures.save(path_of(path), speed=speed, called=namestring(path))
     return path
 
 

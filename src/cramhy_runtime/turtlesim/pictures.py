@@ -20,6 +20,7 @@ from ..lisp.condition_types import SimpleError, shown
 from ..lisp.numbers.arithmetic import is_real
 from . import replay, stills
 from .node import each_simulator, needed_simulator
+from .world import TICK
 
 _REPLAYS = {".gif": replay.write_gif, ".replay.svg": replay.write_svg}
 _STILLS = {".png": stills.still_png, ".svg": stills.still_svg}
@@ -44,28 +45,49 @@ def keep_history():
     each_simulator(lambda simulator: simulator.keep_history())
 
 
-def save(path, simulator=None, speed=None):
+def save(path, simulator=None, speed=None, called=None):
     """Write a picture to ``path``; its ending says which kind (see the module).
 
     simulator: a `Turtlesim`; the running one when it is left out. speed: of a replay, seconds of plan time per second; ``None``: 1, or as
-    fast as it takes to be over in 30 seconds. Errors, all simple ones: an ending that says nothing, no simulator, no history, a speed that
-    is no number above zero, a folder that cannot be written to.
+    fast as it takes to be over in 30 seconds. called: how the user writes the name. Errors, all simple ones: an ending that says nothing,
+    no simulator, no history, a speed that is no number above zero, or with which the replay would take longer than ten minutes, or of a
+    still picture, a folder that cannot be written to.
     """
-    check(path)
-    if speed is not None and not (is_real(speed) and 0 < float(speed) < math.inf):
-        conditions.error(SimpleError(
-            "~a", f"The speed of a replay is a number above zero, such as 2 for twice as fast, but not {shown(speed)}."))
     path = str(path)
+    called = called or path
+    check(called)
+    if speed is not None:
+        _check_speed(speed, called)
     simulator = simulator or needed_simulator()
     try:
         for ending, write in _REPLAYS.items():
             if path.lower().endswith(ending):
-                return write(simulator.history or _no_history(path), path, speed)
+                history = simulator.history or _no_history(called)
+                return write(history, path, speed and _bearable(speed, history, called))
         for ending, write in _STILLS.items():
             if path.lower().endswith(ending):
                 return write(simulator, path)
     except OSError as problem:
-        conditions.error(SimpleError("~a", f"The picture {path} cannot be written: {problem.strerror or problem}."))
+        conditions.error(SimpleError("~a", f"The picture {called} cannot be written: {problem.strerror or problem}."))
+
+
+def _check_speed(speed, path):
+    if not (is_real(speed) and 0 < speed < math.inf):
+        conditions.error(SimpleError(
+            "~a", f"The speed of a replay is a number above zero, such as 2 for twice as fast, but not {shown(speed)}."))
+    if not is_replay(path):
+        conditions.error(SimpleError(
+            "~a", f"The picture {path} shows the window as it is and has no speed. A name that ends in .gif or .replay.svg gets a replay."))
+
+
+def _bearable(speed, history, path):
+    """``speed`` as a float, when a replay of ``history`` ends in a reasonable time with it."""
+    least = history.ticks * TICK / replay.UTMOST
+    if speed < least:
+        conditions.error(SimpleError(
+            "~a", f"At the speed {shown(speed)} the replay {path} would take longer than {replay.UTMOST / 60:g} minutes. Give a speed of "
+                  f"{math.ceil(least * 1000) / 1000:g} or more, or none."))
+    return float(min(speed, 1e9))  # an integer may be too large for a float
 
 
 def _no_history(path):

@@ -4,7 +4,8 @@ The SVG is one file without scripts and without anything from outside: SMIL anim
 turtles, all as long as the whole replay, which begins again at its end. A viewer that does not animate shows the last picture. The GIF
 has twenty frames a second, painted pixel by pixel like the paper itself; frames in which nothing happens take no room.
 
-A replay takes at most `LONGEST` seconds: longer histories go two, three, ... times as fast. The end stays for `REST` seconds.
+A replay takes at most `LONGEST` seconds unless asked for: longer histories go two, three, ... times as fast. The end stays for `REST`
+seconds.
 """
 
 from __future__ import annotations
@@ -16,9 +17,11 @@ from html import escape
 from . import sprites, stills
 from .canvas import Canvas
 from .measures import EXTENT, METRE, SIZE
+from .world import TICK
 
-TICK = 0.016
 LONGEST = 30.0
+UTMOST = 600.0
+"""Seconds that a replay may take at all: a picture of a GIF is seen for ten minutes at most, and there are twenty a second."""
 REST = 2.0
 FRAME = 0.05
 _CLOSE, _TURNED, _SHARP = 0.015, 0.05, 0.005
@@ -27,7 +30,7 @@ _CLOSE, _TURNED, _SHARP = 0.015, 0.05, 0.005
 
 def speed_for(history, speed=None):
     """How many seconds of plan time pass in a second of the replay."""
-    return float(speed) if speed else max(1.0, math.ceil(history.ticks * TICK / LONGEST))
+    return speed or max(1.0, math.ceil(history.ticks * TICK / LONGEST))
 
 
 # --------------------------------------------------------------------------------------------------------------------- SVG

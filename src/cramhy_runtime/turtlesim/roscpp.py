@@ -56,6 +56,14 @@ class Program:
         """Leave the graph."""
         self.node.shutdown()
 
+    def number(self, parameter, default):
+        """The value of a parameter as roscpp's ``param`` reads a number; ``default`` when it is not set or something else."""
+        try:
+            value = self.graph.parameters.get(self.node.resolve(parameter))
+        except KeyError:
+            return default
+        return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else default
+
     def log(self, level, text):
         """A log line as roscpp prints it, and a message on ``/rosout``; nothing when the node's logger is less talkative."""
         if not self.loggers.enabled(level):

@@ -30,7 +30,7 @@ def picture(simulator):
 
 def still_svg(simulator, path):
     """Write what the window shows as an SVG file; lines that lie within a fifth of a pixel of a straight one are made straight."""
-    parts = [svg_head(f"turtlesim: {len(simulator.turtles)} turtles"), svg_paper(simulator.canvas.background)]
+    parts = [svg_head(f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"), svg_paper(simulator.canvas.background)]
     for colour, width, points in simulator.canvas.polylines():
         parts.append(svg_line(colour, width, points))
     for turtle in simulator.turtles.values():

@@ -25,14 +25,8 @@ class Teleop(Program):
         self.turtle = turtle
         self.twist = message_class_exact("geometry_msgs/Twist")
         self.publication = self.node.advertise(f"{turtle}/cmd_vel", self.twist)
-        self.linear = self._scale("scale_linear")
-        self.angular = self._scale("scale_angular")
-
-    def _scale(self, parameter):
-        try:
-            return float(self.graph.parameters.get(self.node.resolve(parameter)))
-        except (KeyError, TypeError, ValueError):  # not set, or no number: roscpp keeps what the program began with
-            return 2.0
+        self.linear = self.number("scale_linear", 2.0)
+        self.angular = self.number("scale_angular", 2.0)
 
     def press(self, key):
         """One key: ``"up"``, ``"down"``, ``"left"``, ``"right"``, ``"q"``, or the byte it ends in. True when it moved the turtle."""

@@ -26,7 +26,10 @@ DEFAULT_PEN = (179, 184, 255)
 
 
 class Turtle:
-    """One turtle. x, y (down) in metres, heading in radians; ``warn(text)`` is called when it hits a wall."""
+    """One turtle. x, y (down) in metres, heading in radians; ``warn(text)`` is called when it hits a wall.
+
+    ``segment`` is where the line of the last update begins, until `draw` has drawn it, or ``None``.
+    """
 
     __slots__ = (
         "name",
@@ -46,7 +49,7 @@ class Turtle:
         "warn",
         "at_rest",
         "_pose",
-        "_segment",
+        "segment",
     )
 
     def __init__(self, name, number, x, y, heading, canvas, warn):
@@ -59,7 +62,7 @@ class Turtle:
         self.canvas, self.warn = canvas, warn
         self.at_rest = False
         self._pose = None
-        self._segment = None
+        self.segment = None
 
     def command(self, forward, sideways, turn, now):
         """A velocity command received at the time ``now``; it replaces the one before."""
@@ -107,15 +110,15 @@ class Turtle:
         self.x, self.y, self.heading = x, y, heading
         self._pose = None
         if x != old_x or y != old_y:
-            self._segment = (old_x, old_y)
+            self.segment = (old_x, old_y)
         elif not forward and not sideways and not self.turn and heading == old_heading:
             self.at_rest = True
 
     def draw(self):
         """The line of the last update."""
-        segment = self._segment
+        segment = self.segment
         if segment is not None:
-            self._segment = None
+            self.segment = None
             if self.pen_on:
                 self._line(segment[0], segment[1], self.x, self.y)
 
