@@ -180,6 +180,21 @@ def test_a_head_that_never_ends_is_given_up(server):
     assert drip() == b""
 
 
+def test_a_second_head_that_never_ends_is_given_up_likewise(server):
+    whole = f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n\r\n".encode()
+    with socket.create_connection(("127.0.0.1", server.port), 20) as slow:
+        slow.settimeout(20)
+        slow.sendall(whole)
+        answer = b""
+        while not answer.endswith(b"<p>turtle</p>"):
+            answer += slow.recv(1000)
+        slow.sendall(whole[:20])
+        try:
+            assert slow.recv(100) == b""
+        except ConnectionResetError:
+            pass
+
+
 @pytest.mark.parametrize("data", [b"\x16\x03\x01\x02\x00\x01", b"GET\r\n\r\n", b"\x00" * 1000, b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000,
                                   b"GET / HTTP/9.9\r\n\r\n", b"GET / HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n"])
 def test_what_is_no_request_is_refused(server, data):

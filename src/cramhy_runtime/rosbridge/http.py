@@ -1,7 +1,8 @@
 """Requests before they are any: connections that say nothing, or say it too slowly, are ended.
 
-uvicorn's own protocol waits for ever for the first line of a request. Here a connection must have sent its request's head in time, and
-there are not more of them than clients are allowed, with some for files of the page.
+uvicorn's own protocol waits for ever for the rest of a request, and for a client that does not read. Here a connection must have asked,
+and taken its answer, in time, each time anew, unless it becomes a WebSocket; and there are not more of them than clients are allowed,
+with some for files of the page.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ def make_protocol(limits):
     most = limits.connections + SPARE
 
     class Impatient(H11Protocol):
-        """Ends a connection that has not sent a request's head within `Limits.first_message`."""
+        """Ends a connection that has had no answer to a request within `Limits.first_message`, since it began or had the last one."""
+
+        _patience = None
 
         def connection_made(self, transport):
             super().connection_made(transport)
@@ -25,16 +28,26 @@ def make_protocol(limits):
             if len(self.connections) > most:
                 transport.abort()
                 return
-            self._patience = self.loop.call_later(limits.first_message, self._lose_patience)
+            self._be_patient()
 
-        def _lose_patience(self):
-            if self.scope is None:
+        def _be_patient(self):
+            self._forgive()
+            self._patience = self.loop.call_later(limits.first_message, self._end)
+
+        def _forgive(self):
+            if self._patience is not None:
+                self._patience.cancel()
+
+        def _end(self):
+            if self.transport.get_protocol() is self:  # and not a WebSocket's
                 self.transport.abort()
 
+        def on_response_complete(self):
+            self._be_patient()
+            super().on_response_complete()
+
         def connection_lost(self, exc):
-            patience = getattr(self, "_patience", None)
-            if patience is not None:
-                patience.cancel()
+            self._forgive()
             super().connection_lost(exc)
 
     return Impatient
