@@ -146,3 +146,14 @@ def test_what_the_session_refuses_is_told_in_one_line(far_shell):
     hub.limits = replace(hub.limits, subscriptions=0)
     far_shell("rostopic echo /turtle1/pose")
     assert far_shell.said == ("", "ERROR: You subscribe to 0 topics; more are not allowed. Unsubscribe from some.\n", 1)
+
+
+def test_a_session_that_ends_while_it_lets_the_tool_in_is_no_session(far_shell, monkeypatch):
+    from cramhy_runtime.ros_tools import reach, there
+
+    def gone(graph, **operation):
+        raise reach.SessionEnded("The session has ended.")
+
+    monkeypatch.setattr(there.ThereGraph, "_send", gone)
+    assert far_shell("rostopic list") == "" and far_shell.status == 1
+    assert "does not let anybody in: The session has ended.\n" in far_shell.errors

@@ -124,6 +124,14 @@ def test_every_client_hears_why_the_session_ends_however_busy_the_server_is(serv
     assert {wire.closed() for wire in wires} == {(1001, "The session has ended.")}
 
 
+def test_who_is_let_in_while_the_session_ends_hears_why(serve, outside):
+    server = serve()
+    outside(lambda: Wire(server.address).call("/rosapi/topics"))  # so it runs
+    server.closed = True
+    assert outside(lambda: Wire(server.address).closed()) == (1001, "The session has ended.")
+    server.closed = False
+
+
 def test_closing_twice_does_nothing(serve):
     server = serve()
     server.close()

@@ -53,13 +53,13 @@ class ThereGraph(Graph):
         try:
             self.socket = connect(f"ws://{self.address}/", compression=None, max_size=None, open_timeout=PATIENCE, close_timeout=FAREWELL,
                                   proxy=None).__enter__()  # left in `close`
-        except (OSError, TimeoutError, InvalidHandshake) as problem:
+            self._send(op="auth", token=token, hidden=True)
+            self._send(op="set_level", level="error")
+        except (OSError, TimeoutError, InvalidHandshake, SessionEnded) as problem:
             raise NoSession(f"The session at {self.address} does not let anybody in: {problem}") from None
         self.listeners = {}
         self.answers = {}
         self.asked = 0
-        self._send(op="auth", token=token, hidden=True)
-        self._send(op="set_level", level="error")
         reached.append(self)
 
     # ------------------------------------------------------------------------------------------------------ to and fro

@@ -12,10 +12,11 @@ import time
 
 from .guard import Bucket, query_of, same
 from .outbox import Outbox, reason_text
-from .parsing import Fragments, Malformed, operation, parse
+from .parsing import Fragments, Malformed, parse
 from .protocol import Session
 
-POLICY, TOO_BIG, TOO_MUCH = 1008, 1009, 1013
+POLICY, TOO_MUCH = 1008, 1013
+ENDED = 1001, "The session has ended."
 
 
 class Gone(Exception):
@@ -71,6 +72,8 @@ class Connection:
         self._task = asyncio.current_task()
         self.server.connections.add(self)
         try:
+            if self.server.closed:  # while it was let in
+                raise Left(*ENDED)
             if token is None:
                 await self._wait_for_token()
             else:
@@ -162,7 +165,7 @@ class Connection:
                 if whole is None:
                     return None
                 found = parse(whole, self.limits.depth)
-            return operation(found)
+            return found
         except Malformed as problem:
             status = {"op": "status", "level": "error", "msg": str(problem)}
             if isinstance(problem.id, str) and len(problem.id) <= self.limits.name:

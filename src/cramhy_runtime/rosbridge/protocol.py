@@ -27,6 +27,8 @@ from .parsing import json_type
 LEVELS = {"info": 0, "warning": 1, "error": 2, "none": 3}
 MOST_PLAN_TIME = 600.0
 LARGEST = 2**31
+SMALLEST_FRAGMENT = 100
+"""Characters of a message that a fragment holds at least: a client that asks for less would get mostly wrapping."""
 
 
 class Wish:
@@ -43,10 +45,6 @@ class Wish:
             self._wanted.__exit__(None, None, None)
             self._timer.cancel()
             self._wanted = None
-
-
-SMALLEST_FRAGMENT = 100
-"""Characters of a message that a fragment holds at least: a client that asks for less would get mostly wrapping."""
 
 
 class Interest:
@@ -71,6 +69,16 @@ def _fragment_size(operation):
     """The characters of a message that a fragment for the client shall hold, or ``None`` for no fragments; `SMALLEST_FRAGMENT` at least."""
     size = integer(operation, "fragment_size", least=1)
     return size and max(size, SMALLEST_FRAGMENT)
+
+
+def _compression(operation):
+    """The form in which the client wants messages or an answer, one of `COMPRESSIONS`."""
+    compression = operation.get("compression", "none")
+    if not isinstance(compression, str) or compression not in COMPRESSIONS:
+        raise Refused(f'There is no compression {shown(compression)}. There are {", ".join(COMPRESSIONS)}.')
+    if compression.startswith("cbor"):
+        need_cbor()
+    return compression
 
 
 class ClientService(services.Service):
@@ -210,13 +218,8 @@ class Session:
 
     def subscribe(self, operation):
         topic = self.hub.name(operation.get("topic"), "topic")
-        compression = operation.get("compression", "none")
-        if not isinstance(compression, str) or compression not in COMPRESSIONS:
-            raise Refused(f'There is no compression {shown(compression)}. There are {", ".join(COMPRESSIONS)}.')
-        if compression.startswith("cbor"):
-            need_cbor()
         wish = (integer(operation, "throttle_rate") or 0, integer(operation, "queue_length") or 0,
-                _fragment_size(operation), compression)
+                _fragment_size(operation), _compression(operation))
         message_type = self.hub.message_type(topic, operation.get("type"))
         interest = self.interests.get(topic)
         if interest is None:
@@ -269,12 +272,7 @@ class Session:
             self._respond(operation, name if isinstance(name, str) else "", str(problem)[:2000], False)
 
     def _call(self, operation):
-        compression = operation.get("compression", "none")
-        if not isinstance(compression, str) or compression not in COMPRESSIONS:
-            raise Refused(f'There is no compression {shown(compression)}. There are {", ".join(COMPRESSIONS)}.')
-        if compression.startswith("cbor"):
-            need_cbor()
-        _fragment_size(operation)
+        _compression(operation), _fragment_size(operation)  # before anything is done whose answer could not be sent
         name = self.hub.name(operation.get("service"), "service")
         service = self.hub.graph.services.get(name)
         if service is None:
@@ -309,7 +307,7 @@ class Session:
             answer["id"] = operation["id"]
         compression, size = "none", None
         if result:  # otherwise the operation itself may be what is wrong
-            compression, size = operation.get("compression", "none"), _fragment_size(operation)
+            compression, size = _compression(operation), _fragment_size(operation)
         self.send(answer, "cbor" if compression == "cbor-raw" else compression, size)
 
     # -------------------------------------------------------------------------------------------------------------- offering

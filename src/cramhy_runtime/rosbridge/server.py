@@ -27,7 +27,7 @@ from .. import kernel
 from ..kernel.company import Company
 from ..ros import graph
 from . import sessions
-from .connection import Connection
+from .connection import ENDED, Connection
 from .guard import HEADERS, Guard, Limits, new_token
 from .hub import Hub
 from .rosapi import RosApi
@@ -159,7 +159,7 @@ class Server:
 
     async def _stop(self):
         """End the connections, each with the reason, and then uvicorn, which would close them with a mere number."""
-        ending = [connection.end(1001, "The session has ended.") for connection in list(self.connections)]
+        ending = [connection.end(*ENDED) for connection in list(self.connections)]
         if ending:
             await asyncio.wait(ending, timeout=self.limits.closing)
         if self._uvicorn is not None:
