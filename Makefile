@@ -14,7 +14,7 @@ view: $(READY)
 	    --eval '(init-ros-turtle "turtle1")' --eval '(perform-draw-house)'
 
 test: $(READY)
-	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile
+	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile --no-loadscope-reorder
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py

@@ -11,6 +11,15 @@ REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
 
 
+LONG = ("soak", "view", "rosbridge", "repl", "tutorials", "slides", "test_house.py", "test_invariants.py", "test_clause_index.py",
+        "test_against_reference.py", "test_anomalies.py", "test_collecting.py")
+"""Folders and files whose tests take seconds: they come first, so that on two processors neither waits for the other at the end."""
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: not any(part in LONG for part in item.path.parts))
+
+
 @pytest.fixture(scope="session")
 def shared():
     """The folder of the shared references; tests that need it are skipped where it is missing."""

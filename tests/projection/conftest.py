@@ -1,5 +1,6 @@
 """Projection, occasions and episodes are tested as users meet them: in Lisp text, in virtual time, on both back ends."""
 
+import gc
 import io
 import itertools
 import re
@@ -52,6 +53,12 @@ class Lisp(LispLine):
         written = io.StringIO()
         report(self.condition(text), file=written)
         return written.getvalue()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def no_fluents_of_other_files():
+    """Fluents that nobody holds any more are traced until they are collected, and may hold objects of classes that were taken back."""
+    gc.collect()
 
 
 @pytest.fixture(params=["threads", "greenlet"])
