@@ -140,6 +140,13 @@ def test_a_theme_can_be_chosen_and_is_kept(fake, visit):
     assert (button.text_content(), ground() != light) == ("theme: dark", True)
 
 
+COVERED = """() => {
+  const { top } = document.querySelector(".transport").getBoundingClientRect();
+  return [...document.querySelectorAll("main button, main .panel, #paper")].filter((node) => node.getBoundingClientRect().bottom > top)
+      .map((node) => node.id || node.className);
+}"""
+
+
 @pytest.mark.parametrize("width", [360, 390, 768, 1024, 1280, 1920])
 def test_nothing_sticks_out_at_any_width(fake, visit, width):
     page = visit(fake.address, width=width, height=800)
@@ -158,6 +165,11 @@ def test_nothing_sticks_out_at_any_width(fake, visit, width):
     assert abs(paper["width"] - paper["height"]) <= 1 and paper["width"] >= min(width - 40, 300)
     if width >= 1000:  # everything is in sight at once, and the panels scroll for themselves
         assert page.evaluate("() => document.documentElement.scrollHeight") <= 800
+        assert page.evaluate(COVERED) == []
+        fake.close()
+        page.locator("#banner").wait_for()
+        assert page.evaluate(COVERED) == []
+        page.complaints.clear()  # Chromium itself writes to the console that it could not connect
 
 
 def test_a_finger_drives_on_a_phone(fake, visit):

@@ -204,9 +204,21 @@ test("a chapter of the past comes before what is known", () => {
 test("living tasks are open, and dead plans closed but for the last", () => {
   const dead = (id, parent, began, ended) => ({ ...task(id, parent, "SUCCEEDED"), began, ended });
   const rows = outline(treeOf(dead("a", "", 0, 1), dead("a1", "a", 0, 1), dead("b", "", 2, 4), dead("b1", "b", 2, 4), dead("beside", "", 3, 4)));
-  assert.deepEqual(rows.map(({ key, level }) => [key, level]), [["a", 1], ["b", 1], ["b1", 2], ["beside", 1]]);
+  assert.deepEqual(rows.map(({ key, level }) => [key, level]), [["beside", 1], ["b", 1], ["b1", 2], ["a", 1]]);
   const live = outline(treeOf(task("a"), task("a1", "a"), task("b")));
-  assert.deepEqual(live.map(({ key }) => key), ["a", "a1", "b"]);
+  assert.deepEqual(live.map(({ key }) => key), ["b", "a", "a1"]);
+});
+
+test("process modules stand below the plan that runs them, and the newest plan on top", () => {
+  const modules = (id) => ({ ...task(id), operator: "PROCESS-MODULES" });
+  const rows = outline(treeOf(modules("early"), task("a"), modules("a's"), task("b"), task("b1", "b"), modules("b's"), task("b's1", "b's")));
+  assert.deepEqual(rows.map(({ key }) => key), ["b", "b1", "b's", "b's1", "a", "a's", "early"]);
+});
+
+test("of very many plans the newest are shown, and the others counted below them", () => {
+  const tasks = Array.from({ length: 100 }, (_, index) => ({ ...task(`t${index}`, "", "SUCCEEDED"), began: index, ended: index + 0.5 }));
+  const rows = outline(treeOf(...tasks));
+  assert.deepEqual([rows.length, rows[0].key, rows[23].key, rows.at(-1).hidden], [25, "t99", "t76", 76]);
 });
 
 test("what somebody closed stays closed", () => {

@@ -20,8 +20,9 @@ import { WorldView } from "./world.js";
 const PANEL_PAUSE = 100; // ms between two looks at a panel
 const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? location.hash.slice(1);
 const STANDS = "Virtual time stands still while the prompt waits. Step lets some of it pass.";
+const IS_PAST = "This is a recording: what its turtles did is done, and they cannot be driven.";
 
-const doing = ({ recording, paused, busy }) => recording || (paused ? "paused" : busy ? "a form runs" : "the prompt waits");
+const doing = ({ recording, paused, busy }) => recording ? `replays ${recording}` : (paused ? "paused" : busy ? "a form runs" : "the prompt waits");
 
 async function start() {
   offerThemes(byId("theme"));
@@ -59,6 +60,7 @@ async function start() {
       pace.render(session.bridge.open ? session.live.pace : null);
       setText(byId("clock"), clock(moment()));
       setText(byId("doing"), session.joined ? doing(session.live.pace) : "");
+      document.body.classList.toggle("replaying", Boolean(session.live.pace?.recording));
     },
     () => {
       const { recording, begin, end } = session.live.pace ?? {};
@@ -90,7 +92,8 @@ async function start() {
 
   function drive(...message) {
     const { virtual, busy, recording } = session.live.pace ?? {};
-    if (session.bridge.publish(...message) && virtual && !busy && !recording) status.say(STANDS);
+    if (recording) status.say(IS_PAST);
+    else if (session.bridge.publish(...message) && virtual && !busy) status.say(STANDS);
   }
 
   function rosout(message) {

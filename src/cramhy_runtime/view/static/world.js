@@ -70,6 +70,8 @@ export class WorldView {
     if (name === this.chosen) return;
     this.chosen = name;
     this.dirty = true;
+    const { offsetLeft: left = 0, offsetWidth: width = 0 } = this.chips.get(name) ?? {};
+    this.list.scrollLeft = Math.max(left + width - this.list.clientWidth, Math.min(left, this.list.scrollLeft));
   }
 
   #chips(turtles) {
