@@ -203,6 +203,7 @@ def test_the_turtles_are_told_as_they_move_with_what_their_pens_draw(session, lo
     session.evaluate_text(TURTLE)
     session.evaluate_text("(sleep 0.5)")
     worlds = looker.told["world"]
+    assert worlds[0].simulator == "/turtlesim"
     assert worlds[0].complete and [turtle.name for turtle in worlds[0].turtles] == ["turtle1"]
     moving = [world for world in worlds[1:] if world.strokes]
     assert len(moving) >= 30 and not any(world.complete for world in moving)

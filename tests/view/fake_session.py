@@ -58,7 +58,8 @@ class FakeSession:
         self.token = token
         self.stamp = 0.0
         self.state = {
-            "world": {"stamp": 0.0, "complete": True, "clears": 1, "r": 69, "g": 86, "b": 255, "turtles": [turtle()], "strokes": []},
+            "world": {"stamp": 0.0, "complete": True, "clears": 1, "r": 69, "g": 86, "b": 255, "simulator": "/turtlesim",
+                      "turtles": [turtle()], "strokes": []},
             "tasks": {"stamp": 0.0, "complete": True, "tasks": [], "removed": []},
             "fluents": {"stamp": 0.0, "complete": True, "fluents": [], "removed": []},
             "modules": {"stamp": 0.0, "modules": []},

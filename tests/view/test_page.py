@@ -169,6 +169,25 @@ def test_the_arrow_keys_drive(fake, visit, key, linear, angular):
     assert sent["msg"] == {"linear": {"x": linear, "y": 0, "z": 0}, "angular": {"x": 0, "y": 0, "z": angular}}
 
 
+def test_turtles_are_driven_in_the_namespace_of_their_simulator_as_its_parameters_say(fake, visit):
+    parameters = {"/house/scale_linear": "1.5", "/house/scale_angular": '"fast"'}
+    fake.services["/rosapi/get_param"] = lambda request: {"value": parameters.get(request["name"], request["default"])}
+
+    def refuse(request):
+        raise ValueError("no paper")
+
+    fake.services["/house/clear"] = refuse
+    fake.state["world"]["simulator"] = "/house/sim"
+    page = visit(fake.address)
+    page.get_by_role("button", name="Clear paper").click()
+    wait_for_text(page, "#notice", "no paper")  # and the answers that came before it have been heard
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowLeft")
+    fake.wait(lambda message: message["op"] == "publish" and message["msg"]["angular"]["z"] == 2)
+    sent = fake.wait(lambda message: message["op"] == "publish")
+    assert (sent["topic"], sent["msg"]["linear"]["x"]) == ("/house/turtle1/cmd_vel", 1.5)
+
+
 def test_a_key_that_is_held_repeats(fake, visit):
     page = visit(fake.address)
     for _ in range(5):  # what the keyboard sends while a key is held

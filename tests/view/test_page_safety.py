@@ -82,4 +82,5 @@ def test_the_page_asks_only_for_what_it_may(fake, visit):
     fake.wait_for_call("/cramhy/set_pace")
     assert {message["op"] for message in fake.heard} == {"subscribe", "call_service", "advertise", "publish"}
     assert {message["service"] for message in fake.heard if message["op"] == "call_service"} == {
-        "/cramhy/get_state", "/cramhy/get_history", "/clear", "/reset", "/cramhy/step", "/cramhy/set_pace"}
+        "/cramhy/get_state", "/cramhy/get_history", "/clear", "/reset", "/cramhy/step", "/cramhy/set_pace",
+        "/rosapi/get_param"}

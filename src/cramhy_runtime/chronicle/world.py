@@ -65,6 +65,7 @@ class World:
         self.seen = self.clears, turtles
         strokes, self.strokes = self.strokes, []
         make_turtle, make_stroke = self.turtle_type, self.stroke_type
-        background = (0, 0, 0) if simulator is None else simulator.canvas.background
-        return self.type(self.now(), True if complete else None, self.clears, *background, [make_turtle(*turtle) for turtle in turtles],
+        background, name = ((0, 0, 0), "") if simulator is None else (simulator.canvas.background, simulator.node.name)
+        return self.type(self.now(), True if complete else None, self.clears, *background, name,
+                         [make_turtle(*turtle) for turtle in turtles],
                          [make_stroke(x1, y1, x2, y2, *colour, width) for x1, y1, x2, y2, colour, width in strokes])

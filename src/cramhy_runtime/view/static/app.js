@@ -44,8 +44,8 @@ async function start() {
   const call = (service, args) => session.bridge.call(service, args);
   const pace = new PaceView({ pause: byId("pause"), step: byId("step"), size: byId("step-size"), speed: byId("speed"), call, failed });
   const timeline = new Timeline({ slider: byId("moment"), strip: byId("strip"), button: byId("live"), seek, live });
-  new Drive({ pad: byId("pad"), publish: drive, turtle: () => world.chosen });
-  for (const name of ["clear", "reset"]) byId(name).addEventListener("click", () => call(`/${name}`).catch(failed));
+  const wheel = new Drive({ pad: byId("pad"), publish: drive, call, turtle: () => world.chosen });
+  for (const name of ["clear", "reset"]) byId(name).addEventListener("click", () => call(wheel.namespace + name).catch(failed));
   byId("earlier").addEventListener("click", () => session.earlier());
 
   const shown = () => past.state ?? session.live;
@@ -72,8 +72,10 @@ async function start() {
   ].map((render) => ({ render, last: -Infinity }));
 
   function heard(kind, message, sample) {
-    if (sample) world.tick(sample, performance.now());
-    else if (kind === "fluents") fluents.note(message);
+    if (sample) {
+      world.tick(sample, performance.now());
+      if (message.simulator !== wheel.simulator) wheel.enter(message.simulator);
+    } else if (kind === "fluents") fluents.note(message);
     else if (kind === "tasks" && message.complete && session.live.pace?.recording) log.forget(); // somebody sought
     else if (kind === "pace") world.playback.rate = message.virtual ? message.speed : 1;
   }
@@ -82,6 +84,7 @@ async function start() {
     world.forget();
     fluents.forget();
     tree.forget();
+    wheel.forget();
     timeline.present();
   }
 

@@ -1,10 +1,12 @@
 // Driving: the arrow keys and the four buttons publish one velocity command each, as the keys of turtle_teleop_key do, and nothing stops
-// the turtle but time. A key that is held repeats as the keyboard does, a button that is held as a terminal would.
+// the turtle but time. A key that is held repeats as the keyboard does, a button that is held as a terminal would. Names are those of
+// the simulator's namespace, and so are the parameters that scale a command.
 
 import { el, svg } from "./dom.js";
 
 const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };
-const SCALE = 2; // m/s and rad/s, the original's
+const SCALE = 2; // m/s and rad/s, the original's, unless the parameters say otherwise
+const PARAMETERS = ["scale_linear", "scale_angular"];
 const FIRST_REPEAT = 500; // ms
 const REPEAT = 50;
 const OWN_ARROWS = "input, select, [role=radiogroup], .scroll"; // these use the arrow keys themselves
@@ -16,9 +18,11 @@ const BUTTONS = [
 ];
 
 export class Drive {
-  // publish(topic, type, message) sends; turtle() names the turtle that is driven.
-  constructor({ pad, publish, turtle }) {
-    Object.assign(this, { publish, turtle });
+  // publish(topic, type, message) sends; call(service, arguments) asks; turtle() names the turtle that is driven.
+  constructor({ pad, publish, call, turtle }) {
+    Object.assign(this, { publish, call, turtle });
+    this.scales = [SCALE, SCALE];
+    this.forget();
     this.timer = null;
     this.buttons = new Map(BUTTONS.map(([key, name, d]) => [key, this.#button(key, name, d)]));
     pad.append(...this.buttons.values());
@@ -27,10 +31,34 @@ export class Drive {
     window.addEventListener("blur", () => this.#release());
   }
 
+  forget() {
+    this.simulator = null;
+    this.namespace = "/";
+  }
+
+  // Drive the turtles of the simulator of that name. Its parameters are read now, as a program that starts reads them.
+  async enter(simulator) {
+    this.simulator = simulator;
+    this.namespace = simulator ? simulator.replace(/[^/]*$/, "") : "/";
+    const scales = await Promise.all(PARAMETERS.map((name) => this.#scale(this.namespace + name)));
+    if (this.simulator === simulator) this.scales = scales;
+  }
+
+  async #scale(name) {
+    try {
+      const { value } = await this.call("/rosapi/get_param", { name, default: String(SCALE) });
+      const scale = parseFloat(JSON.parse(value));
+      return Number.isFinite(scale) ? scale : SCALE;
+    } catch {
+      return SCALE; // nobody to ask
+    }
+  }
+
   press(key) {
     const [forward, turn] = KEYS[key];
-    const message = { linear: { x: forward * SCALE, y: 0, z: 0 }, angular: { x: 0, y: 0, z: turn * SCALE } };
-    this.publish(`/${this.turtle()}/cmd_vel`, "geometry_msgs/Twist", message);
+    const [linear, angular] = this.scales;
+    const message = { linear: { x: forward * linear, y: 0, z: 0 }, angular: { x: 0, y: 0, z: turn * angular } };
+    this.publish(`${this.namespace}${this.turtle()}/cmd_vel`, "geometry_msgs/Twist", message);
   }
 
   #key(event) {

@@ -141,9 +141,9 @@ export class Session {
   // Of a World the lines go to `strokes`; what is noted is where the turtles were.
   #sample(kind, message, strokes) {
     if (kind !== "world") return { message, sample: null };
-    const { stamp, turtles } = message;
+    const { stamp, turtles, simulator } = message;
     for (const turtle of turtles) for (const key of POSE) turtle[key] ??= NaN; // JSON has none
-    return { message: { stamp, turtles }, sample: { stamp, turtles, ...strokes.add(message) } };
+    return { message: { stamp, turtles, simulator }, sample: { stamp, turtles, ...strokes.add(message) } };
   }
 
   async #fetch(number) {

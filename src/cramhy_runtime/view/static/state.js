@@ -8,7 +8,7 @@ export class State {
     this.fluents = new Map(); // id → Fluent
     this.modules = [];
     this.pace = null;
-    this.world = null; // {stamp, turtles, strokes: number of lines, epoch}
+    this.world = null; // {stamp, turtles, simulator}
   }
 
   copy() {
