@@ -9,6 +9,7 @@ from __future__ import annotations
 import linecache
 import os
 import sys
+from itertools import islice
 from pathlib import Path
 
 from ..data import list_from
@@ -30,10 +31,9 @@ def frame_position(frame, lasti=None):
 def code_position(code, lasti, line=None):
     """(file, line, column) of the instruction ``lasti`` of a code object; ``line`` if the code does not tell."""
     column = None
-    for index, position in enumerate(code.co_positions()):
-        if index == lasti // 2:
-            line, _, column, _ = position
-            break
+    position = next(islice(code.co_positions(), lasti // 2, None), None) if lasti >= 0 else None
+    if position is not None:
+        line, _, column, _ = position
     return code.co_filename, line, column
 
 
