@@ -208,6 +208,13 @@ def test_a_wrong_token_is_said_and_not_tried_again(fake, visit):
     assert page.locator("#connection").get_attribute("data-state") == "refused"
 
 
+def test_a_page_that_cannot_start_says_so(fake, visit):
+    fake._files = {path: file for path, file in fake._files.items() if path != "/shapes.json"}
+    page = visit(fake.address, connected=False)
+    wait_for_text(page, "#banner", "The page could not start: the server has no shapes.json (404). Load it again; if that does not help, ")
+    page.complaints.clear()  # Chromium itself writes to the console what was not found
+
+
 def test_an_address_without_a_token_is_said(fake, visit):
     page = visit(fake.address.partition("#")[0], connected=False)
     wait_for_text(page, "#banner", "The session does not let this page in: this address has no token. Open the address that it prints;")

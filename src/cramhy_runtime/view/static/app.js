@@ -26,7 +26,9 @@ const doing = ({ recording, paused, busy }) => recording ? `replays ${recording}
 
 async function start() {
   offerThemes(byId("theme"));
-  const pictures = new Pictures(await (await fetch("shapes.json")).json());
+  const shapes = await fetch("shapes.json");
+  if (!shapes.ok) throw new Error(`the server has no shapes.json (${shapes.status})`);
+  const pictures = new Pictures(await shapes.json());
   const past = { stamp: null, state: null }; // the moment of the past that is shown
   const status = new StatusView({ pill: byId("connection"), banner: byId("banner"), notice: byId("notice") });
   const failed = (error) => status.failed(error);
@@ -146,4 +148,7 @@ async function start() {
   requestAnimationFrame(frame);
 }
 
-start();
+start().catch((error) => {
+  setText(byId("banner"), `The page could not start: ${error.message}. Load it again; if that does not help, start the session anew.`);
+  byId("banner").hidden = false;
+});
