@@ -5,7 +5,7 @@ loaded when those packages are made."
 
 (require cramhy.operators [defoperator])
 (import cramhy.operators *)
-(import cramhy.roslisp [build fields-and-values])
+(import cramhy.roslisp [build check-path fields-and-values])
 
 (setv package "ACTIONLIB")
 
@@ -24,6 +24,7 @@ loaded when those packages are made."
   (if (< (len arguments) 2)
       arguments
       (do (setv #(paths values) (fields-and-values arguments))
+          (for [path (elements paths)] (check-path path))
           [`(quote ~paths) #* values])))
 
 (defoperator succeed-current [#* result]

@@ -86,3 +86,28 @@ def test_in_whatever_order_the_messages_are_looked_at(seed):
     finally:
         PACKAGE.value = COMMON_LISP_USER
         kernel.stop()
+
+
+def test_a_second_server_of_an_action_would_do_its_goals_twice(lisp):
+    condition = lisp.condition("(serve) (serve)")
+    assert condition.report() == "The action count has a server already, on this node."
+    assert condition.hint == "Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node)."
+    assert lisp('(start-ros-node "m") (both) (actionlib:call-goal *client* (goal 1)) (actionlib-lisp:state *client*)') == ":SUCCEEDED"
+
+
+@pytest.mark.parametrize("text, value, type_", [
+    ('(actionlib-lisp:make-simple-action-client nil "actionlib_tutorials/FibonacciAction")', "NIL", "STRING"),
+    ('(start-action-server 4 "actionlib_tutorials/FibonacciAction" #\'count-up :separate-thread t)', "4", "STRING"),
+    ('(start-action-server "x" "actionlib_tutorials/FibonacciAction" 4 :separate-thread t)', "4", "FUNCTION"),
+    ('(client) (actionlib-lisp:send-goal *client* (goal 1) :done-cb 4)', "4", "FUNCTION"),
+    ('(client) (actionlib:call-goal *client* (goal 1) :feedback-cb 4)', "4", "FUNCTION"),
+    ('(client) (actionlib:call-goal *client* (goal 1) :timeout "soon")', '"soon"', "(OR NULL REAL)"),
+    ('(client) (actionlib-lisp:wait-for-server *client* "soon")', '"soon"', "(OR NULL REAL)"),
+])
+def test_what_an_action_is_made_of(lisp, text, value, type_):
+    assert lisp.error(text, "type-error") == f"The value\n  {value}\nis not of type\n  {type_}"
+
+
+def test_a_time_that_is_over_already_is_no_wait_for_ever(lisp):
+    assert lisp("(client) (actionlib-lisp:wait-for-server *client* -1)") == "NIL"
+    assert lisp("(multiple-value-list (actionlib:call-goal *client* (goal 1) :timeout -1 :result-timeout -1))") == "(NIL :TIMEOUT)"

@@ -1,6 +1,11 @@
 """The invariants of cl-transforms.md section 10 about frames, as a user types them, and what sections 5 and 7 record beside them."""
 
+import math
+
 import pytest
+
+from cramhy_runtime.tf.buffer import FrameBuffer
+from cramhy_runtime.tf.stamped import TransformStamped
 
 
 @pytest.mark.law("cl-transforms", 39)
@@ -197,3 +202,49 @@ def test_options_that_only_a_server_knows_are_warned_of(example):
     '(can-transform *tf* :target-frame "map" :source-frame "base" :time "now")'])
 def test_a_time_is_a_number(lisp, text):
     assert lisp.error(text, "type-error") == 'The value\n  "now"\nis not of type\n  REAL'
+
+
+@pytest.mark.parametrize("text, value, type_, parameter", [
+    ('(make-pose-stamped 1.5 "map" (vec 1 2 3) (still))', "1.5", "STRING", "FRAME-ID"),
+    ('(make-pose-stamped "map" "now" (vec 1 2 3) (still))', '"now"', "REAL", "STAMP"),
+    ('(make-point-stamped 1.5 "map" (vec 1 2 3))', "1.5", "STRING", "FRAME-ID"),
+    ('(make-vector-stamped "map" \'now (vec 1 2 3))', "NOW", "REAL", "STAMP"),
+    ('(make-transform-stamped "map" 1.5 "base" (vec 1 2 3) (still))', '"base"', "REAL", "STAMP"),
+    ('(make-transform-stamped "map" 2 1.5 (vec 1 2 3) (still))', "2", "STRING", "CHILD-FRAME-ID"),
+    ('(pose->pose-stamped 0 "map" (make-identity-pose))', "0", "STRING", "FRAME-ID"),
+    ("(make-instance 'pose-stamped :frame-id 1.5)", "1.5", "STRING", "FRAME-ID"),
+    ('(copy-pose-stamped (make-pose-stamped "map" 0 (vec 1 2 3) (still)) :stamp "now")', '"now"', "REAL", "STAMP"),
+])
+def test_frame_and_stamp_exchanged(lisp, text, value, type_, parameter):
+    assert lisp.error(text, "type-error") == (
+        f"The value\n  {value}\nis not of type\n  {type_}\nwhen binding CL-TRANSFORMS-STAMPED:{parameter}")
+    assert lisp.hint(text) == "Frames come first, then the stamp in seconds, then the geometry."
+
+
+def test_a_time_without_end_is_no_time(example):
+    for text in ('(cached "map" "base" sb-ext:double-float-positive-infinity)',
+                 '(lookup-transform *tf* "map" "base" :time sb-ext:double-float-positive-infinity)'):
+        assert example.error(text, "invalid-argument-error") == (
+            "The transform from base to map cannot be known at the time inf: a time is a number of seconds.")
+
+
+@pytest.mark.parametrize("time", [math.inf, -math.inf, math.nan, "now"])
+def test_python_asks_the_buffer_for_a_time_that_is_none(time):
+    buffer = FrameBuffer()
+    buffer.store(TransformStamped("map", "base", 1.0))
+    with pytest.raises(ValueError) as problem:
+        buffer.lookup("map", "base", time)
+    assert str(problem.value) == f"The transform from base to map cannot be known at the time {time}: a time is a number of seconds."
+
+
+@pytest.mark.parametrize("text, kind, hint", [
+    ("(transforms->tf-msg 3)", "type-error", None),
+    ('(from-msg (roslisp:make-msg "geometry_msgs/Pose" :position nil))', "no-applicable-method-error",
+     "geometry_msgs/Pose: position holds NIL, which is no geometry_msgs/Point."),
+    ('(from-msg (roslisp:make-msg "geometry_msgs/PoseStamped" :header nil))', "no-applicable-method-error",
+     "geometry_msgs/PoseStamped: header holds NIL, which is no std_msgs/Header."),
+    ("(slerp (still) (yaw 1.0) sb-ext:double-float-positive-infinity)", "floating-point-invalid-operation", None),
+])
+def test_what_python_would_stumble_over(lisp, text, kind, hint):
+    condition = lisp.condition(text)
+    assert lisp.error(text, kind) and getattr(condition, "hint", None) == hint

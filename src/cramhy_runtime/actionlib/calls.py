@@ -12,8 +12,7 @@ from collections import deque
 from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, Error
-from ..lisp.data import MultipleValues, Symbol, truth
-from ..lisp.evaluation.control import fdefinition
+from ..lisp.data import MultipleValues, truth
 from ..lisp.packages import keyword, sym
 from . import goals
 from .client import CONNECTED, ActionClient
@@ -74,9 +73,9 @@ def call_goal(client, goal, *, timeout=None, result_timeout=None, feedback_cb=No
         feedbacks.append(message)
         client.waiting.changed()
 
-    sent = client.send(goal, feedback=note)
-    callback = fdefinition(feedback_cb) if isinstance(feedback_cb, Symbol) and truth(feedback_cb) else feedback_cb
+    callback = goals.function_of(feedback_cb) if truth(feedback_cb) else None
     limit = goals.time_limit(timeout)
+    sent = client.send(goal, feedback=note)
 
     def follow():
         while True:

@@ -19,7 +19,7 @@ from ..ros.messages import message_class
 from ..ros.roslisp import node, topics
 from ..ros.roslisp.clock import ros_time
 from . import goals
-from .goals import ABORTED, ACTIVE, KNOWN, LOST, PENDING, PREEMPTED, PREEMPTING, RECALLING, SUCCEEDED, TERMINAL, Action, Waiting
+from .goals import ABORTED, ACTIVE, KNOWN, LOST, PENDING, PREEMPTED, PREEMPTING, RECALLING, SUCCEEDED, TERMINAL, Action
 
 PATIENCE = 5.0
 """Seconds after which a goal is lost that the server does not list, or whose server is silent."""
@@ -56,8 +56,8 @@ class ActionClient:
     lisp_name = "ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"
 
     def __init__(self, name, action_type):
-        self.name, self.action = str(name), Action(action_type)
-        self.goal, self.heard, self.waiting = None, None, Waiting()
+        self.name, self.action = goals.check_name(name), Action(action_type)
+        self.goal, self.heard, self.waiting = None, None, kernel.Waiting()
         self._watch = None
         here = node.require_node()
         self.node = here

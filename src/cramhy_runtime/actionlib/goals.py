@@ -1,4 +1,4 @@
-"""What both sides of an action know: its five topics and their types, the states of a goal, and who waits for a change.
+"""What both sides of an action know: its five topics and their types, and the states of a goal.
 
 The numbers of the states are the constants of ``actionlib_msgs/GoalStatus``. Source: roslisp.md 13, wiki.ros.org/actionlib.
 """
@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import itertools
 
-from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import SimpleError
-from ..lisp.data import LispString
+from ..lisp.data import LispString, Symbol
+from ..lisp.evaluation.control import fdefinition
 from ..lisp.printer.printer import princ_to_string
 from ..ros.messages import message_class, topic_class
+from ..utilities import lines
 
 (PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST) = range(10)
 NAMES = ("PENDING", "ACTIVE", "PREEMPTED", "SUCCEEDED", "ABORTED", "REJECTED", "PREEMPTING", "RECALLING", "RECALLED", "LOST")
@@ -26,9 +27,7 @@ class Action:
     """An action by the name of its type, ``"turtle_actionlib/ShapeAction"``: the classes of all its messages."""
 
     def __init__(self, action_type):
-        if not isinstance(action_type, (str, LispString)):
-            conditions.type_error(action_type, "STRING")
-        name = str(action_type)
+        name = check_name(action_type)
         if not name.endswith("Action"):
             problem = SimpleError("The action type is invalid. Actions always have the suffix 'Action'")
             problem.hint = f'It was "{name}"; write for instance "turtle_actionlib/ShapeAction".'
@@ -52,6 +51,17 @@ def new_goal_id(node_name, stamp):
     return message_class(GOAL_ID)(stamp=stamp, id=f"{node_name}-{next(_counter)}-{princ_to_string(stamp)}")
 
 
+def check_name(name):
+    """``name``, of an action or of a type, as a Python string; what is no string is a type-error."""
+    return str(name) if isinstance(name, (str, LispString)) else conditions.type_error(name, "STRING")
+
+
+def function_of(designator):
+    """The function that ``designator``, itself one or the name of one, stands for; anything else is a type-error."""
+    function = fdefinition(designator) if isinstance(designator, Symbol) else designator
+    return function if callable(function) else conditions.type_error(function, "FUNCTION")
+
+
 def check_message(message, cls):
     """``message`` when it is one of class ``cls``, else a type-error."""
     if isinstance(message, cls):
@@ -59,30 +69,6 @@ def check_message(message, cls):
     return conditions.type_error(message, cls.lisp_name.replace("::", ":"))
 
 
-class Waiting:
-    """Tasks that wait for a change of something. `wait` parks until a condition holds; `changed` has them look again."""
-
-    def __init__(self):
-        self._tasks = []
-
-    def changed(self):
-        for task in self._tasks:
-            kernel.unpark(task)
-
-    def wait(self, condition, why, until=None):
-        """Park the current task until ``condition()`` is true: True; or until the kernel's time ``until``: False."""
-        task = kernel.current()
-        self._tasks.append(task)
-        try:
-            while not condition():
-                if not kernel.park(why, until) and not condition():
-                    return False
-            return True
-        finally:
-            self._tasks.remove(task)
-
-
 def time_limit(seconds):
     """The kernel's time when ``seconds`` are over; ``None`` for 0 or NIL, which mean that there is no limit."""
-    seconds = 0 if seconds is None else float(seconds)
-    return kernel.now() + seconds if seconds > 0 else None
+    return lines.time_limit(None if seconds == 0 else seconds)

@@ -15,15 +15,14 @@ from .. import kernel
 from ..lisp import conditions
 from ..lisp.compiler.support import catch, throw
 from ..lisp.condition_types import Error, SimpleError
-from ..lisp.data import Symbol, truth
-from ..lisp.evaluation.control import fdefinition
+from ..lisp.data import truth
 from ..lisp.printer.printer import princ_to_string
 from ..ros.messages import message_class
 from ..ros.roslisp import logging, node, topics
 from ..ros.roslisp.clock import ros_time
 from ..ros.wire import ros_text
 from . import goals
-from .goals import ABORTED, ACTIVE, PENDING, PREEMPTED, PREEMPTING, RECALLED, SUCCEEDED, TERMINAL, Action, Waiting
+from .goals import ABORTED, ACTIVE, PENDING, PREEMPTED, PREEMPTING, RECALLED, SUCCEEDED, TERMINAL, Action
 
 PERIOD = 0.25
 """Seconds between two reports of all states."""
@@ -46,11 +45,15 @@ class ActionServer:
     """Serves the action ``name``: ``callback(goal)`` works on one goal after the other, in the task that calls `run`."""
 
     def __init__(self, name, action_type, callback):
-        self.name, self.action, self.callback = str(name), Action(action_type), callback
+        self.name, self.action, self.callback = goals.check_name(name), Action(action_type), callback
         self.goals, self.next, self.current = [], None, None
         self.cancelled_ids, self.cancelled_until = {}, 0.0
-        self.waiting = Waiting()
+        self.waiting = kernel.Waiting()
         here = self.node = node.require_node()
+        if here.resolve(f"{name}/status") in here.publications:
+            problem = SimpleError("The action ~a has a server already, on this node.", self.name)
+            problem.hint = "Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node)."
+            conditions.error(problem)
         self.statuses = topics.advertise(f"{name}/status", goals.STATUS_ARRAY)
         self.feedbacks = topics.advertise(f"{name}/feedback", self.action.action_feedback)
         self.results = topics.advertise(f"{name}/result", self.action.action_result)
@@ -207,8 +210,7 @@ def start_action_server(action_name, action_type, exec_callback, *, separate_thr
 
     separate_thread: true: return the server at once, it works in a task of its own; else work here until the node ends.
     """
-    callback = fdefinition(exec_callback) if isinstance(exec_callback, Symbol) else exec_callback
-    server = ActionServer(action_name, action_type, callback)
+    server = ActionServer(action_name, action_type, goals.function_of(exec_callback))
     if truth(separate_thread):
         owner = server.node.graph.kernel
         task = owner.spawn(server.run, name=f"Action server {action_name}", parent=owner.main)

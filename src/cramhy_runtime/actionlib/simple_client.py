@@ -9,8 +9,7 @@ from __future__ import annotations
 from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import SimpleError
-from ..lisp.data import Symbol, truth
-from ..lisp.evaluation.control import fdefinition
+from ..lisp.data import truth
 from ..lisp.packages import keyword
 from ..ros.roslisp import logging
 from . import goals
@@ -143,6 +142,4 @@ def _goal(client):
 
 
 def _function(designator):
-    if not truth(designator):
-        return None
-    return fdefinition(designator) if isinstance(designator, Symbol) else designator
+    return goals.function_of(designator) if truth(designator) else None

@@ -24,6 +24,7 @@ Where the parts are:
   other threads and calls that block; `company` a thread of the system's that serves clients, and its share of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
 * `timers`, `clocks`, `pace` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`
+* `waiting`    tasks that wait for a change, made of the functions below
 * `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
 * `active`     the functions below, which act on the kernel that is active
 
@@ -71,11 +72,12 @@ from .reports import describe_frame, unhandled
 from .scheduler import Kernel
 from .tasks import Task
 from .timers import Timer
+from .waiting import Waiting
 
 __all__ = [
     "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer", "VirtualClock",
-    "WaitEnded", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at", "call_every", "checkpoint", "cleanup",
-    "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "pace", "park", "post", "refill",
+    "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at", "call_every", "checkpoint",
+    "cleanup", "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "pace", "park", "post", "refill",
     "run_blocking", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled",
     "unpark", "yield_",
 ]  # fmt: skip

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from .. import kernel
 from ..lisp.conditions import type_error
-from ..lisp.data import list_from, truth
+from ..lisp.data import Cons, list_from, truth
 from ..lisp.numbers.arithmetic import is_real
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..ros import graph
@@ -39,6 +39,8 @@ def transform_to_tf_msg(transform):
 
 def transforms_to_tf_msg(transforms):
     """The ``tf/tfMessage`` with a list or vector of transform-stampeds."""
+    if not (transforms is None or isinstance(transforms, (Cons, list))):
+        return type_error(transforms, "SEQUENCE")
     return _message(message_class_exact("tf/tfMessage"), transforms or ())
 
 

@@ -158,8 +158,11 @@ class FrameBuffer:
     def lookup(self, target, source, time=None):
         """The transform that takes coordinates in ``source`` into those in ``target`` at ``time`` (seconds; ``None`` or 0: the newest).
 
-        Both frames must be known, and different. Errors: `Unavailable`.
+        Both frames must be known, and different. Errors: `Unavailable`, and `ValueError` for a time that is none.
         """
+        if time is not None and not (is_real(time) and isfinite(time)):
+            when = float(time) if is_real(time) else time
+            raise ValueError(f"The transform from {source} to {target} cannot be known at the time {when}: a time is a number of seconds.")
         from_source, from_target = self._ways(unslash_frame(target), unslash_frame(source))
         up = [link.at(time) for link in from_source]
         down = [link.at(time) for link in from_target]

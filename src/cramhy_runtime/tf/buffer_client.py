@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from .. import kernel
 from ..actionlib.client import ActionClient
-from ..actionlib.goals import time_limit
 from ..lisp.data import DoubleFloat
 from ..ros.messages import message_class_exact
 from . import errors
@@ -43,7 +42,7 @@ class BufferClient:
         client = self.idle.pop() if self.idle else ActionClient(self.server, ACTION)  # each follows one goal at a time
         sent = client.send(goal)
         try:
-            client.waiting.wait(lambda: sent.done, f"the transform from {source} to {target} of {self.server}", time_limit(None))
+            client.waiting.wait(lambda: sent.done, f"the transform from {source} to {target} of {self.server}")
         except BaseException:
             with kernel.cleanup():
                 client.cancel(sent)

@@ -8,24 +8,41 @@ Frames come first, then the stamp, then the geometry. Source: cl-transforms.md 5
 from __future__ import annotations
 
 from ..lisp.conditions import SimpleError, error, warn
-from ..lisp.data import DoubleFloat
+from ..lisp.data import DoubleFloat, LispString
+from ..lisp.numbers.arithmetic import is_real
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.printer.printer import define_printer, prin1_to_string, princ_to_string, write
-from ..transforms.coercion import check_type, real, slot_reader
+from ..transforms.coercion import check_type, real, slot_reader, wrong_type
 from ..transforms.package import head
 from ..transforms.poses import Pose, Transform
 from ..transforms.vectors import Vector3, point, x, y, z
 from . import errors
 
 
+_ORDER = "Frames come first, then the stamp in seconds, then the geometry."
+
+
+def _checked(value, fits, expected, name):
+    """``value`` if it ``fits`` or is NIL, else a type-error: a frame and a stamp that are exchanged would be noticed much later."""
+    return value if value is None or fits else wrong_type(value, expected, name, _ORDER, "CL-TRANSFORMS-STAMPED")
+
+
+def _frame(value, name="FRAME-ID"):
+    return _checked(value, isinstance(value, (str, LispString)), "STRING", name)
+
+
+def _stamp(value):
+    return _checked(value, is_real(value), "REAL", "STAMP")
+
+
 class Stamped:
-    """What has a frame (a string) and a stamp (seconds)."""
+    """What has a frame (a string) and a stamp (seconds); NIL stands for one that is not known."""
 
     lisp_name = "CL-TRANSFORMS-STAMPED::STAMPED"
     initargs = {"FRAME-ID": "frame_id", "STAMP": "stamp"}
 
     def __init__(self, frame_id=None, stamp=None):
-        self.frame_id, self.stamp = frame_id, stamp
+        self.frame_id, self.stamp = _frame(frame_id), _stamp(stamp)
 
 
 class TransformStamped(Stamped, Transform):
@@ -37,7 +54,7 @@ class TransformStamped(Stamped, Transform):
     def __init__(self, frame_id=None, child_frame_id=None, stamp=None, translation=None, rotation=None):
         Stamped.__init__(self, frame_id, stamp)
         Transform.__init__(self, translation, rotation)
-        self.child_frame_id = child_frame_id
+        self.child_frame_id = _frame(child_frame_id, "CHILD-FRAME-ID")
 
 
 class PoseStamped(Stamped, Pose):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..lisp.data import Cons
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..ros.messages import RosMessage, message_class_exact
+from ..ros.wire import transmit
 from ..transforms.coercion import check_type, instance
 from ..transforms.poses import Pose, Transform, unchecked_transform
 from ..transforms.quaternions import Quaternion, make_quaternion
@@ -124,4 +125,10 @@ def _vector_numbers(msg):
 def from_msg(msg):
     """What a message of geometry_msgs stands for. The rotation of a Transform is not validated."""
     convert = _FROM.get(msg.ros_type) if isinstance(msg, RosMessage) else None
-    return convert(msg) if convert is not None else no_applicable_method("CL-TRANSFORMS-STAMPED:FROM-MSG", None, msg)
+    if convert is None:
+        return no_applicable_method("CL-TRANSFORMS-STAMPED:FROM-MSG", None, msg)
+    try:
+        return convert(msg)
+    except AttributeError:  # a part of it is no message: sending it would say which
+        transmit(msg)
+        raise

@@ -9,7 +9,6 @@ server, take part by having the Python method ``lookup``. Source: cl-transforms.
 from __future__ import annotations
 
 from .. import kernel
-from ..actionlib.goals import Waiting
 from ..lisp.condition_types import Error
 from ..lisp.conditions import SimpleError, error, handler_case, type_error, warn
 from ..lisp.data import DoubleFloat, LispString, truth
@@ -20,6 +19,7 @@ from ..ros.roslisp import logging, node, parameters, topics
 from ..ros.roslisp.clock import ros_time
 from ..transforms.coercion import check_type
 from ..transforms.poses import transform_point, transform_pose
+from ..utilities.lines import time_limit
 from . import errors
 from .buffer import FrameBuffer, Unavailable
 from .frames import unslash_frame
@@ -38,7 +38,7 @@ class Transformer:
 
     def __init__(self):
         self.buffer = FrameBuffer()
-        self.waiting = Waiting()
+        self.waiting = kernel.Waiting()
 
     def store(self, transform, notify=True):
         """Keep a transform-stamped and wake those who wait; false if it came too late and was ignored."""
@@ -67,11 +67,13 @@ class Transformer:
             return self.buffer.lookup(target, source, time)
         except Unavailable as problem:
             return problem
+        except ValueError as problem:
+            return errors.transform_error(errors.InvalidArgumentError, str(problem))
 
     def wait(self, target, source, time=None, timeout=None):
         """Wait up to ``timeout`` seconds of plan time (``None``: for ever) until `find` finds it, and return what it gives then."""
         found = self.find(target, source, time)
-        until = None if timeout is None else kernel.now() + float(timeout)
+        until = time_limit(timeout)
 
         def there():
             nonlocal found

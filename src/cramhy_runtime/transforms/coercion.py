@@ -36,15 +36,15 @@ def real(value, parameter=None):
     return type_error(value, "REAL", "" if parameter is None else _binding(parameter))
 
 
-def _binding(parameter):
+def _binding(parameter, package="CL-TRANSFORMS"):
     """The end of a type-error's text: which parameter the value was for."""
-    return f"\nwhen binding {shown_with(sym(f'CL-TRANSFORMS::{parameter}'), 'COMMON-LISP')}"
+    return f"\nwhen binding {shown_with(sym(f'{package}::{parameter}'), 'COMMON-LISP')}"
 
 
-def wrong_type(value, expected, parameter, hint=None):
+def wrong_type(value, expected, parameter, hint=None, package="CL-TRANSFORMS"):
     """Signal a type-error: ``value`` was given for ``parameter``, which must be of the type ``expected``."""
     condition = TypeError_(value, expected)
-    condition.context, condition.hint = _binding(parameter), hint
+    condition.context, condition.hint = _binding(parameter, package), hint
     return error(condition)
 
 

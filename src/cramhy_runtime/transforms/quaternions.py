@@ -346,6 +346,6 @@ def slerp(q1, q2, ratio):
         b, product = tuple(-component for component in b), -product
     if product < 1 - TOLERANCE:
         angle = math.atan2(math.sqrt(1 - product * product), product)
-        first, second = (math.sin((1 - share) * angle) / math.sin(angle), math.sin(share * angle) / math.sin(angle))
+        first, second = [sine_and_cosine(part * angle)[0] / math.sin(angle) for part in (1 - share, share)]
         return quaternion(tuple([first * p + second * q for p, q in zip(a, b)]))
     return normalize(quaternion(tuple([(1 - share) * p + share * q for p, q in zip(a, b)])))
