@@ -257,9 +257,9 @@ def test_sums_of_numbers(session, program, wanted):
     ("(keyed :b 1 2)", "SIMPLE-PROGRAM-ERROR: odd number of &KEY arguments"),
     ("(keyed :a 1 :b 2 :a 3) (keyed :a 4 :b 5 :a 6)", "((1 2) (4 5))"),
     ("(keyed :a 1 :b 2) (keyed :a 1 :b)", "SIMPLE-PROGRAM-ERROR: odd number of &KEY arguments"),
-    ("(keyed :a 1 :b 2) (keyed :a 1 (list 1) 2)", "SIMPLE-PROGRAM-ERROR: unknown &KEY argument: (1) (the function takes :A, :B)"),
+    ("(keyed :a 1 :b 2) (keyed :a 1 (list 1) 2)", "SIMPLE-PROGRAM-ERROR: unknown &KEY argument: (1)"),
     ("(keyed :a 1 :c 2 :allow-other-keys t) (keyed :a 1 :c 2 :allow-other-keys nil)",
-     "SIMPLE-PROGRAM-ERROR: unknown &KEY argument: :C (the function takes :A, :B)"),
+     "SIMPLE-PROGRAM-ERROR: unknown &KEY argument: :C"),
 ])
 def test_keywords_are_sorted_the_second_time_as_the_first(session, calls, wanted):
     assert answer(session, f"(progn (defun keyed (&key (a :no) (b :no)) (list a b)) (list {calls}))") == wanted

@@ -410,6 +410,14 @@ def program_error(control, *arguments):
     return error(types.SimpleProgramError(control, *arguments))
 
 
+def unknown_key(key, known):
+    """Signal the program-error of a call with a keyword argument that the function does not take, SBCL's text; ``known``: those that it
+    takes."""
+    condition = types.SimpleProgramError("unknown &KEY argument: ~S", key)
+    condition.hint = f"The function takes {', '.join(map(repr, known))}."
+    return error(condition)
+
+
 def wrong_argument_count(given, hint=None):
     """Signal the program-error of a call with ``given`` arguments, SBCL's text; ``hint`` may say how many there are to be."""
     condition = types.SimpleProgramError("invalid number of arguments: ~S", given)

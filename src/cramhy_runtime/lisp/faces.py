@@ -74,7 +74,7 @@ def lispify(function):
             elif key is not allow:
                 unknown.append(key)
         if unknown and not (allow in rest[::2] and rest[rest.index(allow) + 1] is not None):
-            return late.program_error("unknown &KEY argument: ~S", unknown[0])
+            return late.unknown_key(unknown[0], known)
         return function(*(arguments if takes_rest else arguments[:positional]), **keywords)
 
     lisp_function.python = function

@@ -12,7 +12,7 @@ from __future__ import annotations
 from importlib import import_module
 
 WHERE = {
-    "conditions": "error package_error package_does_not_exist program_error type_error undefined_function",
+    "conditions": "error package_error package_does_not_exist program_error unknown_key type_error undefined_function",
     "condition_types": "ClosedStreamError SimpleParseError SimpleTypeError StyleWarning UnboundVariable",
     "python.python_exceptions": "python_condition",
     "packages": "intern",

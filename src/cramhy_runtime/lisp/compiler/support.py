@@ -15,7 +15,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import TICKS, budget
 
 from ..conditions import (Condition, HandlerExit, SimpleControlError, caught, enter_case, error, foreign_case, program_error,
-                          unbound_variable)
+                          unbound_variable, unknown_key)
 from ..data import (Character, Cons, DoubleFloat, Keyword, MultipleValues, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, all_values,
                     list_from, lisp_list, one, truth)
 from ..collections.hash_tables import value_in_table
@@ -260,8 +260,7 @@ def key_parser(table, allow_others):
         if unknown is not None and not allow_others:
             allowed = next((value for key, value in zip(rest[::2], rest[1::2]) if key is allow), None)
             if not truth(allowed):
-                known = ", ".join(repr(key) for key, _ in table) or "none"
-                return program_error(f"unknown &KEY argument: ~S (the function takes {known})", rest[unknown])
+                return unknown_key(rest[unknown], [key for key, _ in table])
         keys = rest[::2]
         if len(slots) > 1 and len(getters) < KEPT_GETTERS and all(key in slots for key in keys):
             getters[keys] = itemgetter(*(2 * keys.index(key) + 1 if key in keys else len(rest) + index for key, index in slots.items()))
