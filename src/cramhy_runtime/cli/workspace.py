@@ -12,7 +12,6 @@ import sys
 from pathlib import Path
 
 VERSIONS = {"turtlesim": "0.10.2", "roslisp": "1.9.25"}
-DISTRIBUTION = "noetic"
 
 
 def _fail(text, status=1):
@@ -167,6 +166,8 @@ def _dependencies(package, deep):
 def rosversion(arguments):
     """``rosversion PACKAGE`` or ``rosversion -d``, which prints the name of the distribution."""
     if arguments in (["-d"], ["--distro"]):
+        from cramhy_runtime.ros.parameter_tree import DISTRIBUTION
+
         print(DISTRIBUTION)
         return 0
     if len(arguments) != 1 or arguments[0].startswith("-"):

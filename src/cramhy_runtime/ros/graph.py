@@ -39,7 +39,7 @@ class Graph:
         self.nodes = {}
         self.topics = {}
         self.services = {}
-        self.parameters = ParameterTree()
+        self.parameters = ParameterTree(owner.clock.epoch)
         self.log = deque(maxlen=1000)
         self.on_change = []
         self.lisp_node = None

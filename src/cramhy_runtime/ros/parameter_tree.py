@@ -1,16 +1,23 @@
 """Parameters: the tree of values that the master keeps: text, numbers, booleans, lists, and dictionaries for the names below.
 
+Three are there from the start, as ``roscore`` sets them: which ROS this is, and an id of the run.
+
 How Lisp's values get in and out stands in ``roslisp/parameter_values.py``. Source: wiki.ros.org/ROS/Parameter_Server_API.
 """
 
 from __future__ import annotations
 
+import hashlib
+
+DISTRIBUTION, VERSION = "noetic", "1.15.15"
+
 
 class ParameterTree:
     """Values by global name; a dictionary stands for the names below it."""
 
-    def __init__(self):
-        self.root = {}
+    def __init__(self, run=None):
+        """run: when the run began, in seconds since 1970, which its id is made of; without it the tree is empty."""
+        self.root = {} if run is None else {"rosdistro": f"{DISTRIBUTION}\n", "rosversion": f"{VERSION}\n", "run_id": _run_id(run)}
 
     def get(self, name):
         """The value, or `KeyError`."""
@@ -57,6 +64,12 @@ class ParameterTree:
     def names(self):
         """The names of all values that are no dictionaries, sorted."""
         return sorted(_leaves(self.root, ""))
+
+
+def _run_id(run):
+    """A UUID that is the same for the same start, so that a run in virtual time does not differ from the one before."""
+    digits = hashlib.md5(repr(run).encode(), usedforsecurity=False).hexdigest()
+    return "-".join(digits[start:end] for start, end in ((0, 8), (8, 12), (12, 16), (16, 20), (20, 32)))
 
 
 def _parts(name):

@@ -66,7 +66,12 @@ def test_listing_names_below_a_namespace(node):
     assert node("""(list (list-params "turtle1") (list-params "/turtle1/sub") (list-params '(turtle10)) (list-params '(turtle1 sub))
                          (list-params "~") (list-params "nope"))""") == (
         '(("/turtle1/sub/y" "/turtle1/x") ("/turtle1/sub/y") ("/turtle10/z") ("/turtle1/sub/y") NIL NIL)')
-    assert node('(length (list-params))') == "4"
+    assert node('(list-params)') == '("/rosdistro" "/rosversion" "/run_id" "/top" "/turtle1/sub/y" "/turtle1/x" "/turtle10/z")'
+
+
+def test_what_roscore_sets_is_there_from_the_start_and_the_same_in_every_run(node):
+    assert node('(list (get-param "/rosdistro") (get-param "/rosversion") (get-param "/run_id"))') == (
+        '("noetic " "1.15.15 " "3187d94e-6cb3-8001-4d4a-a34b0e2442ca")')
 
 
 @pytest.mark.parametrize("call", ["(get-param 'foo)", "(set-param 'foo 1)", "(has-param 'foo)", "(delete-param 'foo)"])
