@@ -4,7 +4,8 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 `cramhy_runtime.ros`."
 
 (require cramhy.operators [defoperator])
-(import cramhy.operators *)
+(import cramhy.operators *
+        cramhy_runtime.lisp.condition_types [shown])
 
 (setv package "ROSLISP")
 
@@ -15,8 +16,16 @@ Topics of log lines and field paths are not evaluated, so they become constants 
   (setv arguments (if (% (len arguments) 2) [#* arguments None] (list arguments)))
   #((list-from (cut arguments 0 None 2)) (cut arguments 1 None 2)))
 
+(defn check-path [path]
+  "Complain of a field path that is none, where it is written."
+  (when (not (or (isinstance path LispSymbol)
+                 (and (listp path) (all (gfor name path (isinstance name LispSymbol))))))
+    (raise (ValueError (+ "a field is named by a symbol, such as :x, or from the inside out by a list of them, such as (:x :position), "
+                          f"but not by {(shown path)}.")))))
+
 (defn build [function head arguments]
   (setv #(paths values) (fields-and-values arguments))
+  (for [path (elements paths)] (check-path path))
   `(~function ~head (quote ~paths) ~@values))
 
 (defoperator make-message [type #* arguments]
@@ -45,6 +54,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 (defn field-binding [binding message]
   (setv #(variable path) (if (listp binding) binding [binding binding]))
+  (check-path path)
   [variable `(%message-field ~message (quote ~path))])
 
 (defoperator with-fields [bindings message #* body]
@@ -61,6 +71,9 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 (defn log-form [level arguments]
   "A log line: topic, perhaps a condition, format control, arguments. Arguments are evaluated only if it is printed."
   (setv #(topic first #* rest) arguments)
+  (when (not (or (isinstance first str) rest))
+    (raise (ValueError (+ "what stands between the topic and a literal text is a condition, and here no text follows. "
+                          f"A text that is computed is an argument: (ros-... topic \"~a\" {(shown first)})."))))
   (setv condition (if (isinstance first str) True first))
   (setv #(control #* values) (if (isinstance first str) [first #* rest] rest))
   (setv path (if (or (listp topic) (is topic None)) topic (lisp-list topic)))
@@ -81,6 +94,8 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 ;; ----------------------------------------------------------------------------------------------------------- 2: nodes
 
 (defoperator with-ros-node [options #* body]
+  (when (or (not (listp options)) (= (% (len (elements options)) 2) 0))
+    (raise (ValueError "its first part is a list: the name of the node, then keywords and values in turn.")))
   (setv #(name #* keywords) options spin None rest [])
   (for [#(key value) (zip (cut keywords 0 None 2) (cut keywords 1 None 2))]
     (if (is key (sym ":SPIN")) (setv spin value) (.extend rest [key value])))

@@ -8,15 +8,19 @@ last to the first, so of two values for one field the first one counts (roslisp.
 from __future__ import annotations
 
 from ..lisp import conditions
-from ..lisp.condition_types import Error, SimpleError
+from ..lisp.condition_types import Error, SimpleError, TypeError_
 from ..lisp.data import Cons, Symbol, list_from, python_list
 from ..lisp.objects.classes import make_instance
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp.objects.slots import MissingSlot
-from ..lisp.packages import COMMON_LISP, sym, symbol_name
+from ..lisp.packages import COMMON_LISP, is_symbol, sym, symbol_name
 from ..lisp.printer.printer import princ_to_string
 from . import messages, type_texts
 from .messages import RosMessage, lisp_attribute
+
+
+NO_MESSAGE_YET = ("No message is there yet: a fluent is NIL until the first one comes. Has its topic been subscribed to, and does "
+                  "somebody publish on it?")
 
 
 def make_message(designator, specs=()):
@@ -58,6 +62,10 @@ def _bad_initargs(cls, initargs):
 
 def modify_message_copy(message, specs):
     """A new message that differs in ``specs``; parts that are not touched are the same objects."""
+    if not isinstance(message, RosMessage):
+        problem = TypeError_(message, "ROSLISP:ROS-MESSAGE")
+        problem.hint = NO_MESSAGE_YET if message is None else None
+        return conditions.error(problem)
     return set_fields(message.copy(), specs)
 
 
@@ -143,8 +151,7 @@ def msg_slot_value(message, slot):
     name = symbol_name(slot) if isinstance(slot, Symbol) or slot is None else str(slot)
     problem = MissingSlot(home.intern(name.upper()), message)
     if message is None:
-        problem.hint = ("No message is there yet: a fluent is NIL until the first one comes. Has its topic been subscribed to, and does "
-                        "somebody publish on it?")
+        problem.hint = NO_MESSAGE_YET
     return conditions.error(problem)
 
 
@@ -160,17 +167,16 @@ def list_to_ros_message(form):
     """The message that `ros_message_to_list` gives ``form`` for; parts may be lists themselves."""
     if not isinstance(form, Cons):
         return form
-    cls = messages.message_class(form.car)
-    return set_fields(
-        cls(),
-        [
-            (
-                (symbol_name(entry.car),),
-                list_to_ros_message(entry.cdr) if isinstance(entry.cdr, Cons) and messages.named(entry.cdr.car) else entry.cdr,
-            )
-            for entry in python_list(form.cdr)
-        ],
-    )
+    return set_fields(messages.message_class(form.car)(), [_field_of(entry, form) for entry in python_list(form.cdr)])
+
+
+def _field_of(entry, form):
+    if not isinstance(entry, Cons) or not is_symbol(entry.car):
+        problem = SimpleError("~s is no field of a message in list form, in ~s.", entry, form)
+        problem.hint = "The list form is (CLASS (FIELD . value) ...), as ros-message-to-list gives it."
+        return conditions.error(problem)
+    value = entry.cdr
+    return (symbol_name(entry.car),), list_to_ros_message(value) if isinstance(value, Cons) and messages.named(value.car) else value
 
 
 def read_ros_message(stream):
@@ -193,6 +199,8 @@ def symbol_codes(designator):
 def symbol_code(designator, key):
     """The value of the constant ``key``."""
     cls = _constants_class(designator)
+    if not is_symbol(key):
+        conditions.type_error(key, "SYMBOL")
     for name, value in cls.constants.items():
         if name.upper() == symbol_name(key):
             return value

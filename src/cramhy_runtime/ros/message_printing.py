@@ -8,7 +8,8 @@ function does (roslisp.md 5.7). Without ``*print-pretty*``, or with the initial 
 
 from __future__ import annotations
 
-from ..lisp.packages import sym
+from ..lisp.conditions import type_error
+from ..lisp.data import UNSUPPLIED
 from ..lisp.printer.pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
 from ..lisp.printer.pretty import logical_block, pprint_indent, pprint_newline
 from ..lisp.printer.print_controls import PRINT_PRETTY
@@ -34,12 +35,12 @@ def print_message(message, stream):
             output_object(ros_message_to_list(value) if isinstance(value, RosMessage) else value, out)
 
 
-def pprint_ros_message(stream_or_message, message=None):
+def pprint_ros_message(stream_or_message, message=UNSUPPLIED):
     """``roslisp:pprint-ros-message``: ``(message)`` or ``(stream message)``."""
-    if message is None:
-        print_message(stream_or_message, sym("*STANDARD-OUTPUT*").value)
-    else:
-        print_message(message, output_stream(stream_or_message))
+    message, stream = (stream_or_message, None) if message is UNSUPPLIED else (message, stream_or_message)
+    if not isinstance(message, RosMessage):
+        type_error(message, "ROSLISP:ROS-MESSAGE")
+    print_message(message, output_stream(stream))
 
 
 define_printer(RosMessage, print_message)

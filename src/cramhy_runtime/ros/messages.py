@@ -374,8 +374,22 @@ def _folded_or_error(text):
             )
         )
     if load_package(package.lower()) is None:
-        return conditions.error(SimpleError("~a", f"Can't find package {package.upper()}-MSG"))
-    return _folded(_messages, message_class_exact, text) or conditions.error(SimpleError("~a", f"Can't find class for {text}"))
+        return _unknown(f"Can't find package {package.upper()}-MSG", _packages_hint(package))
+    return _folded(_messages, message_class_exact, text) or _unknown(f"Can't find class for {text}", _types_hint("rosmsg", _messages, text))
+
+
+def _unknown(text, hint):
+    problem = SimpleError("~a", text)
+    problem.hint = hint
+    return conditions.error(problem)
+
+
+def _packages_hint(package):
+    """What to try when there is no ROS package ``package`` with definitions."""
+    near = get_close_matches(package.lower(), definition_files.known_packages(), 1, 0.8)
+    if near:
+        return f"Did you mean {near[0]}?"
+    return f"No package {package} with messages or services is on ROS_PACKAGE_PATH, in the workspace's src or in the current folder."
 
 
 def topic_class(designator):
@@ -396,13 +410,9 @@ def topic_class(designator):
     found = message_class_exact(text)
     if found is None:
         other = _folded(_messages, message_class_exact, text)
-        problem = (
-            f"Case mismatch for message type {text}, did you mean {other.ros_type}?" if other is not None else f"No datatype {text} known"
-        )
-        complaint = SimpleError("~a", problem)
-        if other is None:
-            complaint.hint = _types_hint("rosmsg", _messages, text)
-        return conditions.error(complaint)
+        if other is not None:
+            return _unknown(f"Case mismatch for message type {text}, did you mean {other.ros_type}?", None)
+        return _unknown(f"No datatype {text} known", _types_hint("rosmsg", _messages, text))
     return found
 
 
@@ -429,7 +439,7 @@ def service_type(designator):
         if "/" not in text:
             return conditions.type_error(None, "STRING")
         if load_package(text.partition("/")[0].lower()) is None:
-            return conditions.error(SimpleError("Service-package not found. Maybe it is not loaded?"))
+            return _unknown("Service-package not found. Maybe it is not loaded?", _packages_hint(text.partition("/")[0]))
         found = _folded(_services, service_type_exact, text)
         name = text.partition("/")[2].upper()
         designator = found or intern(name, lisp_package(text.partition("/")[0].lower(), "SRV"))
@@ -438,6 +448,7 @@ def service_type(designator):
         advice = _types_hint("rossrv", _services, text)
     found = named(designator)
     if not isinstance(found, ServiceType):
+        advice = advice or 'A service type is a symbol, such as turtlesim-srv:Spawn, or a text, such as "turtlesim/Spawn".'
         return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERVICE-RESPONSE-TYPE", len(_services), designator, advice=advice)
     return found
 

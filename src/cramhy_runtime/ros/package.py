@@ -12,7 +12,7 @@ from ..lisp.faces import define_face
 from ..lisp.objects.classes import register_class
 from ..lisp.objects.generic_errors import no_applicable_method_error
 from ..lisp.printer.printer import define_printer
-from . import graph, message_building, message_printing, messages
+from . import graph, macro_shapes, message_building, message_printing, messages
 from .messages import RosMessage
 from .roslisp import clock, logging, master, node, parameters, printing, services, time, topics, utilities
 
@@ -134,5 +134,7 @@ ROSLISP_UTILITIES = define_face(
     },
     export="register-ros-init-function register-ros-cleanup-function",
 )
+
+macro_shapes.define()
 
 __all__ = ["ROSLISP", "ROSLISP_UTILITIES", "FieldReader", "RosMessage", "graph", "printing"]

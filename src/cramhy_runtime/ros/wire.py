@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from ..lisp import conditions
-from ..lisp.condition_types import SimpleError, TypeError_
+from ..lisp.condition_types import FloatingPointOverflow, SimpleError, TypeError_
 from ..lisp.data import Character, Cons, DoubleFloat, LispString, Symbol
 from ..lisp.numbers.arithmetic import is_real, single
 from ..lisp.objects.generic_errors import no_applicable_method
@@ -43,6 +43,12 @@ def _misfit(value, expected, context=""):
         return conditions.error(condition)
 
     return Misfit(signal)
+
+
+def _overflow(hint):
+    condition = FloatingPointOverflow()
+    condition.hint = hint
+    return conditions.error(condition)
 
 
 def as_float(value):
@@ -208,6 +214,8 @@ def transmit(message):
         return (_transmitters.get(cls) or _transmitter(cls))(message)
     except Misfit as problem:
         signal = problem.signal
+    except OverflowError:
+        signal = _overflow
     path, kind, value = _misplaced(message)
     held, limit = prin1_to_string(value), 60
     held = held if len(held) <= limit else held[:limit] + "..."
@@ -233,7 +241,7 @@ def _misplaced(message):
         for path, part in parts:
             try:
                 _converter(field)(part)
-            except Misfit:
+            except (Misfit, OverflowError):
                 if not isinstance(part, messages.RosMessage) or part.ros_type != field.base:
                     return path, field.base, part
                 rest, kind, wrong = _misplaced(part)

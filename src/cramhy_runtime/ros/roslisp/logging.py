@@ -60,18 +60,6 @@ def ros_log(level, topic, control, *arguments):
     return _print(level, topic, format_to_string(control, *arguments))
 
 
-def ros_log_lazily(level, topic, condition, text):
-    """What ``ros-info`` and its relatives expand into: ``condition`` (``None``: none) and ``text`` are functions of no
-    arguments, called only when the level passes; ``text`` gives the formatted string."""
-    if not enabled(level, topic):
-        return None
-    if condition is not None:
-        value = condition()
-        if value is None or value is False:
-            return None
-    return _print(level, topic, text())
-
-
 def log_text(level, topic, text):
     """Log a finished text from the runtime itself. ``topic``: a tuple of symbol names (taken from ROSLISP), or nil."""
     if not enabled(level, topic):

@@ -11,10 +11,11 @@ import os
 from ... import kernel
 from ...lisp import conditions
 from ...lisp.condition_types import SimpleError
-from ...lisp.data import LispString, python_list, truth
+from ...lisp.data import Cons, LispString, python_list, truth
 from ...lisp.dynamic import special
 from ...lisp.packages import sym
 from ...lisp.printer.printer import princ_to_string
+from ...utilities.lines import need
 from .. import graph, messages, names, rosout
 from . import log_file, logging, master
 from .errors import ros_error
@@ -120,7 +121,7 @@ def _naming(here, name, anonymous, arguments):
         conditions.warn("~a", f"{name} is not a legal ROS base name. This may cause problems with other ROS tools")
     naming = names.Naming(name, os.environ.get("ROS_NAMESPACE") or "/")
     if arguments is not None and not isinstance(arguments, (str, LispString)):
-        arguments = python_list(arguments)
+        arguments = python_list(need(arguments, (Cons, list, tuple), "LIST"))
     naming.apply_arguments(
         names.split_arguments(str(arguments) if isinstance(arguments, LispString) else arguments),
         names.read_private_value,

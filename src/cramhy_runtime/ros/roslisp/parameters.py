@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...lisp import conditions
 from ...lisp.condition_types import SimpleError
 from ...lisp.data import UNSUPPLIED, Cons, LispString, list_from
-from ...lisp.packages import symbol_name
+from ...lisp.packages import is_symbol, symbol_name
 from .. import graph
 from . import master, node
 from .errors import close_names, ros_error, rpc_error
@@ -33,6 +33,10 @@ def _tree(control, *arguments):
     return graph.active().parameters
 
 
+def _symbol_name(thing):
+    return symbol_name(thing) if is_symbol(thing) else conditions.type_error(thing, "SYMBOL")
+
+
 def get_param(key, default=UNSUPPLIED):
     """The value of the parameter; ``default`` (nil counts) when it is not set; else an error that is logged too."""
     name = _full_name(key)
@@ -48,7 +52,11 @@ def get_param(key, default=UNSUPPLIED):
 def set_param(key, val):
     """Set the parameter; 0."""
     name = _full_name(key)
-    _tree("Could not contact master at ~a when setting param ~a", name).set(name, encode(val))
+    tree = _tree("Could not contact master at ~a when setting param ~a", name)
+    try:
+        tree.set(name, encode(val))
+    except TypeError as problem:  # the root, which holds all the others
+        rpc_error(f"setParam {name}", -1, str(problem), 0)
     return 0
 
 
@@ -74,7 +82,7 @@ def list_params(namespace=None):
     if namespace is None:
         prefix = "/"
     elif isinstance(namespace, Cons):
-        prefix = "/" + "".join(symbol_name(symbol).lower() + "/" for symbol in namespace)
+        prefix = "/" + "".join(_symbol_name(symbol).lower() + "/" for symbol in namespace)
     else:
         prefix = _full_name(namespace).rstrip("/") + "/"
     names = _tree("Could not contact master at ~a when getting param list: ~a").names()

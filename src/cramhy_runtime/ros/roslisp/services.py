@@ -16,12 +16,16 @@ from ...lisp.evaluation.control import fdefinition
 from ...lisp.objects.generic_errors import no_applicable_method
 from ...lisp.packages import sym, symbol_name
 from ...lisp.printer.printer import princ_to_string
+from ...utilities.lines import need, time_limit
 from .. import messages, wire
 from ..message_building import get_field, instance
 from ..messages import RosMessage
 from ..services import Service, exchange
 from . import logging, node
 from .errors import ServiceCallError, ServiceError, ros_error, rpc_error
+
+
+NAMED_BY_STRINGS = 'A service is named by a string, such as "/clear". Has the variable been set that holds it?'
 
 
 class LispService(Service):
@@ -111,8 +115,17 @@ def call(service, request):
     if answer.lost:
         return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
     if answer.failure is not None:
-        return ros_error("service-call to ~a with request ~a failed with message: ~a", service.node.address, request, answer.failure)
+        return ros_error("service-call to ~a with request ~a failed with message: ~a", service.node.address, request, answer.failure,
+                         hint=None if answer.failure else lambda: _reason(service))
     return answer.response
+
+
+def _reason(service):
+    """What to say of a refusal without a text: the error that the server logged last, which may tell."""
+    server = service.node
+    said = next((text for level, name, text in reversed(server.graph.log) if name == server.name and level >= logging.ERROR), None)
+    told = f"The error that it logged last: {said}" if said else "rostopic echo /rosout, typed at the prompt, shows what it logs."
+    return f"{server.name} refused to do {service.name}, and gave no reason. {told}"
 
 
 def lookup(here, name):
@@ -159,8 +172,7 @@ def call_service(service, *rest_args):
     if isinstance(service, ServiceClient):
         name, service_type, arguments = service.name, service.type, rest_args
     elif not isinstance(service, (str, LispString)):
-        return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args, advice='A service is named by a string, such as '
-                                    '"/clear". Has the variable been set that holds it?')
+        return no_applicable_method("ROSLISP:CALL-SERVICE", 2, service, *rest_args, advice=NAMED_BY_STRINGS)
     elif not rest_args:
         return conditions.error(
             SimpleError(
@@ -185,10 +197,15 @@ def _request(service_type, arguments):
 def wait_for_service(service, timeout=None):
     """T as soon as the service is offered, NIL when ``timeout`` seconds have passed; asks every 0.1 s."""
     here = node.require_node()
-    name = service.name if isinstance(service, ServiceClient) else str(service)
+    if isinstance(service, ServiceClient):
+        name = service.name
+    elif isinstance(service, (str, LispString)):
+        name = str(service)
+    else:
+        return no_applicable_method("ROSLISP:WAIT-FOR-SERVICE", 2, service, advice=NAMED_BY_STRINGS)
     if not name.startswith(("/", "~")):
         name = here.naming.namespace + name  # what the master makes of it; remappings are not looked at here
-    deadline = None if timeout is None else kernel.now() + float(timeout)
+    deadline = time_limit(timeout)
     while name not in here.graph.services:
         if deadline is not None and kernel.now() >= deadline:
             return None
@@ -234,6 +251,8 @@ class PersistentService:
     initargs = {"SERVICE-NAME": "service_name", "SERVICE-TYPE": "service_type"}
 
     def __init__(self, service_name, service_type):
+        if not isinstance(service_name, (str, LispString)):
+            conditions.type_error(service_name, "STRING", "\nwhen binding ROSLISP::SERVICE-NAME")
         self.service_name, self.service_type = service_name, service_type
         self.type = messages.service_type(service_type)
         self.connection = None
@@ -246,7 +265,7 @@ class PersistentService:
 def call_persistent_service(service, *request):
     """Call through the open connection. A failure is a ``service-call-error`` with the restart ``reconnect``."""
     here = node.require_node()
-    message = _request(service.type, request)
+    message = _request(_persistent(service).type, request)
     while True:
         connection = service.connection
         if connection is not None and here.graph.services.get(connection.name) is connection:
@@ -271,13 +290,17 @@ def call_persistent_service(service, *request):
 
 def close_persistent_service(service):
     """Close the connection."""
-    service.connection = None
+    _persistent(service).connection = None
 
 
 def persistent_service_ok(service):
     """T while the connection is open and the server there."""
-    connection = service.connection
+    connection = _persistent(service).connection
     return True if connection is not None and connection.node.graph.services.get(connection.name) is connection else None
+
+
+def _persistent(service):
+    return need(service, PersistentService, "ROSLISP:PERSISTENT-SERVICE")
 
 
 def call_named(service_name, service_symbol, return_field, *request):

@@ -11,7 +11,7 @@ from collections import deque
 
 from ... import kernel
 from ...lisp import conditions
-from ...lisp.condition_types import Condition, Error, SimpleError, SimpleTypeError, formatted, shown
+from ...lisp.condition_types import Condition, Error, SimpleTypeError, formatted, shown
 from ...lisp.data import NO_VALUES, LispString, Symbol
 from ...lisp.format.format import format_to_string
 from ...lisp.objects.generic_errors import no_applicable_method, no_primary_method
@@ -164,7 +164,8 @@ def publish(pub, message):
         here = node.require_node()
         publication = here.publications.get(publication.name, publication)
     if not isinstance(message, RosMessage):
-        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, message)
+        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, message,
+                                    advice=f'What is published is a message: (make-msg "{publication.type.ros_type}" field value ...).')
     return publication.publish(message)
 
 
@@ -172,14 +173,10 @@ def publication_type(pub):
     """The message class of a publication object (``publish-msg`` and ``make-publisher-msg`` build on it)."""
     if isinstance(pub, Publication):
         return pub.type
-    return conditions.error(
-        SimpleTypeError(
-            "~a",
-            f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION.",
-            datum=pub,
-            expected_type="ROSLISP::PUBLICATION",
-        )
-    )
+    problem = SimpleTypeError("~a", f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  "
+                              "ROSLISP::PUBLICATION.", datum=pub, expected_type="ROSLISP::PUBLICATION")  # fmt: skip
+    problem.hint = "This macro takes what (advertise topic type) returns. With a topic's name one writes (publish name (make-msg ...))."
+    return conditions.error(problem)
 
 
 def num_subscribers(pub):
@@ -250,12 +247,10 @@ def _type_or_warning(topic, topic_type):
 
 
 def _limit(length):
-    if length is None or isinstance(length, Symbol):
+    if length is None or isinstance(length, Symbol) and length.name == "INFTY":
         return None
     if length.__class__ is not int or length < 1:
-        return conditions.error(
-            SimpleError("~a", f"The queue of a subscription must hold at least one message, but :max-queue-length is {length}.")
-        )
+        return conditions.error("The queue of a subscription must hold at least one message, but :max-queue-length is ~s.", length)
     return length
 
 

@@ -6,9 +6,9 @@ Source: roslisp.md 11. Init functions run by descending rank; equal ranks in the
 from __future__ import annotations
 
 from ...lisp import conditions
-from ...lisp.data import UNSUPPLIED, Symbol
+from ...lisp.data import UNSUPPLIED, LispString, Symbol
 from ...lisp.evaluation.control import fdefinition
-from ...lisp.packages import intern, string_designator, sym, symbol_name
+from ...lisp.packages import intern, is_symbol, sym, symbol_name
 from .. import graph
 from . import logging, node
 
@@ -65,9 +65,17 @@ def _package(package):
     return package if package is not None else sym("*PACKAGE*").value
 
 
+def _string(thing):
+    return str(thing) if isinstance(thing, (str, LispString)) else conditions.type_error(thing, "STRING")
+
+
+def _symbol_name(thing):
+    return symbol_name(thing) if is_symbol(thing) else conditions.type_error(thing, "SYMBOL")
+
+
 def lispify_ros_name(string, package=None):
     """``"HelloWorld"`` → ``HELLO-WORLD``: a dash before each capital that follows a small letter or a digit."""
-    text = str(string)
+    text = _string(string)
     if not text:
         return conditions.error("Invalid index 0 for (SIMPLE-ARRAY CHARACTER (0)): the empty string has no Lisp name.")
     parts = [text[0]]
@@ -80,15 +88,15 @@ def lispify_ros_name(string, package=None):
 
 def rosify_lisp_name(symbol):
     """``HELLO-WORLD`` → ``"HelloWorld"``."""
-    return "".join(part.capitalize() for part in symbol_name(symbol).split("-"))
+    return "".join(part.capitalize() for part in _symbol_name(symbol).split("-"))
 
 
 def lispify_ros_underscore_name(string, package=None):
     """``"foo_bar"`` → ``FOO-BAR``."""
-    return intern(str(string).replace("_", "-").upper(), _package(package))
+    return intern(_string(string).replace("_", "-").upper(), _package(package))
 
 
 def rosify_underscores_lisp_name(symbol):
     """``FOO-BAR`` → ``"foo_bar"``; a name with a small letter is taken as it is."""
-    name = string_designator(symbol)
+    name = _symbol_name(symbol)
     return name if any(character.islower() for character in name) else name.replace("-", "_").lower()
