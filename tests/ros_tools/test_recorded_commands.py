@@ -61,7 +61,7 @@ DIFFERENCES = {
     "rosparam list": (
         ["-/roslaunch/uris/host_127_0_0_1__46543"], "no server of roslaunch has run"),
     "rosparam get /": (
-        ["-rosdistro: 'Debian", "+rosdistro: 'noetic", "-roslaunch:", "-  uris:", "-    host_127_0_0_1__46543: http://HOST:PORT/",],
+        ["-rosdistro: 'Debian", "+rosdistro: 'noetic", "-roslaunch:", "-  uris:", "-    host_127_0_0_1__46543: http://HOST:PORT/"],
         "the recorded ROS came with Debian; no server of roslaunch has run"),
     "rospack find turtlesim": (["+FOLDER"], "the recorded machine had no such package, yet the exit status 0; here it is part of cramhy"),
 }
