@@ -50,3 +50,7 @@ def test_a_kernel_that_is_started_meanwhile_stays():
     with kernel.at_hand():
         first, started = kernel.active(), kernel.start()
     assert first.stopped and kernel.active() is started
+
+
+def test_a_kernel_has_slots_since_a_dictionary_of_thirty_attributes_is_slower_to_find_them_in():
+    assert not hasattr(kernel.active() or kernel.start(), "__dict__")

@@ -23,6 +23,9 @@ PATIENCE = 10  # how often a stopping kernel looks whether calls that block have
 class Endings:
     """The part of the kernel that ends runs."""
 
+    __slots__ = ()
+
+
     # ------------------------------------------------------------------ interrupts
 
     def interrupt(self):

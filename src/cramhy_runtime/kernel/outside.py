@@ -18,6 +18,9 @@ from .tasks import BLOCKED, RUNNING
 class Outside:
     """The part of the kernel that deals with other threads."""
 
+    __slots__ = ()
+
+
     # ------------------------------------------------------------------ messages
 
     def post(self, fn):
