@@ -15,12 +15,16 @@ LEVEL_CODES = {name: code for code, name in LEVEL_NAMES.items()}
 
 
 class Loggers:
-    """The loggers of ``node``, an executable of the ROS package ``package``; its services are offered from now on."""
+    """The loggers of ``node``, an executable of the ROS package ``package``; its services are offered from now on.
+
+    ``talkative``: whether it prints what is for debugging, asked for in every tick.
+    """
 
     def __init__(self, node, package):
         self.own = f"ros.{package}"
         self.levels = {"ros": INFO, "ros.roscpp": INFO, "ros.roscpp.roscpp_internal": INFO,
                        "ros.roscpp.superdebug": WARN, self.own: INFO}
+        self.talkative = False
         get, change = service_type_exact("roscpp/GetLoggers"), service_type_exact("roscpp/SetLoggerLevel")
         entry = message_class_exact("roscpp/Logger")
 
@@ -33,6 +37,7 @@ class Loggers:
             if code is None:
                 raise Refusal("")
             self.levels[request.logger] = code
+            self.talkative = self.levels[self.own] == DEBUG
             return change.response()
 
         node.serve("~get_loggers", get, tell)
@@ -41,8 +46,3 @@ class Loggers:
     def enabled(self, level):
         """Whether the node prints what it logs at ``level``, a code of ``rosgraph_msgs/Log``."""
         return level >= self.levels[self.own]
-
-    @property
-    def talkative(self):
-        """Whether it prints what is for debugging."""
-        return self.levels[self.own] == DEBUG

@@ -17,7 +17,7 @@ from .measures import METRE, SIZE
 _CENTRE = 0.5 - 2.0**-7  # of a pixel, from its corner; a little less than half, which decides about centres on the border
 _LEVEL = 1e-12
 _LAST, _ROW = SIZE - 1, SIZE * 3
-_MOST_LINES = 512
+_MOST_LINES = 4096  # a minute of driving: drawn in some ten milliseconds
 
 
 class Canvas:
@@ -136,10 +136,9 @@ class Canvas:
             right, side = to_end - turned, to_side + shifted
             if side < right:
                 right = side
-            if left <= right and left <= _LAST and right >= 0.0:
-                first = ceil(left) if left > 0.0 else 0
-                count = (floor(right) if right < _LAST else _LAST) - first + 1
-                if count > 0:
-                    place = start + 3 * first
-                    pixels[place : place + 3 * count] = paint * count
+            first = ceil(left) if left > 0.0 else 0
+            count = (floor(right) if right < _LAST else _LAST) - first + 1
+            if count > 0:
+                place = start + 3 * first
+                pixels[place : place + 3 * count] = paint * count
             start += _ROW
