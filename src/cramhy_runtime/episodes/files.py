@@ -11,7 +11,6 @@ Source: projection-and-events.md C1.
 
 from __future__ import annotations
 
-import json
 import re
 
 from ..cpl.failure_types import PlanFailure, opened
@@ -85,6 +84,8 @@ def episode_text(episode):
         lines.append({"fluent": writer.write(name), "records": [[writer.write(record.traced_value), float(record.timestamp)]
                                                                 for record in records]})
     lines.append({"lines": len(lines)})
+    import json  # only for who writes or reads such a file
+
     return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in lines)
 
 
@@ -176,6 +177,8 @@ def _parsed(line, number):
                 raise BadFile("it is nested too deep")
         elif piece[0] in "]}":
             depth -= 1
+    import json  # only for who writes or reads such a file
+
     try:
         form = json.loads(line)
     except ValueError:

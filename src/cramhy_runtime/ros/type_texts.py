@@ -7,8 +7,6 @@ definitions. Sources: wiki.ros.org/msg; roslisp.md 5.6 and 15.
 
 from __future__ import annotations
 
-import hashlib
-
 from . import messages
 from .messages import ServiceType
 
@@ -20,6 +18,8 @@ def md5_of(message_type):
     """The md5 sum of a message class or a `ServiceType`, in hexadecimal."""
     found = _sums.get(message_type)
     if found is None:
+        import hashlib  # a session that nobody connects to does without it
+
         halves = (message_type.request, message_type.response) if isinstance(message_type, ServiceType) else (message_type,)
         text = "".join(_md5_text(half.definition) for half in halves)
         found = _sums[message_type] = hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()

@@ -7,7 +7,6 @@ Errors are file-errors with SBCL's texts, and the reason in the system's words. 
 from __future__ import annotations
 
 import os
-import shutil
 import stat
 from pathlib import Path
 
@@ -133,6 +132,8 @@ def delete_directory(designator, *, recursive=None):
     name = path_of(designator)
     try:
         if recursive is not None and not os.path.islink(name.rstrip("/")):
+            import shutil  # it reads four libraries that pack files
+
             shutil.rmtree(name)
         else:
             os.rmdir(name)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 
 from cramhy_runtime import kernel
 
@@ -338,6 +337,8 @@ def _opened(path, name, mode, original):
     try:
         file = kernel.run_blocking(lambda: open(name, mode)) if not is_regular(name) else open(name, mode)
         if original and original != name and os.path.exists(original):
+            import shutil  # it reads four libraries that pack files
+
             shutil.copymode(original, name)
         return file
     except FileNotFoundError:

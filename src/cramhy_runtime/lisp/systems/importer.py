@@ -7,7 +7,6 @@ its current value. The definitions live in the symbols, so a redefinition at the
 
 from __future__ import annotations
 
-import importlib.abc
 import importlib.machinery
 import importlib.util
 import sys
@@ -53,7 +52,9 @@ def package_for(name):
     return None
 
 
-class PackageLoader(importlib.abc.Loader):
+class PackageLoader:
+    """Loads a system as the module of its package."""
+
     def __init__(self, system):
         self.system = system
 
@@ -69,7 +70,7 @@ class PackageLoader(importlib.abc.Loader):
         module.__doc__ = package.documentation
 
 
-class FileLoader(importlib.abc.InspectLoader):
+class FileLoader:
     """Loads one ``.lisp`` file as a module: the face of the package that is current at its end."""
 
     def __init__(self, path):
@@ -88,7 +89,7 @@ class FileLoader(importlib.abc.InspectLoader):
         module.__doc__ = packages[0].documentation
 
 
-class SystemFinder(importlib.abc.MetaPathFinder):
+class SystemFinder:
     """Finds a ``.lisp`` file beside Python's, or a system, for a module name that nothing else provides.
 
     It stands last in ``sys.meta_path``. Underscores in the name may be dashes in the file's.

@@ -11,7 +11,6 @@ cramhy itself. So an unchanged system loads without compiling, and without impor
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 import linecache
 import marshal
@@ -38,11 +37,17 @@ for _variable in (LOAD_PATHNAME, LOAD_TRUENAME):
 _stamp = None
 
 
+def _sha256(text):
+    import hashlib  # a prompt that loads nothing does without it, and is there 2 ms sooner
+
+    return hashlib.sha256(text.encode())
+
+
 def stamp():
     """A fingerprint of cramhy itself: kept files made by another version are not used."""
     global _stamp
     if _stamp is None:
-        digest = hashlib.sha256(sys.version.encode())
+        digest = _sha256(sys.version)
         here = Path(__file__).parents[1]
         folders = [here, *(entry for room in (here, here.parent / "libraries") for entry in room.iterdir() if entry.is_dir())]
         language = importlib.util.find_spec("cramhy")
@@ -64,7 +69,7 @@ def kept_path(path):
     if os.access(folder if folder.exists() else path.parent, os.W_OK):
         return folder / name
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cramhy"
-    return cache / f"{hashlib.sha256(str(path).encode()).hexdigest()[:16]}-{name}"
+    return cache / f"{_sha256(str(path)).hexdigest()[:16]}-{name}"
 
 
 def decoded(path, encoding=None):
@@ -92,7 +97,7 @@ def load_file(path, chain="", finished=None, show=None, encoding=None):
     if path.suffix == ".hy" and _is_plain_hy(text):
         _run_hy(path)
         return chain
-    fingerprint = hashlib.sha256(f"{stamp()}{chain}{path}".encode() + text.encode()).hexdigest()
+    fingerprint = _sha256(f"{stamp()}{chain}{path}{text}").hexdigest()
     with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path),
                   LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
         codes = _kept(path, fingerprint) if show is None else None
