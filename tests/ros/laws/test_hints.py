@@ -50,6 +50,8 @@ def test_what_to_try(node, text, hint):
 
 @pytest.mark.parametrize("text, problem", [
     ("(wait-duration 'soon)", "The value SOON is not of type REAL"),
+    ('(with-parallel-thread (3 "x") 3)', "The value 3 is not of type FUNCTION"),
+    ("(set-param \"x\" '(1 . 2))", "A parameter can be a string, number, boolean, list or vector of these, but not (1 . 2)."),
     ("(loop-at-most-every nil (return 1))", "The value NIL is not of type REAL"),
     ('(wait-for-service "/x" \'soon)', "The value SOON is not of type (OR NULL REAL)"),
     ("(close-persistent-service 4)", "The value 4 is not of type ROSLISP:PERSISTENT-SERVICE"),

@@ -32,13 +32,19 @@ def encode(value):
         return float(value)
     if isinstance(value, Symbol):
         return symbol_name(value)
-    if isinstance(value, (Cons, list, tuple)):
+    if isinstance(value, (list, tuple)) or isinstance(value, Cons) and _last(value).cdr is None:
         return [encode(element) for element in value]
     if isinstance(value, Struct):
         value = value.members
     if isinstance(value, dict):
         return {str(key): encode(element) for key, element in value.items()}
     return _refuse(f"A parameter can be a string, number, boolean, list or vector of these, but not {shown(value)}.")
+
+
+def _last(cell):
+    while isinstance(cell.cdr, Cons):
+        cell = cell.cdr
+    return cell
 
 
 def _refuse(text):

@@ -6,6 +6,7 @@ All waits here park, so in virtual time they take no time at all (law 5). Source
 from __future__ import annotations
 
 from ... import kernel
+from ...lisp.conditions import type_error
 from ...lisp.data import MultipleValues, Symbol, one, truth
 from ...lisp.evaluation.control import fdefinition
 from ...lisp.numbers.arithmetic import need_real
@@ -70,6 +71,8 @@ def with_parallel_thread(function, name, body):
     if isinstance(function, Symbol):
         name = name if name is not None else function.name
         function = fdefinition(function)
+    if not callable(function):
+        return type_error(function, "FUNCTION")
     task = kernel.spawn(function, name=str(name))
     try:
         return body()
