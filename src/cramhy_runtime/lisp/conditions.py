@@ -414,7 +414,7 @@ def unknown_key(key, known):
     """Signal the program-error of a call with a keyword argument that the function does not take, SBCL's text; ``known``: those that it
     takes."""
     condition = types.SimpleProgramError("unknown &KEY argument: ~S", key)
-    condition.hint = f"The function takes {', '.join(map(repr, known))}."
+    condition.hint = f"The function takes {', '.join(map(repr, known)) or 'no keywords'}."
     return error(condition)
 
 

@@ -21,6 +21,7 @@ import pytest
     ('(call-service "/spawn" "turtlesim/Drive" :x 1)', "rossrv package turtlesim, typed at the prompt, lists those that there are."),
     ('(advertise "x" "std_msgs/String" :latched t)', "The function takes :LATCH."),
     ('(defun keyed (&key a (b 1)) (list a b)) (keyed :c 1)', "The function takes :A, :B."),
+    ('(defun keyed (&key) 1) (keyed :c 1)', "The function takes no keywords."),
     ('(make-msg "turtlesin/Pose")', "Did you mean turtlesim?"),
     ('(make-msg "nowhere/Pose")',
      "No package nowhere with messages or services is on ROS_PACKAGE_PATH, in the workspace's src or in the current folder."),
