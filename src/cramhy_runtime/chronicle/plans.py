@@ -16,7 +16,7 @@ from .. import kernel
 from ..cpl import past_plans
 from ..cpl.following import follow, unfollow
 from ..cpl.statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED
-from ..cpl.tree_report import failure, living_plans, place_of, plain_name, title, waits_for
+from ..cpl.tree_report import failure, living_plans, place_of, title, waits_for
 from ..lisp.data import all_values
 from ..ros.messages import message_class_exact
 from ..ros.wire import ros_text
@@ -170,7 +170,7 @@ class Plans:
 
     def _first_message(self, task):
         parent = task.parent
-        name = plain_name(task)
+        name = task.plain_name
         form = _operator.match(name)
         return self.task_type(
             id=str(task.kernel_task.id), parent="" if parent is None or parent.kernel_task is None else str(parent.kernel_task.id),

@@ -113,12 +113,18 @@ class AbstractTask:
         """Its name, a string. Names given as functions are made when somebody asks, unless that only looks on."""
         name = self._name
         if name.__class__ is not str and only_looked_at():
-            return "UNKNOWN" if name is None else name() if callable(name) else name
+            return self.plain_name
         if name is None:
             name = self._name = f"UNKNOWN-{next(_count)}"
         elif callable(name):
             name = self._name = f"{name()}-{next(_count)}"
         return name
+
+    @property
+    def plain_name(self) -> str:
+        """Its name; without the number if nobody has asked for it yet, so that who only looks on, or reports, changes no name."""
+        name = self._name
+        return name() if callable(name) else name or "UNKNOWN"
 
     @property
     def alive(self) -> bool:

@@ -218,14 +218,8 @@ def described(task, more=""):
 def title(task):
     """Its name, and the part of the path that it adds to its parent's."""
     if task.path is not None and (task.parent is None or task.parent.path is not task.path):
-        return f"{plain_name(task)} {_part(task)}"
-    return plain_name(task)
-
-
-def plain_name(task):
-    """Its name; without the number if nobody has asked for it yet, so that a report changes no name."""
-    name = task._name
-    return name() if callable(name) else name or "UNKNOWN"
+        return f"{task.plain_name} {_part(task)}"
+    return task.plain_name
 
 
 def _part(task):
