@@ -7,8 +7,6 @@ How Lisp's values get in and out stands in ``roslisp/parameter_values.py``. Sour
 
 from __future__ import annotations
 
-import hashlib
-
 DISTRIBUTION, VERSION = "noetic", "1.15.15"
 
 
@@ -67,9 +65,9 @@ class ParameterTree:
 
 
 def _run_id(run):
-    """A UUID that is the same for the same start, so that a run in virtual time does not differ from the one before."""
-    digits = hashlib.md5(repr(run).encode(), usedforsecurity=False).hexdigest()
-    return "-".join(digits[start:end] for start, end in ((0, 8), (8, 12), (12, 16), (16, 20), (20, 32)))
+    """A UUID of the time ``run`` (RFC 4122, version 1): the same for the same start, so that runs in virtual time do not differ."""
+    ticks = int(run * 10**7) + 0x01B2_1DD2_1381_4000  # tenths of microseconds, counted from 1582
+    return f"{ticks & 0xFFFFFFFF:08x}-{ticks >> 32 & 0xFFFF:04x}-{ticks >> 48 | 0x1000:04x}-8000-010000000000"
 
 
 def _parts(name):

@@ -71,7 +71,7 @@ def test_listing_names_below_a_namespace(node):
 
 def test_what_roscore_sets_is_there_from_the_start_and_the_same_in_every_run(node):
     assert node('(list (get-param "/rosdistro") (get-param "/rosversion") (get-param "/run_id"))') == (
-        '("noetic " "1.15.15 " "3187d94e-6cb3-8001-4d4a-a34b0e2442ca")')
+        '("noetic " "1.15.15 " "6d1da4a0-0ac1-11e0-8000-010000000000")')
 
 
 @pytest.mark.parametrize("call", ["(get-param 'foo)", "(set-param 'foo 1)", "(has-param 'foo)", "(delete-param 'foo)"])
