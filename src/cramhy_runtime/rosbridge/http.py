@@ -18,7 +18,7 @@ def make_protocol(limits):
     most = limits.connections + SPARE
 
     class Impatient(H11Protocol):
-        """Ends a connection that has had no answer to a request within `Limits.first_message`, since it began or had the last one."""
+        """Ends a connection that has not asked within `Limits.first_message`, since it began or had its last answer, or does not read."""
 
         _patience = None
 
@@ -39,7 +39,9 @@ def make_protocol(limits):
                 self._patience.cancel()
 
         def _end(self):
-            if self.transport.get_protocol() is self:  # and not a WebSocket's
+            if self.cycle is not None and not self.cycle.response_complete and not self.flow.write_paused:
+                self._be_patient()  # it is we who are slow
+            elif self.transport.get_protocol() is self:  # and not a WebSocket's
                 self.transport.abort()
 
         def on_response_complete(self):
