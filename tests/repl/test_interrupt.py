@@ -57,6 +57,19 @@ def test_a_second_ctrl_c_gives_the_cleanup_up(terminal):
     assert evaluates(terminal)
 
 
+def test_ctrl_c_ends_a_ros_command_and_nothing_else():
+    with Terminal("repl", "--time", "wall", "--package", "cram-user") as terminal:
+        terminal.expect(PROMPT)
+        terminal.type('(roslisp:start-ros-node "a")')
+        terminal.expect(PROMPT)
+        for words, shown in ("rostopic echo /turtle1/pose/theta", "0.0\n---\n"), ("rostopic hz /turtle1/pose", "subscribed to"):
+            terminal.type(words)
+            terminal.expect(shown)
+            terminal.control_c()
+            assert "Traceback" not in terminal.expect(PROMPT)
+            assert evaluates(terminal)
+
+
 def test_ctrl_c_at_the_prompt_gives_a_new_prompt(terminal):
     for _ in range(3):
         terminal.control_c()

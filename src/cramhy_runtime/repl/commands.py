@@ -20,7 +20,8 @@ def is_command(line):
 
 
 def run_line(line, write):
-    """Carry out a command that was typed at the prompt. write: a function of a text, which gets what it prints and complains of."""
+    """Carry out a command that was typed at the prompt, until Ctrl-C. write: a function of a text, which gets what it prints and complains
+    of."""
     from cramhy_runtime.ros_tools import here, running
 
     try:
@@ -30,5 +31,5 @@ def run_line(line, write):
     patience = PATIENCE if kernel.active().clock.virtual else None
     try:
         running.run(words, running.Terminal(write, write, lambda: here.HereGraph(patience)))
-    except here.OutOfTime:
-        pass
+    except (here.OutOfTime, kernel.Interrupted, kernel.Abandoned):
+        pass  # Ctrl-C is the ordinary end of a command that goes on for ever
