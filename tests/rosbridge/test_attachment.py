@@ -13,6 +13,7 @@ import pytest
 from image_as_it_was import image_as_it_was
 
 from cramhy_runtime import kernel, rosbridge
+from cramhy_runtime.repl.commands import run_line
 
 pytest.importorskip("roslibpy")
 
@@ -117,6 +118,9 @@ def test_services_and_parameters_are_the_robots(robot, joined):
     evaluate('(roslisp:delete-param "/mine")')
     assert evaluate('(roslisp:has-param "/mine")') == [None]
     assert evaluate('(roslisp:get-param "/nothing" 7)') == [7]
+    shown = []
+    run_line("rosservice call /kill nope", shown.append)
+    assert shown == ["ERROR: service [/kill] responded with an error: b''\n"]
 
 
 def test_the_robot_calls_a_service_of_the_plan(robot, joined, beside):
@@ -181,6 +185,9 @@ def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
         evaluate('(roslisp:get-param "/turtlesim/background_b")')
     assert caught.value.report() == (
         f"/rosapi/has_param cannot be asked at {robot.address}: there is no connection to {robot.address}")
+    shown = []
+    run_line("rosparam list", shown.append)
+    assert shown == [f"ERROR: /rosapi/get_param_names cannot be asked at {robot.address}: there is no connection to {robot.address}\n"]
 
 
 def test_virtual_time_cannot_join(serve):

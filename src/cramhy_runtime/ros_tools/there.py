@@ -13,7 +13,7 @@ import time
 from collections import deque
 from contextlib import contextmanager
 
-from ..rosbridge.no_answers import SERVER_GONE, WITHOUT_REASON
+from ..rosbridge.no_answers import taken_apart
 from .reach import Graph, Listener, NodeFacts, NoSession, Refused, SessionEnded, reached
 
 PATIENCE = 5.0  # s until a session that listens must have let us in
@@ -102,8 +102,7 @@ class ThereGraph(Graph):
         answer = self.answers.pop(identity)
         if answer["result"]:
             return answer["values"]
-        text = answer["values"] if isinstance(answer["values"], str) else ""
-        raise Refused("" if text == WITHOUT_REASON.format(name) else text, lost=text == SERVER_GONE.format(name))
+        raise Refused(*taken_apart(answer["values"] if isinstance(answer["values"], str) else "", name))
 
     def _ask(self, service, /, **arguments):
         return self.call(f"/rosapi/{service}", "", arguments)

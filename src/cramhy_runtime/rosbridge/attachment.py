@@ -28,7 +28,7 @@ from ..ros.messages import message_class_exact
 from ..ros.parameter_tree import ParameterTree
 from ..ros.roslisp import logging
 from ..ros.roslisp.services import LispService
-from .no_answers import reason
+from .no_answers import reason, taken_apart
 from .refusal import connect
 from .server import ServerError
 
@@ -50,7 +50,7 @@ class FarService(services.Service):
 
     def submit(self, call):
         self.pending.add(call)
-        self.link.call(self.name, self.link.outward(call.request), self._answer(call), lambda text: call.finish(failure=text))
+        self.link.call(self.name, self.link.outward(call.request), self._answer(call), self._no_answer(call))
 
     def _answer(self, call):
         def answer(values):
@@ -60,6 +60,13 @@ class FarService(services.Service):
                 call.finish(failure=f"the answer of {self.name} cannot be understood here: {problem}")
 
         return answer
+
+    def _no_answer(self, call):
+        def no_answer(text):
+            failure, lost = taken_apart(text, self.name)
+            call.finish(failure=failure, lost=lost)
+
+        return no_answer
 
 
 class FarParameters:
