@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import socket
@@ -250,10 +251,13 @@ def test_what_another_server_answers_is_told(answer, text):
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def say_no():
-            client, _ = server.accept()
-            with client:
-                client.recv(65536)
-                client.sendall(f"HTTP/1.1 {answer}\r\nContent-Length: 0\r\n\r\n".encode())
+            with contextlib.suppress(OSError):  # the test has ended
+                while True:
+                    client, _ = server.accept()
+                    with client, client.makefile("rb") as request:
+                        while request.readline().strip():
+                            pass
+                        client.sendall(f"HTTP/1.1 {answer}\r\nContent-Length: 0\r\n\r\n".encode())
 
         threading.Thread(target=say_no, daemon=True).start()
         url = f"ws://127.0.0.1:{server.getsockname()[1]}/x"
