@@ -204,3 +204,15 @@ def test_a_program_in_a_terminal_leaves_the_prompt_a_line_of_its_own_and_a_pipe_
         assert terminal.status() == 0
         assert terminal.text == shown
     assert cramhy("run", "x.lisp").stdout == (shown if form != "(print 1)" else "\n1 ")
+
+
+def test_a_folder_that_cannot_be_read_hides_no_packages_elsewhere(tmp_path, monkeypatch):
+    from cramhy_runtime.cli import workspace
+
+    for place in ("closed/mine", "open/yours"):
+        (tmp_path / place).mkdir(parents=True)
+        (tmp_path / place / "package.xml").write_text("")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", os.pathsep.join(str(tmp_path / name) for name in ("closed", "open")))
+    monkeypatch.setattr(os, "access", lambda path, mode: path.name != "closed")
+    found = workspace.packages()
+    assert "yours" in found and "turtlesim" in found and "mine" not in found

@@ -124,6 +124,8 @@ def test_a_replay_needs_two_extras(monkeypatch):
     (["repl", "--ros", "ws://a:99999"], "--ros ws://a:99999: that is no address of a rosbridge server; one looks like ws://robot:9090."),
     (["repl", "--ros", "ws://a:b"], "--ros ws://a:b: that is no address of a rosbridge server; one looks like ws://robot:9090."),
     (["repl", "--ros", "ws://[a"], "--ros ws://[a: that is no address of a rosbridge server; one looks like ws://robot:9090."),
+    (["repl", "--ros", "ws://a:9090/#x"],
+     "--ros ws://a:9090/#x: that is no address of a rosbridge server; one looks like ws://robot:9090."),
     (["repl", "--ros", "ws://"], "--ros ws://: that is no address of a rosbridge server; one looks like ws://robot:9090."),
     (["run", "x", "--picture", "x.jpg"],
      "--picture x.jpg: a picture is written as .png or .svg; .gif and .replay.svg show the whole way."),

@@ -68,7 +68,7 @@ def _is_address(text):
     """Whether a rosbridge server could be at ``text``: ``ws://HOST:PORT``."""
     try:
         parts = urlsplit(text)
-        return parts.scheme in ("ws", "wss") and bool(parts.hostname) and parts.port != 0
+        return parts.scheme in ("ws", "wss") and bool(parts.hostname) and parts.port != 0 and not parts.fragment
     except ValueError:  # a port beyond 65535, brackets that never close
         return False
 

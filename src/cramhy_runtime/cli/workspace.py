@@ -76,7 +76,7 @@ def packages():
     found = {package: folder_of(package) for package in definition_files.known_packages()}
     for folder in systems.search_folders():
         for candidate in [folder, *folder.iterdir()]:
-            if (candidate / "package.xml").is_file():
+            if os.path.isfile(candidate / "package.xml"):  # Path.is_file would not bear a folder that is not ours to read
                 found.setdefault(candidate.name, candidate)
     return {name: folder for name, folder in sorted(found.items()) if folder is not None}
 

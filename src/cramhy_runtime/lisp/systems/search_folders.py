@@ -21,4 +21,4 @@ def search_folders():
         folders.append(here)
     root = Path(__file__).parents[4]
     folders += [root / "tutorials", Path(__file__).parents[2] / "tutorials"]
-    return [folder for folder in dict.fromkeys(folders) if folder.is_dir()]
+    return [folder for folder in dict.fromkeys(folders) if os.path.isdir(folder) and os.access(folder, os.R_OK | os.X_OK)]
