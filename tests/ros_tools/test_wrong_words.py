@@ -157,3 +157,9 @@ def test_a_session_that_ends_while_it_lets_the_tool_in_is_no_session(far_shell, 
     monkeypatch.setattr(there.ThereGraph, "_send", gone)
     assert far_shell("rostopic list") == "" and far_shell.status == 1
     assert "does not let anybody in: The session has ended.\n" in far_shell.errors
+
+
+def test_nothing_is_promised_before_a_topic_is_refused(far_shell):
+    far_shell(["rostopic", "pub", "-1", "/a b", "std_msgs/String", "x"])
+    assert far_shell.said == ("", "ERROR: Character [ ] at element [2] is not valid in Graph Resource Name [/a b].  Valid characters are "
+                                  "a-z, A-Z, 0-9, / and _.\n", 1)

@@ -119,6 +119,7 @@ class ThereGraph(Graph):
     @contextmanager
     def talk(self, topic, ros_type, latch):
         self._send(op="advertise", topic=topic, type=ros_type, latch=latch)
+        self._ask("topic_type", topic=topic)  # a refusal of the topic comes before this answer
         yield lambda data: self._send(op="publish", topic=topic, msg=data)
 
     def now(self):
