@@ -206,3 +206,9 @@ def test_a_condition_is_shown_by_its_method_of_print_object(type_in):
                     "  (if *print-escape* (call-next-method) (format stream \"Lost at ~A.\" (slot-value lost 'at))))\n"
                     "(error 'lost :at 3)")
     assert "Lost at 3." in shown and "was signalled" not in shown
+
+
+def test_a_ros_command_that_would_go_on_for_ever_ends_after_some_virtual_time(type_in):
+    answer = type_in('(roslisp:start-ros-node "a")\nrostopic hz /turtle1/pose\n(+ 1 2)\n', turtlesim=True)
+    assert answer.count("average rate: ") == 4 and "OutOfTime" not in answer
+    assert answer.endswith("window: 250\nCPL-USER> (+ 1 2)\n3\n")

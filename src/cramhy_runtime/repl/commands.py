@@ -6,7 +6,7 @@ import shlex
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.condition_types import Error
+from cramhy_runtime.lisp.condition_types import SimpleError
 
 PATIENCE = 5.0
 """Seconds of virtual time after which a command ends that would go on for ever, and so fill the screen at once."""
@@ -33,7 +33,7 @@ def run_line(line, write):
     patience = PATIENCE if kernel.active().clock.virtual else None
     try:
         conditions.handler_case(
-            [(Error, lambda problem: write(f"ERROR: {problem.report()}\n"))],
+            [(SimpleError, lambda problem: write(f"ERROR: {problem.report()}\n"))],
             lambda: running.run(words, running.Terminal(write, write, lambda: here.HereGraph(patience))))
     except (here.OutOfTime, kernel.Interrupted, kernel.Abandoned):
         pass  # Ctrl-C is the ordinary end of a command that goes on for ever
