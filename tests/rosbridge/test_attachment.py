@@ -97,12 +97,19 @@ def drive_by_the_plan_of_the_course(robot, evaluate, link):
     evaluate('(init-ros-turtle "turtle1")')
     assert "/turtlesim" not in link.graph.nodes
     evaluate("(top-level (wait-for *turtle-pose*))")  # the first one has come over the bridge
-    evaluate("(top-level (move-to (make-3d-vector 7 6 0)))")
-    x, y, *_ = json.loads(robot.ask("pose"))
-    assert (x, y) == (pytest.approx(7, abs=0.5), pytest.approx(6, abs=0.5))
-    evaluate("(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) (navigate '(5 5 0))))")
-    x, y, *_ = json.loads(robot.ask("pose"))
-    assert (x, y) == (pytest.approx(5, abs=0.5), pytest.approx(5, abs=0.5))
+    arrive(robot, lambda: evaluate("(top-level (move-to (make-3d-vector 7 6 0)))"), 7, 6)
+    arrive(robot, lambda: evaluate(
+        "(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) (navigate '(5 5 0))))"), 5, 5)
+
+
+def arrive(robot, drive, x, y):
+    """The turtle is there after ``drive()``; a machine that is busy with other things brakes late, so it has three attempts."""
+    for _ in range(3):
+        drive()
+        pose = json.loads(robot.ask("pose"))
+        if pose[:2] == [pytest.approx(x, abs=0.5), pytest.approx(y, abs=0.5)]:
+            return
+    pytest.fail(f"It drove to {pose}, not to {x}, {y}.")
 
 
 def test_services_and_parameters_are_the_robots(robot, joined):
