@@ -279,14 +279,14 @@ def test_endless_reader_macros_are_a_reader_error():
 
 def test_a_file_of_a_thousand_lines_is_read_in_well_under_150_milliseconds():
     text = "(defun drive (pose &key (speed 1.0))\n  ;; go\n  (format t \"~a~%\" `(a ,pose #'car #\\x))\n  (values 1 'b :c 1/2))\n" * 250
-    best = min(_seconds(text) for _ in range(3))
+    best = min(_seconds(text) for _ in range(5))
     assert best < 0.15
 
 
 def _seconds(text):
-    start = time.perf_counter()
+    start = time.thread_time()  # of the processor: the machine may be busy with other things
     assert sum(1 for _ in Reader(text).read_all()) == 250
-    return time.perf_counter() - start
+    return time.thread_time() - start
 
 
 def test_a_list_made_by_hand_prints_and_reads_back():

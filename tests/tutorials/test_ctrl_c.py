@@ -9,6 +9,7 @@ from repl.terminal import Terminal
 from .course import BACKENDS
 
 PROMPT = "TUT> "
+SPEED = """(py:method (py:call "cramhy_runtime.kernel.pace") "set_speed" {})"""  # that the plan is not over before the key is pressed
 PLACE = "(with-fields (x y theta) (value *turtle-pose*) (list x y theta))"
 
 
@@ -23,11 +24,13 @@ def test_a_house_is_left_unfinished(backend, motions):
 
         terminal.expect(PROMPT)
         answer("(init)")
+        answer(SPEED.format(30))
         terminal.type("(perform-draw-house)")
         for _ in range(motions):
             terminal.expect("TYPE MOVING")
         terminal.control_c()
         assert "; Interrupted." in terminal.expect(PROMPT)
+        answer(SPEED.format("nil"))
         report = "\n".join(answer("(describe-task-tree)"))
         assert "No plan runs now. The last one when it was interrupted" in report
         assert "[GOAL-PERFORM] (GOAL (PERFORM #<A MOTION (TYPE MOVING)" in report
