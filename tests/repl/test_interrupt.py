@@ -30,6 +30,12 @@ def terminal(request):
         yield terminal
 
 
+def within_soon(attempt):
+    """``attempt()`` presses the key, looks at what comes, and gives the seconds to the prompt; a machine that is busy with other things
+    has three attempts to be quick, and each must be right."""
+    assert any(attempt() < SOON for _ in range(3))
+
+
 def evaluates(terminal):
     terminal.type("(+ 1 2)")
     return terminal.expect(PROMPT).endswith(f"\n3\n{PROMPT}")
@@ -37,24 +43,32 @@ def evaluates(terminal):
 
 @pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 def test_ctrl_c_ends_a_form_through_its_cleanup(terminal, form):
-    terminal.type(form)
-    terminal.expect(r"\n:RUNNING ")
-    pressed = terminal.control_c()
-    answer = terminal.expect(PROMPT)
-    assert time.monotonic() - pressed < SOON
-    assert answer.removeprefix("^C").strip() == f":CLEANED \n; Interrupted.\n{PROMPT}".strip()
-    assert evaluates(terminal)
+    def attempt():
+        terminal.type(form)
+        terminal.expect(r"\n:RUNNING ")
+        pressed = terminal.control_c()
+        answer = terminal.expect(PROMPT)
+        passed = time.monotonic() - pressed
+        assert answer.removeprefix("^C").strip() == f":CLEANED \n; Interrupted.\n{PROMPT}".strip()
+        assert evaluates(terminal)
+        return passed
+
+    within_soon(attempt)
 
 
 def test_a_second_ctrl_c_gives_the_cleanup_up(terminal):
-    terminal.type("(top-level (par (unwind-protect (progn (print :running) (loop)) (print :cleaning) (loop)) (sleep 1000000)))")
-    terminal.expect(r"\n:RUNNING ")
-    terminal.control_c()
-    terminal.expect(r"\n:CLEANING ")
-    pressed = terminal.control_c()
-    assert "; Interrupted." in terminal.expect(PROMPT)
-    assert time.monotonic() - pressed < SOON
-    assert evaluates(terminal)
+    def attempt():
+        terminal.type("(top-level (par (unwind-protect (progn (print :running) (loop)) (print :cleaning) (loop)) (sleep 1000000)))")
+        terminal.expect(r"\n:RUNNING ")
+        terminal.control_c()
+        terminal.expect(r"\n:CLEANING ")
+        pressed = terminal.control_c()
+        assert "; Interrupted." in terminal.expect(PROMPT)
+        passed = time.monotonic() - pressed
+        assert evaluates(terminal)
+        return passed
+
+    within_soon(attempt)
 
 
 def test_ctrl_c_ends_a_ros_command_and_nothing_else():
@@ -104,11 +118,15 @@ def test_ctrl_c_with_the_editor_of_prompt_toolkit():
     pytest.importorskip("prompt_toolkit")
     with Terminal("repl", "--time", "virtual", "--package", "cram-user", editor=True) as terminal:
         terminal.expect(PROMPT)
-        terminal.type(FORMS[BUSY])
-        terminal.expect(r"\n:RUNNING ")
-        pressed = terminal.control_c()
-        assert ":CLEANED \n; Interrupted." in terminal.expect(PROMPT)
-        assert time.monotonic() - pressed < SOON
+
+        def attempt():
+            terminal.type(FORMS[BUSY])
+            terminal.expect(r"\n:RUNNING ")
+            pressed = terminal.control_c()
+            assert ":CLEANED \n; Interrupted." in terminal.expect(PROMPT)
+            return time.monotonic() - pressed
+
+        within_soon(attempt)
 
 
 def test_ctrl_c_ends_a_program_that_is_run(tmp_path):
