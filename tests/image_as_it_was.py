@@ -66,6 +66,9 @@ class _Contents:
         for other in [each for each in self.package.use if each not in self.use]:
             self.package.unuse_package(other)
         for table, before in self.tables:
+            for symbol in [each for name, each in table.items() if name not in before]:
+                if isinstance(symbol, Symbol) and symbol.package is self.package:
+                    symbol.value = UNBOUND  # code that names it may live on, but not the fluents that it held
             table.clear()
             table.update(before)
         for symbol, values in self.symbols.items():

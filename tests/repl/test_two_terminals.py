@@ -106,6 +106,9 @@ SUMMARY
 ========
 
 PARAMETERS
+ * /rosdistro: noetic
+ * /rosversion: 1.15.15
+ * /run_id: {graph.parameter("/run_id")[:17]}...
  * /turtlesim/background_b: 255
  * /turtlesim/background_g: 86
  * /turtlesim/background_r: 69

@@ -113,6 +113,7 @@ def test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at(course)
     wait_for_text(page, "#modules", "(GOAL (9 9 0))")
     wait_for_text(page, "#doing", "a form runs")
     wait_for_text(page, "#log", "TurtleSim pen control invoked with motion designator")
+    wait_for_text(page, "#tasks", "(sleep 0.5)")  # for five seconds of the wall's
     page.get_by_role("button", name="Pause").click()
     stood = plan_time(page, "paused")
     wait_for_text(page, "#tasks", "(sleep 0.5)")

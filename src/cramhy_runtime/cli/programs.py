@@ -64,7 +64,7 @@ def summary(parameters, nodes):
 
 
 def _shown(value):
-    text = str(value)
+    text = str(value).strip()  # that of /rosdistro ends in a newline
     return text if len(text) <= 20 else text[:17] + "..."
 
 
