@@ -54,7 +54,7 @@ def driving(count):
 
 
 def busy_row(table, name, work, count, goal=None):
-    """A row whose rounds are long, since a turtle's lines are drawn by the hundred: what the processor spent, not others' turns."""
+    """A row whose rounds are long, since a turtle's lines are drawn by the thousand: what the processor spent, not others' turns."""
     times = rounds(work, count, process_time)
     table.line(name, min(times), median(times), goal)
 
@@ -62,13 +62,13 @@ def busy_row(table, name, work, count, goal=None):
 def alone(table):
     """The rows of the simulator while nobody listens to it, and while somebody looks on from inside."""
     table.row("tick, nobody listening, at rest", ticks, 1000, goal=16)
-    busy_row(table, "tick, nobody listening, while driving", driving, 1024, goal=16)
+    busy_row(table, "tick, nobody listening, while driving", driving, 8192, goal=16)
     simulator = running_simulator()
     simulator.observe(nobody := lambda simulator, strokes: None)
-    busy_row(table, "tick, strokes observed, while driving", driving, 1024)
+    busy_row(table, "tick, strokes observed, while driving", driving, 8192)
     simulator.unobserve(nobody)
     simulator.keep_history()
-    busy_row(table, "tick, history kept, while driving", driving, 1024)
+    busy_row(table, "tick, history kept, while driving", driving, 8192)
     simulator.history.stop()
     simulator.history = None
     set_pen = calling("(call-service \"/turtle1/set_pen\" 'turtlesim-srv:SetPen :r 1 :g 2 :b 3 :width 4 :off 0)")
