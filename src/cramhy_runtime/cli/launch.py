@@ -11,11 +11,11 @@ import os
 import re
 import shlex
 import sys
-from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
+from cramhy_runtime.lisp.packages import near_names
 from cramhy_runtime.ros.names import plain_value
 from cramhy_runtime.ros_tools import yaml_reading
 from cramhy_runtime.ros_tools.hosting import PROGRAMS
@@ -91,7 +91,7 @@ def _launch_files_of(package, folder):
 
 
 def _package_meant(package):
-    near = get_close_matches(package, packages(), n=1)
+    near = near_names(package, packages(), 1)
     return f"There is no package {package}." + (f" Did you mean {near[0]}?" if near else " rospack list names those that there are.")
 
 

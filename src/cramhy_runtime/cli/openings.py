@@ -23,7 +23,6 @@ NEEDS = {
     "ros": ("ros", ("roslibpy",)),
 }
 """The extra that an option needs, and its modules that have to be there."""
-PICTURES = (".png", ".svg", ".gif")
 
 
 class NotPossible(Exception):
@@ -48,9 +47,12 @@ def check(options):
     if getattr(options, "ros", None):
         if not _is_address(options.ros):
             raise NotPossible(f"--ros {options.ros}: that is no address of a rosbridge server; one looks like ws://robot:9090.")
-    if getattr(options, "picture", None) and Path(options.picture).suffix.lower() not in PICTURES:
-        raise NotPossible(f"--picture {options.picture}: a picture is written as .png or .svg; .gif and .replay.svg show "
-                          "the whole way.")
+    if getattr(options, "picture", None):
+        from cramhy_runtime.turtlesim import pictures
+
+        if not pictures.is_picture(options.picture):
+            raise NotPossible(f"--picture {options.picture}: a picture is written as .png or .svg; .gif and .replay.svg show "
+                              "the whole way.")
     for option in ("record", "picture"):
         path = getattr(options, option, None)
         if path and not Path(path).absolute().parent.is_dir():

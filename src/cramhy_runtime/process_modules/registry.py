@@ -8,7 +8,6 @@ that is, and why the module ended if it did.
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 
 from cramhy_runtime import kernel
 
@@ -18,6 +17,7 @@ from ..cpl.task_variables import inherit
 from ..lisp.conditions import SimpleError, error, from_python
 from ..lisp.data import Symbol, list_from
 from ..lisp.evaluation.places_in_source import describe, locate
+from ..lisp.packages import near_names
 from ..lisp.printer.printer import princ_to_string
 from .symbols import sym
 
@@ -155,7 +155,7 @@ def _listed(names):
 
 def _nearest(name, names):
     by_text = {_typed(known): known for known in names}
-    found = get_close_matches(_typed(name), by_text, 1)
+    found = near_names(_typed(name), by_text, 1)
     return by_text[found[0]] if found else None
 
 

@@ -7,9 +7,10 @@ is the business of ``definition_files.py``. Source: wiki.ros.org/msg, /srv, and 
 
 from __future__ import annotations
 
-import difflib
 import keyword
 import re
+
+from ..lisp.packages import near_names
 
 INTEGERS = {
     "int8": (8, True),
@@ -204,7 +205,7 @@ def unknown_type(field, package, where, candidates):
     """Signal that the type of ``field`` in the file ``where`` of ``package`` does not exist; ``candidates``: names of those that do."""
     name = field.base.rpartition("/")[2]
     written = name if name in OTHER_NAMES or field.base.startswith(package + "/") else field.base
-    near = [OTHER_NAMES[name]] if name in OTHER_NAMES else difflib.get_close_matches(name, [*PRIMITIVES, *candidates], 2, 0.75)
+    near = [OTHER_NAMES[name]] if name in OTHER_NAMES else near_names(name, [*PRIMITIVES, *candidates], 2)
     hint = "Is the package of that message on ROS_PACKAGE_PATH, or in the workspace's src?"
     if near:
         hint = f"Did you mean {' or '.join(near)}?"

@@ -9,7 +9,6 @@ Source: roslisp.md 5.
 from __future__ import annotations
 
 import functools
-from difflib import get_close_matches
 from inspect import Parameter, Signature
 
 from ..lisp import conditions
@@ -18,7 +17,7 @@ from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
 from ..lisp.objects.classes import find_class_or_error
 from ..lisp.objects.generic_errors import no_applicable_method
 from ..lisp import packages
-from ..lisp.packages import Package, delete_package, intern, register, registered, string_designator, sym
+from ..lisp.packages import Package, delete_package, intern, near_names, register, registered, string_designator, sym
 from ..lisp.systems import systems
 from . import definition_files
 from .definition_text import DefinitionError
@@ -386,7 +385,7 @@ def _unknown(text, hint):
 
 def _packages_hint(package):
     """What to try when there is no ROS package ``package`` with definitions."""
-    near = get_close_matches(package.lower(), definition_files.known_packages(), 1, 0.8)
+    near = near_names(package.lower(), definition_files.known_packages(), 1)
     if near:
         return f"Did you mean {near[0]}?"
     return f"No package {package} with messages or services is on ROS_PACKAGE_PATH, in the workspace's src or in the current folder."
@@ -418,9 +417,9 @@ def topic_class(designator):
 
 def _types_hint(tool, table, text):
     """What to try when ``table`` has no type ``text``, though it has others of that package, which ``tool`` lists."""
-    package = text.lower().partition("/")[0]
-    names = {name.lower(): name for name in table if name.startswith(package + "/")}
-    near = get_close_matches(text.lower(), names, 1, 0.8)
+    package, _, wanted = text.lower().partition("/")
+    names = {name.lower().partition("/")[2]: name for name in table if name.startswith(package + "/")}
+    near = near_names(wanted, names, 1)
     if near:
         return f"Did you mean {names[near[0]]}?"
     return f"{tool} package {package}, typed at the prompt, lists those that there are."

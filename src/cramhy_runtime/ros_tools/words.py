@@ -8,8 +8,9 @@ usage, help and errors are laid out as the ROS tools lay out theirs, and exit st
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from typing import NamedTuple
+
+from ..lisp.packages import near_names
 
 TOOLS: dict[str, dict[str, Command]] = {}
 """The commands of each tool by name."""
@@ -65,7 +66,7 @@ def option(names, about, value="", convert=str):
 
 def meant(name, names):
     """A line that asks whether the one of ``names`` was meant that looks like ``name``; empty when none does."""
-    near = get_close_matches(name, list(names), 1, 0.75)
+    near = near_names(name, names, 1)
     return f"Did you mean {near[0]}?\n" if near else ""
 
 

@@ -83,11 +83,17 @@ def thinned(points, tolerance=TOLERANCE):
 
     ``points``: tuples that begin with x and y; first and last are always there, and what else is in the tuples comes along.
     """
+    return thinned_by(lambda begin, end: _straight(points, begin, end, tolerance), points)
+
+
+def thinned_by(fits, points, window=_WINDOW):
+    """The points, of any kind, without those that may be left out: ``fits(begin, end)`` says whether all between these two may be, which
+    are at the most ``window``."""
     if len(points) < 3:
         return list(points)
     kept, begin = [points[0]], 0
     for index in range(2, len(points)):
-        if index - begin > _WINDOW or not _straight(points, begin, index, tolerance):
+        if index - begin > window or not fits(begin, index):
             begin = index - 1
             kept.append(points[begin])
     kept.append(points[-1])

@@ -26,10 +26,14 @@ _REPLAYS = {".gif": replay.write_gif, ".replay.svg": replay.write_svg}
 _STILLS = {".png": stills.still_png, ".svg": stills.still_svg}
 
 
+def is_picture(path):
+    """Whether the file's name says which kind of picture it is to be."""
+    return str(path).lower().endswith((*_REPLAYS, *_STILLS))
+
+
 def check(path):
     """Complain of a file name that says no kind of picture: a simple error. To be called before what the picture shall show."""
-    path = str(path)
-    if not path.lower().endswith((*_REPLAYS, *_STILLS)):
+    if not is_picture(path):
         conditions.error(SimpleError(
             "~a", f"What kind of picture is {path} to be? A name ends in .png or .svg (the window as it is), in .gif or .replay.svg (a "
                   "replay)."))

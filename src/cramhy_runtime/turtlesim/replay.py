@@ -16,6 +16,7 @@ from html import escape
 
 from . import sprites, stills
 from .canvas import Canvas
+from .ink import thinned_by
 from .measures import EXTENT, METRE, SIZE
 from .world import TICK
 
@@ -125,12 +126,7 @@ def _moved(samples):
 
 def _evenly(samples, tolerances):
     """The samples (tick, value, ...) without those that an even change between their neighbours passes within the tolerances."""
-    kept, begin = samples[:1], 0
-    for index in range(2, len(samples)):
-        if index - begin > 64 or not _passes(samples, begin, index, tolerances):
-            begin = index - 1
-            kept.append(samples[begin])
-    return kept + samples[1:][-1:]
+    return thinned_by(lambda begin, end: _passes(samples, begin, end, tolerances), samples, 64)
 
 
 def _passes(samples, begin, end, tolerances):

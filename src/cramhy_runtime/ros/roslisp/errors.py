@@ -7,11 +7,11 @@ they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the 
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 
 from ...lisp import conditions
 from ...lisp.condition_types import Condition, Error, SimpleError
 from ...lisp.format.format import format_to_string
+from ...lisp.packages import near_names
 from ...lisp.printer.printer import princ_to_string
 from . import logging
 from .master import master_uri
@@ -66,7 +66,7 @@ def ros_error(control, *arguments, hint=None):
 
 def close_names(name, names, otherwise):
     """The hint for a name that is not there: those of ``names`` that look like it, or the sentence ``otherwise``."""
-    close = get_close_matches(name, list(names), n=3, cutoff=0.7)
+    close = near_names(name, names)
     return f"Did you mean {' or '.join(close)}?" if close else otherwise
 
 
