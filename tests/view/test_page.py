@@ -119,6 +119,19 @@ def test_several_turtles_have_names_and_one_is_chosen(fake, visit):
     wait_for_reading(page, "x", "2.00")
 
 
+def test_turtles_stand_in_the_order_of_their_numbers_and_the_chosen_one_is_in_sight(fake, visit):
+    page = visit(fake.address)
+    names = [f"a{number}" for number in range(1, 13)]
+    fake.world(sorted((turtle(name) for name in (*names, "turtle1")), key=lambda one: one["name"]))
+    wait_for_count(page, "#turtles [role=radio]", 13)
+    assert page.locator("#turtles [role=radio]").all_text_contents() == [*names, "turtle1"]
+    page.wait_for_function("""() => {
+        const list = document.querySelector('#turtles'), chosen = list.querySelector('[aria-checked=true]');
+        return chosen.textContent === 'turtle1' && list.scrollLeft > 0
+            && chosen.getBoundingClientRect().right <= list.getBoundingClientRect().right + 1;
+    }""")
+
+
 def test_a_pose_that_is_no_number_is_said_and_hurts_nobody(fake, visit):
     page = visit(fake.address)
     fake.world([{**turtle(), "x": None, "y": None, "theta": None}])

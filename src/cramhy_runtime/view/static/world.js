@@ -7,6 +7,7 @@ import { Paper, drawWorld, toWorld } from "./paper.js";
 import { Playback } from "./playback.js";
 
 const NEAR = 0.7; // m from a turtle, within which a click means it
+const ORDER = new Intl.Collator("en", { numeric: true }); // turtle2 before turtle10
 
 export class WorldView {
   // The elements of the page, the strokes, the pictures.
@@ -70,32 +71,44 @@ export class WorldView {
     if (name === this.chosen) return;
     this.chosen = name;
     this.dirty = true;
-    const { offsetLeft: left = 0, offsetWidth: width = 0 } = this.chips.get(name) ?? {};
+    this.#scroll();
+  }
+
+  // Have the chosen turtle in sight among those to choose from.
+  #scroll() {
+    const { offsetLeft: left = 0, offsetWidth: width = 0 } = this.chips.get(this.chosen) ?? {};
     this.list.scrollLeft = Math.max(left + width - this.list.clientWidth, Math.min(left, this.list.scrollLeft));
+  }
+
+  get names() {
+    return (this.shown?.turtles ?? []).map(({ name }) => name).sort(ORDER.compare);
   }
 
   #chips(turtles) {
     setAttribute(this.list, "hidden", turtles.length < 2 ? "" : null);
-    const nodes = turtles.map(({ name, picture }) => {
+    const pictures = new Map(turtles.map(({ name, picture }) => [name, picture]));
+    const names = this.names;
+    const others = names.length !== this.chips.size;
+    const nodes = names.map((name) => {
       let chip = this.chips.get(name);
       if (!chip) {
         chip = el("button", { type: "button", role: "radio", class: "chip", on: { click: () => this.choose(name) } }, name);
         chip.dataset.name = name;
         this.chips.set(name, chip);
       }
-      chip.style.setProperty("--shell", this.pictures.shell(picture));
+      chip.style.setProperty("--shell", this.pictures.shell(pictures.get(name)));
       setAttribute(chip, "aria-checked", String(name === this.chosen));
       setAttribute(chip, "tabindex", name === this.chosen ? "0" : "-1");
       return chip;
     });
     arrange(this.list, nodes);
-    const names = new Set(turtles.map(({ name }) => name));
-    for (const name of this.chips.keys()) if (!names.has(name)) this.chips.delete(name);
+    for (const name of this.chips.keys()) if (!pictures.has(name)) this.chips.delete(name);
+    if (others) this.#scroll();
   }
 
   #step(event) {
     const step = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 }[event.key];
-    const names = (this.shown?.turtles ?? []).map(({ name }) => name);
+    const names = this.names;
     if (!step || !names.length) return;
     event.preventDefault();
     this.choose(names[(names.indexOf(this.chosen) + step + names.length) % names.length]);
