@@ -41,6 +41,21 @@ def test_who_is_ended_while_it_waits_for_the_suspension_wakes_the_task():
     assert plan(body) == "done" and kernel.now() == 2
 
 
+def test_who_wakes_a_task_does_not_wait_for_ever_when_another_suspends_it_again_at_once():
+    """Between its wake-up and its next step the task is still suspended, and a new request keeps it there."""
+    def body():
+        child = started(lambda: cpl.sleep(1))
+        cpl.sleep(0.5)
+        cpl.suspend(child)
+        started(lambda: cpl.suspend(child, sync=False))  # it runs before the child does
+        cpl.wake_up(child)
+        before = child.status
+        cpl.wake_up(child)
+        return before, child.status
+
+    assert plan(body) == (SUSPENDED, RUNNING)
+
+
 @pytest.mark.parametrize("recovers", [True, False])
 def test_a_task_that_fails_while_it_is_suspended_may_wait_and_end_in_any_way(recovers):
     def work():

@@ -32,6 +32,8 @@ def request(task):
     task.held = True
     if task.kernel_task is not None:
         task.kernel_task.interject(lambda: obey(task))
+    if task.status is SUSPENDED:
+        task.tell_observers()  # it was woken and has not begun to run: who waits for that would wait for ever
 
 
 def release(task):
