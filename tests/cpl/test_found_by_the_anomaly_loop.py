@@ -56,6 +56,22 @@ def test_who_wakes_a_task_does_not_wait_for_ever_when_another_suspends_it_again_
     assert plan(body) == (SUSPENDED, RUNNING)
 
 
+def test_a_second_interrupt_leaves_nobody_in_a_protected_region():
+    """The root was in one when the first came, so it had not asked its child to end, and the child is in one, too."""
+    made = kernel.active()
+    for moment in (0.25, 0.5):
+        kernel.call_at(moment, kernel.interrupt)
+
+    def body():
+        started(lambda: cpl.without_scheduling(lambda: cpl.sleep(1)))
+        cpl.without_scheduling(lambda: cpl.sleep(1))
+
+    with pytest.raises(kernel.Abandoned):
+        plan(body)
+    kernel.settle()
+    assert made.tasks == [made.main]
+
+
 @pytest.mark.parametrize("recovers", [True, False])
 def test_a_task_that_fails_while_it_is_suspended_may_wait_and_end_in_any_way(recovers):
     def work():

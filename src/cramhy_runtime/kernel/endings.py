@@ -72,14 +72,17 @@ class Endings:
         self._interrupts -= 1  # last, so that `interrupt_waits` sees it either here or among the alarms
 
     def _abandon_tasks(self):
-        """Give up the cleanup of all tasks that were asked to end, and the tasks below them."""
+        """Give up the cleanup of all tasks that were asked to end, and the tasks below them: a request to end would not reach one
+        that is in a shield, and nobody waits for it any more."""
         main = self.main
         cleaning = {task for task in self.tasks if task is not main and task.cancel_request is not None}
         for task in self.tasks:  # oldest first, so a parent comes before its children
-            if task in cleaning:
+            below = task.parent in cleaning
+            if task in cleaning or below and task.shielded:
                 task.abandon()
-            elif task.parent in cleaning:
+            elif below:
                 task.cancel("the cleanup of its parent was abandoned")
+            if below:
                 cleaning.add(task)
 
     def _alarm(self, exception, pierces_shield):
