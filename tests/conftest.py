@@ -35,6 +35,14 @@ def image_for_the_next_file():
         yield
 
 
+@pytest.fixture(params=["threads", "greenlet"])
+def backend(request):
+    """The name of a back end: a test that takes it runs on both."""
+    if request.param == "greenlet":
+        pytest.importorskip("greenlet")
+    return request.param
+
+
 @pytest.fixture
 def session():
     """A session in virtual time, without the turtle."""

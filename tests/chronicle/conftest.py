@@ -13,13 +13,6 @@ from cramhy_runtime.ros import graph, services
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    if request.param == "greenlet":
-        pytest.importorskip("greenlet")
-    return request.param
-
-
 @pytest.fixture
 def session(backend):
     """A session in virtual time with the turtle, in the package CRAM-USER."""

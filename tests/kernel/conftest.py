@@ -12,13 +12,6 @@ def kernel_alone(monkeypatch):
     monkeypatch.setattr(kernel, "describe_frame", reports.describe_frame)
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    if request.param == "greenlet":
-        pytest.importorskip("greenlet")
-    return request.param
-
-
 @pytest.fixture
 def start(backend):
     """Starts a kernel on the back end of this run; it is stopped after the test."""

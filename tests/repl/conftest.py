@@ -70,13 +70,6 @@ def environment():
     return {**kept, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}"}
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    if request.param == "greenlet":
-        pytest.importorskip("greenlet")
-    return request.param
-
-
 @pytest.fixture
 def private(tmp_path, monkeypatch):
     """A runtime folder of this test's alone, for it and the programs that it starts."""

@@ -24,11 +24,6 @@ def no_session_of_the_user(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    return request.param
-
-
 @pytest.fixture
 def graph():
     """The graph of a fresh kernel in virtual time, with the simulator."""

@@ -79,13 +79,6 @@ def workspace(tmp_path, shared):
     return Workspace(tmp_path / "workspace" / "ros", shared / "slides")
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    if request.param == "greenlet":
-        pytest.importorskip("greenlet")
-    return request.param
-
-
 @pytest.fixture
 def between_lectures():
     """What the lectures between 34 and 38 add to the package: simple plans and the structures of the motions."""

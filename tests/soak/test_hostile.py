@@ -53,13 +53,6 @@ def evaluate(forms, *options):
     return answers
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    if request.param == "greenlet":
-        pytest.importorskip("greenlet")
-    return request.param
-
-
 def test_recursion_without_end_is_an_error_in_the_main_task_and_in_branches(backend):
     forms = []
     for definition in ENDLESS.values():

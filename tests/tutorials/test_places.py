@@ -21,11 +21,6 @@ def turtle(backend):
         yield made
 
 
-@pytest.fixture(params=["threads", "greenlet"])
-def backend(request):
-    return request.param
-
-
 def in_third(column, row, x, y, margin=0.0):
     """Whether (x, y) is in a third of the world, and no nearer to the walls than half a metre."""
     return all(max(0.5, index * THIRD) - margin <= value <= min(10.5, (index + 1) * THIRD) + margin

@@ -24,7 +24,6 @@ def session(options, default_time="wall", closings=None):
     backtrace.show(options.backtrace)
     made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
                    turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)))
-    gc.freeze()  # what the start has made stays to the end
     gc.enable()
     if closings is not None:
         from .openings import NotPossible, open_session
@@ -121,30 +120,41 @@ def _eval(options):
 
 
 def _run(options):
-    from cramhy_runtime.repl.console import report
-    from cramhy_runtime.repl.session import Interruption, condition_of, handle_interrupts
-    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.repl.session import handle_interrupts
 
     if not _checked(options):
         return 2
     handle_interrupts()
     with ExitStack() as closings:
         closings.callback(_end_line)
-        try:
-            made = session(options, closings=closings)
-            if options.picture:
-                from .openings import save_picture
+        return _status(lambda: _load(options, closings))
 
-                closings.callback(save_picture, options.picture)
-            made.load(options.file)
-            if options.package:
-                made.package = options.package.upper()
-            evaluate_forms(made, options.forms)
-        except Interruption:
-            return 130
-        except (Exception, Condition) as problem:
-            report(condition_of(problem))
-            return 1
+
+def _load(options, closings):
+    made = session(options, closings=closings)
+    if options.picture:
+        from .openings import save_picture
+
+        closings.callback(save_picture, options.picture)
+    made.load(options.file)
+    if options.package:
+        made.package = options.package.upper()
+    evaluate_forms(made, options.forms)
+
+
+def _status(work):
+    """The exit status that ``work()`` gives; 130 after Ctrl-C, 1 after an error, which is reported."""
+    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.repl.console import report
+    from cramhy_runtime.repl.session import Interruption, condition_of
+
+    try:
+        return work()
+    except Interruption:
+        return 130
+    except (Exception, Condition) as problem:
+        report(condition_of(problem))
+        return 1
 
 
 def _end_line():
@@ -159,20 +169,11 @@ def _end_line():
 def _test(options):
     """Run the tests of a system, an ``.asd``, ``.lisp`` or ``.hy`` file, or of all test files below a folder."""
     from cramhy_runtime.lisp.systems import unit_tests
-    from cramhy_runtime.lisp.conditions import Condition
-    from cramhy_runtime.repl.console import report
-    from cramhy_runtime.repl.session import Interruption, condition_of, handle_interrupts
+    from cramhy_runtime.repl.session import handle_interrupts
 
     handle_interrupts()
     unit_tests.limit = options.limit
-    try:
-        made = session(options, default_time="virtual")
-        return 0 if made.test(options.path) else 1
-    except Interruption:
-        return 130
-    except (Exception, Condition) as problem:
-        report(condition_of(problem))
-        return 1
+    return _status(lambda: 0 if session(options, default_time="virtual").test(options.path) else 1)
 
 
 def _turtlesim(options):

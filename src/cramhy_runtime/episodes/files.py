@@ -72,6 +72,8 @@ _save = lispify(lambda destination, episode, *, if_exists=UNSUPPLIED: save_to(de
 
 def episode_text(episode):
     """What a file of ``episode`` contains."""
+    import json  # here, since a session starts without it
+
     writer = Writer()
     lines = [{"cramhy": FORMAT, "version": VERSION, "plan": writer.write(episode.plan_name), "zero": episode.zero_time,
               "end": episode.end_time}]
@@ -84,8 +86,6 @@ def episode_text(episode):
         lines.append({"fluent": writer.write(name), "records": [[writer.write(record.traced_value), float(record.timestamp)]
                                                                 for record in records]})
     lines.append({"lines": len(lines)})
-    import json  # only for who writes or reads such a file
-
     return "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in lines)
 
 
@@ -169,6 +169,8 @@ _DEEPEST_LINE = 2000
 
 
 def _parsed(line, number):
+    import json  # here, since a session starts without it
+
     depth = 0
     for piece in _PIECES.finditer(line):  # the parser of JSON would go as deep as the stack of the machine
         if piece[0] in "[{":
@@ -177,8 +179,6 @@ def _parsed(line, number):
                 raise BadFile("it is nested too deep")
         elif piece[0] in "]}":
             depth -= 1
-    import json  # only for who writes or reads such a file
-
     try:
         form = json.loads(line)
     except ValueError:

@@ -25,7 +25,6 @@ class Endings:
 
     __slots__ = ()
 
-
     # ------------------------------------------------------------------ interrupts
 
     def interrupt(self):

@@ -8,7 +8,6 @@ that is, and why the module ended if it did.
 
 from __future__ import annotations
 
-
 from cramhy_runtime import kernel
 
 from ..cpl.failure_types import opened

@@ -11,12 +11,11 @@ from __future__ import annotations
 import functools
 from inspect import Parameter, Signature
 
-from ..lisp import conditions
+from ..lisp import conditions, packages
 from ..lisp.condition_types import CaseFailure, SimpleError
 from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
 from ..lisp.objects.classes import find_class_or_error
 from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp import packages
 from ..lisp.packages import Package, delete_package, intern, near_names, register, registered, string_designator, sym
 from ..lisp.systems import systems
 from . import definition_files

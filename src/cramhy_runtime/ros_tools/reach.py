@@ -43,6 +43,7 @@ class Graph(ABC):
     """A graph of ROS. Names are global."""
 
     pid = 0
+
     @abstractmethod
     def nodes(self):
         """The names of all nodes, sorted."""

@@ -19,17 +19,20 @@ def _register(tool, kind, what, find, text):
             reason = f"Cannot locate {what} [{short}] in package [{package}]; it has {_joined(definitions.types(package, kind))}"
         return CommandError(f"Unable to load {kind} [{name}]: {reason}")
 
-    def named(name):
-        """The full names that a name means: one without a package means those of all packages."""
+    def meant(command_name, given):
+        """The name that was given, and the full names that it means: one without a package means those of all packages."""
+        name = one(words.TOOLS[tool][command_name], given, f"{what} type")
         if "/" in name:
-            return [name] if find(name) is not None else []
-        return [full for package in definitions.packages(kind) for full in definitions.types(package, kind) if full.endswith("/" + name)]
-
-    def show(terminal, options, given):
-        name = one(words.TOOLS[tool]["show"], given, f"{what} type")
-        names = named(name)
+            names = [name] if find(name) is not None else []
+        else:
+            names = [full for package in definitions.packages(kind) for full in definitions.types(package, kind)
+                     if full.endswith("/" + name)]
         if not names:
             raise unknown(name)
+        return name, names
+
+    def show(terminal, options, given):
+        name, names = meant("show", given)
         for full in names:
             if "/" not in name:
                 terminal.line(f"[{full}]:")
@@ -46,10 +49,7 @@ def _register(tool, kind, what, find, text):
 
     @command(tool, "md5", f"<{what} type>", f"prints the MD5 sum of a {what}")
     def print_md5(terminal, options, given):
-        name = one(words.TOOLS[tool]["md5"], given, f"{what} type")
-        names = named(name)
-        if not names:
-            raise unknown(name)
+        name, names = meant("md5", given)
         for full in names:
             found = definitions.md5(full, kind)
             terminal.line(found if "/" in name else f"[{full}]: {found}")

@@ -7,7 +7,6 @@ they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the 
 
 from __future__ import annotations
 
-
 from ...lisp import conditions
 from ...lisp.condition_types import Condition, Error, SimpleError
 from ...lisp.format.format import format_to_string
