@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import socket
+from dataclasses import replace
 
 import pytest
 
@@ -282,24 +283,30 @@ def test_without_the_extra(far_shell, monkeypatch):
                               "package websockets. Type: pip install 'cramhy[web]'\n", 1)
 
 
-def test_a_session_that_does_not_let_us_in(far_shell):
-    def connect():
-        graph = there.ThereGraph("127.0.0.1", far_shell.server.port, "a wrong token")
-        try:
-            return graph.nodes()
-        finally:
-            graph.close()
+@pytest.mark.parametrize("token", ["a wrong token", "wrong", "", "a/b?c&d#e"])
+def test_a_session_that_does_not_let_us_in(far_shell, token):
+    port = far_shell.server.port
+    with pytest.raises(NoSession) as caught:
+        far_shell.carry_out(lambda: there.ThereGraph("127.0.0.1", port, token))
+    assert str(caught.value) == (
+        f"The session at 127.0.0.1:{port} does not let us in: This is not the token of this session, or no address of it.")
 
-    with pytest.raises(SessionEnded):
-        far_shell.carry_out(connect)
+
+def test_a_session_that_is_full_says_so(far_shell, monkeypatch):
+    server = far_shell.server
+    monkeypatch.setattr(server, "limits", replace(server.limits, connections=0))
+    far_shell("rosnode list")
+    assert far_shell.errors.endswith(f"The session at 127.0.0.1:{server.port} does not let us in: "
+                                     "0 clients are connected; more are not allowed.\n")
+
+
+def test_nobody_listens_where_the_session_was(far_shell):
     with pytest.raises(NoSession) as caught:
         far_shell.carry_out(lambda: there.ThereGraph("127.0.0.1", 1, ""))
-    assert str(caught.value).startswith("The session at 127.0.0.1:1 does not let anybody in:")
+    assert str(caught.value).startswith("The session at 127.0.0.1:1 does not let us in:")
 
 
 def test_of_two_sessions_the_newest_is_taken_and_named(far_shell, monkeypatch, capsys):
-    from dataclasses import replace
-
     from cramhy_runtime.rosbridge import sessions
 
     newest, = sessions.living()

@@ -156,7 +156,7 @@ def test_a_session_that_ends_while_it_lets_the_tool_in_is_no_session(far_shell, 
 
     monkeypatch.setattr(there.ThereGraph, "_send", gone)
     assert far_shell("rostopic list") == "" and far_shell.status == 1
-    assert "does not let anybody in: The session has ended.\n" in far_shell.errors
+    assert "does not let us in: The session has ended.\n" in far_shell.errors
 
 
 def test_nothing_is_promised_before_a_topic_is_refused(far_shell):

@@ -115,12 +115,9 @@ def serve(closings, port=None, with_page=False, origins=()):
     origins: pages of other servers that may connect. Returns the server, or the page, and the `Host`; raises `NotPossible`.
     """
     with server_errors_told():
-        if with_page and not origins:
-            server = view.start(port=port)
-        else:
-            server = rosbridge.start(port=port, origins=tuple(origins))
+        server = rosbridge.start(port=port, origins=tuple(origins))
         closings.callback(server.close)
-        if with_page and origins:  # the page takes the server that there is
+        if with_page:  # it takes the server that there is
             server = view.start()
             closings.callback(server.close)
     from cramhy_runtime import kernel

@@ -12,6 +12,7 @@ import sys
 import time
 from collections import deque
 from contextlib import contextmanager
+from urllib.parse import urlencode
 
 from ..rosbridge.no_answers import taken_apart
 from .reach import Graph, Listener, NodeFacts, NoSession, Refused, SessionEnded, reached
@@ -43,7 +44,7 @@ class ThereGraph(Graph):
 
     def __init__(self, host, port, token, pid=0):
         try:
-            from websockets.exceptions import ConnectionClosed, InvalidHandshake
+            from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
             from websockets.sync.client import connect
         except ImportError:
             raise NoSession("A session serves here, but reaching it takes the Python package websockets. Type: "
@@ -51,16 +52,22 @@ class ThereGraph(Graph):
         self.closed_by_other = ConnectionClosed
         self.address, self.pid = f"{host}:{port}", pid
         try:
-            self.socket = connect(f"ws://{self.address}/", compression=None, max_size=None, open_timeout=PATIENCE, close_timeout=FAREWELL,
-                                  proxy=None).__enter__()  # left in `close`
-            self._send(op="auth", token=token, hidden=True)
+            # the token is in the address, so that the handshake ends with a yes or a no: after a first message one only finds out later
+            shown = urlencode({"token": token, "hidden": 1})
+            self.socket = connect(f"ws://{self.address}/?{shown}", compression=None, max_size=None, open_timeout=PATIENCE,
+                                  close_timeout=FAREWELL, proxy=None).__enter__()  # left in `close`
             self._send(op="set_level", level="error")
+        except InvalidStatus as problem:
+            raise self._not_let_in(problem.response.body.decode("utf-8", "replace").strip() or problem) from None
         except (OSError, TimeoutError, InvalidHandshake, SessionEnded) as problem:
-            raise NoSession(f"The session at {self.address} does not let anybody in: {problem}") from None
+            raise self._not_let_in(problem) from None
         self.listeners = {}
         self.answers = {}
         self.asked = 0
         reached.append(self)
+
+    def _not_let_in(self, reason):
+        return NoSession(f"The session at {self.address} does not let us in: {reason}")
 
     # ------------------------------------------------------------------------------------------------------ to and fro
 

@@ -134,7 +134,7 @@ class Guard:
 def query_of(scope):
     """What stands after the question mark in the address of a request: lists of values by name."""
     try:
-        return parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=10)
+        return parse_qs(scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True, max_num_fields=10)
     except ValueError:
         return {"token": [""]}
 
