@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
+import late_threads
 import pytest
 from image_as_it_was import image_as_it_was
 
@@ -14,6 +16,9 @@ SHARED = REPOSITORY.parent / "shared"
 LONG = ("soak", "view", "rosbridge", "repl", "tutorials", "slides", "test_house.py", "test_invariants.py", "test_clause_index.py",
         "test_against_reference.py", "test_anomalies.py", "test_collecting.py")
 """Folders and files whose tests take seconds: they come first, so that on two processors neither waits for the other at the end."""
+
+if "CRAMHY_LATE" in os.environ:
+    late_threads.install(os.environ["CRAMHY_LATE"])
 
 
 def pytest_collection_modifyitems(items):
