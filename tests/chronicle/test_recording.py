@@ -120,6 +120,15 @@ def test_in_wall_time_what_happened_is_in_the_file_while_nothing_happens(tmp_pat
         kernel.stop()
 
 
+def test_a_recording_ends_with_its_session_and_after_the_cleanup_of_its_plans(session, tmp_path):
+    recording = chronicle.record(tmp_path / "a.mcap")
+    kernel.spawn(session.evaluate_text, "(top-level (unwind-protect (sleep 1000) (sleep 0.5)))")
+    kernel.sleep(1)
+    kernel.stop()
+    assert recording.closed and not chronicle.read(tmp_path / "a.mcap").cut
+    assert {task["state"] for task in messages_of(tmp_path / "a.mcap", "/cramhy/tasks")[-1][1]["tasks"]} == {"EVAPORATED"}
+
+
 def test_a_recording_of_a_session_that_is_over_can_be_closed_when_another_one_is_recorded(session, tmp_path):
     from cramhy_runtime.repl.session import Session
 

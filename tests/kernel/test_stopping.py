@@ -28,6 +28,35 @@ def test_stop_cancels_the_tasks_and_lets_them_clean_up(k):
     assert kernel.active() is None
 
 
+def test_what_serves_the_tasks_is_closed_when_they_have_cleaned_up_and_the_last_first(k):
+    log = []
+
+    def body():
+        try:
+            kernel.park("for ever")
+        finally:
+            log.append("cleaned up")
+
+    def begin_something():
+        kernel.spawn(lambda: kernel.park("until it is abandoned"))
+        log.append("second")
+
+    kernel.spawn(body)
+    kernel.yield_()
+    k.on_stop += [lambda: log.append("first"), begin_something]
+    kernel.stop()
+    assert log == ["cleaned up", "second", "first"]
+    assert k.tasks == [k.main]
+
+
+def test_one_that_cannot_be_closed_is_told_and_the_others_are(k, capsys):
+    log = []
+    k.on_stop += [lambda: log.append("closed"), lambda: 1 / 0]
+    kernel.stop()
+    assert log == ["closed"] and kernel.active() is None
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
 def test_start_stops_the_kernel_before(start):
     start()
     task = kernel.spawn(kernel.park, "for ever")

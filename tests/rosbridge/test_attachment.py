@@ -112,6 +112,18 @@ def arrive(robot, drive, x, y):
     pytest.fail(f"It drove to {pose}, not to {x}, {y}.")
 
 
+def test_the_connection_ends_with_the_session_and_after_the_cleanup_of_its_plans(robot, joined):
+    evaluate, link = joined
+    evaluate('(roslisp:start-ros-node "lisp")')
+    kernel.spawn(evaluate, """(top-level (unwind-protect (sleep 1000)
+        (roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 3 :y 4 :theta 0)))""")
+    kernel.sleep(0.1)
+    kernel.stop()
+    assert link.closed and not link.ros.is_connected
+    kernel.start(clock="wall")
+    assert json.loads(robot.ask("pose"))[:2] == [3.0, 4.0]
+
+
 def test_services_and_parameters_are_the_robots(robot, joined):
     evaluate, _ = joined
     evaluate('(roslisp:start-ros-node "lisp")')
@@ -196,6 +208,9 @@ def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
     shown = []
     run_line("rosparam list", shown.append)
     assert shown == [f"ERROR: /rosapi/get_param_names cannot be asked at {robot.address}: there is no connection to {robot.address}\n"]
+    link.close()
+    while link.ros.factory.continueTrying:  # so that it ends also where nobody is at the other end any more
+        kernel.sleep(0.02)
 
 
 def test_virtual_time_cannot_join(serve):

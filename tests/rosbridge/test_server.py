@@ -139,6 +139,37 @@ def test_closing_twice_does_nothing(serve):
     assert rosbridge.start().port != 0
 
 
+def test_a_session_that_ends_at_once_takes_its_server_along(serve):
+    server = serve()
+    kernel.stop()
+    assert server.closed and not server.company.alive and not server.file.exists()
+
+
+def test_cleanup_is_still_heard_by_clients(serve, outside):
+    server = serve()
+    wire = outside(lambda: Wire(server.address))
+    outside(lambda: wire.send(op="subscribe", topic="/farewell", type="std_msgs/String"))
+    outside(lambda: wire.call("/rosapi/topics"))
+
+    def plan():
+        from cramhy_runtime.ros import graph
+        from cramhy_runtime.ros.messages import message_class_exact
+
+        string = message_class_exact("std_msgs/String")
+        talk = graph.active().node("plan").advertise("/farewell", string)
+        try:
+            kernel.park("the end")
+        finally:
+            kernel.sleep(0.01)
+            talk.send(string("stop"))
+
+    kernel.spawn(plan)
+    kernel.yield_()
+    kernel.stop()
+    assert wire.until(op="publish")["msg"] == {"data": "stop"}
+    assert wire.closed() == (1001, "The session has ended.")
+
+
 def test_one_server_per_session(serve):
     from cramhy_runtime.rosbridge.server import ServerError
 

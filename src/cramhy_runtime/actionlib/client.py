@@ -87,9 +87,8 @@ class ActionClient:
         """Send a goal and track it from now on; the one before is forgotten. Returns the `Goal`."""
         goals.check_message(message, self.action.goal)
         if not self.node.alive:
-            problem = SimpleError("The node of the client of action ~a has ended.", self.name)
-            problem.hint = "A client lives as long as the node that made it: make a new one."
-            conditions.error(problem)
+            conditions.error(SimpleError("The node of the client of action ~a has ended.", self.name),
+                             hint="A client lives as long as the node that made it: make a new one.")
         self.forget()
         now = ros_time()
         goal_id = goals.new_goal_id(self.node.name, now)

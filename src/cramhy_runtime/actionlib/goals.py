@@ -29,9 +29,8 @@ class Action:
     def __init__(self, action_type):
         name = check_name(action_type)
         if not name.endswith("Action"):
-            problem = SimpleError("The action type is invalid. Actions always have the suffix 'Action'")
-            problem.hint = f'It was "{name}"; write for instance "turtle_actionlib/ShapeAction".'
-            conditions.error(problem)
+            conditions.error(SimpleError("The action type is invalid. Actions always have the suffix 'Action'"),
+                             hint=f'It was "{name}"; write for instance "turtle_actionlib/ShapeAction".')
         topic_class(name)  # its errors tell whether the package or the type is missing
         base = name.removesuffix("Action")
         self.name = name

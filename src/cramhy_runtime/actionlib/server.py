@@ -51,9 +51,8 @@ class ActionServer:
         self.waiting = kernel.Waiting()
         here = self.node = node.require_node()
         if here.resolve(f"{name}/status") in here.publications:
-            problem = SimpleError("The action ~a has a server already, on this node.", self.name)
-            problem.hint = "Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node)."
-            conditions.error(problem)
+            conditions.error(SimpleError("The action ~a has a server already, on this node.", self.name),
+                             hint="Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node).")
         self.statuses = topics.advertise(f"{name}/status", goals.STATUS_ARRAY)
         self.feedbacks = topics.advertise(f"{name}/feedback", self.action.action_feedback)
         self.results = topics.advertise(f"{name}/result", self.action.action_result)
@@ -145,9 +144,8 @@ class ActionServer:
         finally:
             del _at_work[task]
         if goal.state not in TERMINAL:
-            problem = SimpleError("Reached the end of exec callback ~a without succeeding, aborting, or preempting", self._callback_name())
-            problem.hint = "Its last form must be (succeed-current ...), (abort-current ...) or (preempt-current ...)."
-            conditions.error(problem)
+            conditions.error("Reached the end of exec callback ~a without succeeding, aborting, or preempting", self._callback_name(),
+                             hint="Its last form must be (succeed-current ...), (abort-current ...) or (preempt-current ...).")
 
     def _callback_name(self):
         return getattr(self.callback, "__lisp_name__", None) or princ_to_string(self.callback)
@@ -226,18 +224,16 @@ def _current(what):
         if task in _at_work:
             return _at_work[task]
         task = task.parent
-    problem = SimpleError("There is no current goal to ~a.", what)
-    problem.hint = "This belongs into the exec callback of an action server (def-exec-callback)."
-    return conditions.error(problem)
+    return conditions.error(SimpleError("There is no current goal to ~a.", what),
+                            hint="This belongs into the exec callback of an action server (def-exec-callback).")
 
 
 def end_current(state, result=None):
     """End the goal that the exec callback works on, and leave the callback. What `succeed-current` and its kin expand into."""
     server, goal = _current("end")
     if kernel.current() not in _at_work:
-        problem = SimpleError("A branch of a plan cannot end the goal that the exec callback around it works on.")
-        problem.hint = "End it after the par, pursue or top-level: (succeed-current ...) leaves the callback."
-        return conditions.error(problem)
+        return conditions.error(SimpleError("A branch of a plan cannot end the goal that the exec callback around it works on."),
+                                hint="End it after the par, pursue or top-level: (succeed-current ...) leaves the callback.")
     server.finish(goal, state, result)
     return throw(goal, None)
 

@@ -70,7 +70,8 @@ class Recorder:
         self.graph.on_change.append(self._changed)
         if not self.kernel.clock.virtual:
             self.kernel.watch_instants(self._idle)
-        atexit.register(self.close)
+        self.kernel.on_stop.append(self.close)
+        atexit.register(self.close)  # a process that ends by an error stops no kernel
 
     def __enter__(self):
         return self
@@ -183,6 +184,8 @@ class Recorder:
     def _let_go(self):
         self.closed = True
         atexit.unregister(self.close)
+        if self.close in self.kernel.on_stop:
+            self.kernel.on_stop.remove(self.close)
         self.kernel.unwatch_instants(self._idle)
         if self._event in self._chronicler.listeners:
             self._chronicler.listeners.remove(self._event)

@@ -163,9 +163,8 @@ def run_forms(form, thunks, ready, choose, late_failures_count=True):
     """`run` for a plan form with one branch per thunk; the errors of cpl.md 5.3 and of a form without branches."""
     inside_plan(form)
     if not thunks:
-        empty = types.SimpleError("wait-for called with nil argument.")
-        empty.hint = f"There is no branch to wait for: {form} needs one form at least."
-        error(empty)
+        error(types.SimpleError("wait-for called with nil argument."),
+              hint=f"There is no branch to wait for: {form} needs one form at least.")
     tasks = branch_tasks(form, thunks)
     return run(form, tasks, ready, choose, late_failures_count)
 

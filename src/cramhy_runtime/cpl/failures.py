@@ -59,10 +59,10 @@ def _designated(datum, *arguments):
     """The condition that the arguments of ``fail`` stand for (cpl.md 4.2); Python code may give a class instead of its name."""
     if isinstance(datum, types.Condition):
         if arguments:
-            unused = types.SimpleError("The assertion ~S failed with ~S = ~S.", lisp_list(sym("NULL"), sym("REST")), sym("REST"),
-                                       list_from(arguments))
-            unused.hint = "FAIL signals a condition object as it is. What it holds is given to MAKE-CONDITION, or to FAIL with a class."
-            return error(unused)
+            rest = sym("REST")
+            return error(
+                types.SimpleError("The assertion ~S failed with ~S = ~S.", lisp_list(sym("NULL"), rest), rest, list_from(arguments)),
+                hint="FAIL signals a condition object as it is. What it holds is given to MAKE-CONDITION, or to FAIL with a class.")
         return datum
     if isinstance(datum, (str, type)) or is_symbol(datum) or datum.__class__.__name__ == "LispString":
         return make_condition(datum, arguments, SimplePlanFailure)

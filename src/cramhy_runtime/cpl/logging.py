@@ -130,9 +130,8 @@ def check_constant_tags(tags):
     """At expansion time: ``tags`` (a Python list) must be known."""
     for tag in tags:
         if not _is_known(tag):
-            unknown = CompileError("~S not a known log tag. See DEFINE-LOG-TAGS.", tag)
-            unknown.hint = f"The log tags are {' '.join(f':{name}' for name in known_tags).lower()}."
-            error(unknown)
+            error(CompileError("~S not a known log tag. See DEFINE-LOG-TAGS.", tag),
+                  hint=f"The log tags are {' '.join(f':{name}' for name in known_tags).lower()}.")
 
 
 def define_log_tags(tags):

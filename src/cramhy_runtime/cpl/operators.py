@@ -58,10 +58,9 @@ def named_top_level(body, name=None):
     """``(named-top-level (:name name) body...)``: as `top_level`, with a task tree that is kept under ``name``."""
     me = kernel.current()
     if me.owner is not None:
-        nested = types.SimpleError("top-level calls cannot be nested.")
-        nested.hint = ("This form runs inside a plan already: leave TOP-LEVEL away here, or make what is called a plan function with "
-                       "DEF-CRAM-FUNCTION.")
-        error(nested)
+        error(types.SimpleError("top-level calls cannot be nested."),
+              hint="This form runs inside a plan already: leave TOP-LEVEL away here, or make what is called a plan function with "
+                   "DEF-CRAM-FUNCTION.")
     if name is None and not (on_preparing_named_top_level.methods or on_top_level_setup_hook.methods
                              or on_finishing_named_top_level.methods or on_top_level_cleanup_hook.methods
                              or on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
@@ -70,10 +69,9 @@ def named_top_level(body, name=None):
         return _observed_top_level(body, None, TaskTreeNode())
     other = _running.get(name)
     if other is not None and other.kernel is me.kernel:
-        twice = types.SimpleError("A top-level named ~S is running already.", name)
-        twice.hint = ("Two runs of one name would share, and disturb, one task tree: wait until the other has ended, or name this one "
-                      "differently.")
-        error(twice)
+        error(types.SimpleError("A top-level named ~S is running already.", name),
+              hint="Two runs of one name would share, and disturb, one task tree: wait until the other has ended, or name this one "
+                   "differently.")
     _running[name] = me
     try:
         return _observed_top_level(body, name, _cleared_tree(name))

@@ -65,10 +65,10 @@ def _refuse_rings(orderings):
         ring = _way_back(start, waits_for)
         if ring:
             names = [step_name(task) for task in ring]
-            refused = types.SimpleError("The orderings of PARTIAL-ORDER form a ring, so none of its steps could ever start: ~A.", ", ".join(
-                f"{name} waits for {other if other != name else 'itself'}" for name, other in zip(names, [*names[1:], names[0]])))
-            refused.hint = "Take one of these orderings away."
-            error(refused)
+            waits = ", ".join(f"{name} waits for {other if other != name else 'itself'}"
+                              for name, other in zip(names, [*names[1:], names[0]]))
+            error(types.SimpleError("The orderings of PARTIAL-ORDER form a ring, so none of its steps could ever start: ~A.", waits),
+                  hint="Take one of these orderings away.")
 
 
 def _way_back(start, waits_for):

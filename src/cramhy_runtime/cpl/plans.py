@@ -142,11 +142,10 @@ def call_goal(name, arguments):
                                        name=lambda: f"[GOAL-{name.name}]", sexp=body.sexp, lambda_list=body.variables,
                                        parameters=body.values(bindings), log_parameters=arguments, log_pattern=body.pattern,
                                        called_with=arguments)
-    missing = types.SimpleError("No goal found that matches arguments: ~a ~a", name, arguments)
     patterns = [late.prin1_to_string(Cons(name, body.pattern)) for body in bodies_of(name)]
-    missing.hint = (f"Bodies are defined for {', '.join(patterns)}." if patterns
-                    else f"No body is defined: write (def-goal ({name.name.lower()} ...) ...).")
-    return error(missing)
+    hint = (f"Bodies are defined for {', '.join(patterns)}." if patterns else
+            f"No body is defined: write (def-goal ({name.name.lower()} ...) ...).")
+    return error(types.SimpleError("No goal found that matches arguments: ~a ~a", name, arguments), hint=hint)
 
 
 def bodies_of(name):

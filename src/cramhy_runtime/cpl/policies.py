@@ -20,7 +20,7 @@ from ..lisp.conditions import error
 from ..lisp.data import UNSUPPLIED, list_from, one, python_list, truth
 from ..lisp.packages import is_symbol, symbol_name
 from .failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
-from .failures import fail
+from .failures import fail, fail_with_advice
 from .hooks import on_with_policy_begin, on_with_policy_end
 from .operators import pursue
 from .symbols import sym
@@ -74,22 +74,18 @@ def named_policy(name):
     policy = _named.get(name)
     if policy is not None:
         return policy
-    missing = PolicyNotFound(name=name)
-    missing.hint = f"DEFINE-POLICY makes a policy with a name. There are {', '.join(map(shown, _named))}."
-    return fail(missing)
+    return fail_with_advice(f"DEFINE-POLICY makes a policy with a name. There are {', '.join(map(shown, _named))}.",
+                            PolicyNotFound(name=name))
 
 
 def _check_use(policy, count):
     """What ``with-policy`` is given must be a policy, and as many parameters as it has."""
     if not isinstance(policy, Policy):
-        no_policy = types.TypeError_(policy, sym("CPL-IMPL::POLICY"))
-        no_policy.hint = "WITH-POLICY takes a policy, WITH-NAMED-POLICY the name of one."
-        error(no_policy)
+        error(types.TypeError_(policy, sym("CPL-IMPL::POLICY")), hint="WITH-POLICY takes a policy, WITH-NAMED-POLICY the name of one.")
     names = [symbol_name(name) for name in python_list(policy.parameters) if is_symbol(name)]
     if policy.counted and count != len(names) and not any(name.startswith("&") for name in names):
-        wrong = types.SimpleProgramError("invalid number of arguments: ~S", count)
-        wrong.hint = f"The parameters of the policy {shown(policy.name)} are {shown(policy.parameters)}."
-        error(wrong)
+        error(types.SimpleProgramError("invalid number of arguments: ~S", count),
+              hint=f"The parameters of the policy {shown(policy.name)} are {shown(policy.parameters)}.")
 
 
 def with_policy(policy, arguments, body, forms=None):

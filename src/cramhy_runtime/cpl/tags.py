@@ -71,10 +71,7 @@ def check_tag(form, within):
     """At expansion time: signal what is wrong with the tag ``form``; ``within``: whether a ``with-tags`` is around it."""
     name = form.cdr.car if isinstance(form.cdr, Cons) else None
     if not is_tag_name(name):
-        problem = CompileError("~S is no tag: it is written (:tag name form...), and the name is a symbol that can be a variable.", form)
-    elif not within:
-        problem = CompileError("(:TAG ~S ..) used outside of WITH-TAGS.", name)
-        problem.hint = "Put (with-tags ...) around the forms that use the tag; the body of a plan function or goal is in one already."
-    else:
-        return
-    error(problem)
+        error(CompileError("~S is no tag: it is written (:tag name form...), and the name is a symbol that can be a variable.", form))
+    if not within:
+        error(CompileError("(:TAG ~S ..) used outside of WITH-TAGS.", name),
+              hint="Put (with-tags ...) around the forms that use the tag; the body of a plan function or goal is in one already.")

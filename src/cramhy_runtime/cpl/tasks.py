@@ -446,9 +446,8 @@ def current_task_or_dummy():
 def execute(task):
     """``(execute task)``: start ``task`` as a child of the current task; a toplevel task, which has no parent, outside of plans."""
     if isinstance(task, ToplevelTask) and current_task() is not None:
-        nested = types.SimpleError("top-level calls cannot be nested.")
-        nested.hint = "A TOPLEVEL-TASK has no parent, so it cannot be started inside of a plan: make a TASK."
-        error(nested)
+        error(types.SimpleError("top-level calls cannot be nested."),
+              hint="A TOPLEVEL-TASK has no parent, so it cannot be started inside of a plan: make a TASK.")
     task.execute()
 
 

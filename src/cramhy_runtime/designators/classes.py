@@ -241,16 +241,15 @@ make_designator.take_shortcut(QuickMaking)
 
 
 def _undefined_type(type_):
-    problem = SimpleError("Designator type `~a' undefined", type_)
     known = sorted(key.name.lower() for key in _classes)
     name = symbol_name(type_).lower() if is_symbol(type_) else ""
     if name in known and not isinstance(type_, Keyword):
-        problem.hint = f"The type is a keyword: write :{name}."
+        hint = f"The type is a keyword: write :{name}."
+    elif near := near_names(name, known):
+        hint = f"Did you mean {' or '.join(near)}?"
     else:
-        near = near_names(name, known)
-        problem.hint = (f"Did you mean {' or '.join(near)}?" if near else
-                        f"The types of designators are {', '.join(known[:-1])} and {known[-1]}.")
-    return error(problem)
+        hint = f"The types of designators are {', '.join(known[:-1])} and {known[-1]}."
+    return error(SimpleError("Designator type `~a' undefined", type_), hint=hint)
 
 
 def make_all_designator(class_, description=None):

@@ -68,9 +68,7 @@ class Registry:
 
 
 def _refuse(control, arguments, datum, expected, hint):
-    problem = SimpleTypeError(control, *arguments, datum=datum, expected_type=expected)
-    problem.hint = hint
-    error(problem)
+    error(SimpleTypeError(control, *arguments, datum=datum, expected_type=expected), hint=hint)
 
 
 generators = Registry()

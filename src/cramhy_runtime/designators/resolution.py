@@ -139,14 +139,13 @@ def _wait_for_resolver(designator, me):
 
 def _endless(ring):
     """Signal that resolving the first of ``ring`` waits for the task that wants it."""
-    problem = SimpleError("Recursive lock attempt: designator ~a is needed to resolve itself.", ring[0])
     if len(ring) > 1:
         others = ", ".join(" ".join(princ_to_string(other).split()) for other in ring[1:])
-        problem.hint = f"The task that resolves it waits for {others}, which this task resolves: each waits for the other, for ever."
+        hint = f"The task that resolves it waits for {others}, which this task resolves: each waits for the other, for ever."
     else:
-        problem.hint = ("A clause, generator or validator asks for the designator that it is to resolve: look at its properties with "
-                        "desig-prop instead.")
-    return error(problem)
+        hint = ("A clause, generator or validator asks for the designator that it is to resolve: look at its properties with "
+                "desig-prop instead.")
+    return error(SimpleError("Recursive lock attempt: designator ~a is needed to resolve itself.", ring[0]), hint=hint)
 
 
 class Groundings(Machine):
@@ -239,10 +238,9 @@ def _next_location(designator):
 
 @next_solution.method(Designator)
 def _no_solutions(designator):
-    problem = NoApplicableMethodError(next_solution, lisp_list(designator))
-    problem.hint = ("Only actions, motions and locations have further solutions. An object or a human stands for what perception put "
-                    "into its data; perceive again for another one.")
-    return error(problem)
+    return error(NoApplicableMethodError(next_solution, lisp_list(designator)),
+                 hint="Only actions, motions and locations have further solutions. An object or a human stands for what perception put "
+                      "into its data; perceive again for another one.")
 
 
 @next_solution.method(ActionDesignator)

@@ -30,9 +30,8 @@ def set_auto_tracing_directory(path, *, ensure_directory=None):
     if truth(ensure_directory):
         ensure_directories_exist(folder)
     if not os.path.isdir(folder):
-        problem = SimpleError("Pathspec ~s does not designate a valid path for auto tracing.", pathname(path))
-        problem.hint = "There is no such directory. With :ensure-directory t it is made."
-        return error(problem)
+        return error(SimpleError("Pathspec ~s does not designate a valid path for auto tracing.", pathname(path)),
+                     hint="There is no such directory. With :ensure-directory t it is made.")
     _directory = folder
     return folder
 

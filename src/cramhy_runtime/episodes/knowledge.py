@@ -153,12 +153,11 @@ def get_top_level_episode_knowledge(name):
         return episode_of(past_plans.by_name[name])
     if plan_property(name, "PLAN-TYPE") is TOP_LEVEL_PLAN:
         return register_top_level_episode_knowledge(name)
-    problem = SimpleError("Accessing top-level episode-knowledge for unregisterd top-level plan ~a.", name)
     known = [prin1_to_string(key) for key in past_plans.by_name if key is not None]
     near = near_names(prin1_to_string(name), known, 1)
-    problem.hint = (f"Did you mean {near[0]}?" if near else f"There are episodes of {', '.join(known)}." if known else
-                    "No plan with a name has run yet; the last plan of all is in (with-last-episode-knowledge ...).")
-    return error(problem)
+    hint = (f"Did you mean {near[0]}?" if near else f"There are episodes of {', '.join(known)}." if known else
+            "No plan with a name has run yet; the last plan of all is in (with-last-episode-knowledge ...).")
+    return error(SimpleError("Accessing top-level episode-knowledge for unregisterd top-level plan ~a.", name), hint=hint)
 
 
 def register_top_level_episode_knowledge(name):

@@ -115,8 +115,8 @@ class Endings:
     def stop(self):
         """Cancel all tasks, let them unwind, and end the kernel. Called by the main task.
 
-        Tasks get `GRACE` seconds of the kernel's clock, then their cleanup is abandoned; for calls that
-        block it waits half a second. A task that is still there after that stays parked for ever.
+        Tasks get `GRACE` seconds of the kernel's clock; then what serves them is closed (``on_stop``), and their cleanup is
+        abandoned; for calls that block it waits half a second. A task that is still there after that stays parked for ever.
         """
         if self.stopped:
             return
@@ -129,6 +129,8 @@ class Endings:
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
         self._let_unwind()
+        while self.on_stop:
+            self._call(self.on_stop.pop())
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
             task.abandon()

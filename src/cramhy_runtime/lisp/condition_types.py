@@ -52,6 +52,7 @@ class Condition(BaseException):
     restarts = ()
     signalled = False  # whether handlers were asked; one that Python code just raised is offered to those that it passes
     context = ""
+    hint = None  # what to try: a text, or a function that finds it out when it is shown
 
     def __init__(self, *arguments: object, **slots: object) -> None:
         super().__init__(*arguments)

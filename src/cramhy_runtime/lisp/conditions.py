@@ -266,9 +266,14 @@ def signal(datum, *arguments):
     signal_condition(make_condition(_designated(datum), arguments, types.SimpleCondition))
 
 
-def error(datum, *arguments):
-    """``cl:error``: signal, then enter the debugger. Never returns normally."""
+def error(datum, *arguments, hint=None):
+    """``cl:error``: signal, then enter the debugger. Never returns normally.
+
+    hint: becomes the condition's; Python code only can give it.
+    """
     condition = make_condition(datum, arguments)
+    if hint is not None:
+        condition.hint = hint
     signal_condition(condition)
     if _root is not None:
         _root(condition)
@@ -413,16 +418,13 @@ def program_error(control, *arguments):
 def unknown_key(key, known):
     """Signal the program-error of a call with a keyword argument that the function does not take, SBCL's text; ``known``: those that it
     takes."""
-    condition = types.SimpleProgramError("unknown &KEY argument: ~S", key)
-    condition.hint = f"The function takes {', '.join(map(repr, known)) or 'no keywords'}."
-    return error(condition)
+    return error(types.SimpleProgramError("unknown &KEY argument: ~S", key),
+                 hint=f"The function takes {', '.join(map(repr, known)) or 'no keywords'}.")
 
 
 def wrong_argument_count(given, hint=None):
     """Signal the program-error of a call with ``given`` arguments, SBCL's text; ``hint`` may say how many there are to be."""
-    condition = types.SimpleProgramError("invalid number of arguments: ~S", given)
-    condition.hint = hint
-    return error(condition)
+    return error(types.SimpleProgramError("invalid number of arguments: ~S", given), hint=hint)
 
 
 def signal_exception(exception):

@@ -175,9 +175,8 @@ def process_module_alias(alias, name):
     if other is None:
         running().add(alias, module)
     elif other is not module:
-        taken = ProcessModuleRunning("Process module `~a' already running", alias)
-        taken.hint = f"{_typed(alias)} cannot be another name of {_typed(name)}: a module of that name runs. Take another alias."
-        return error(taken)
+        return error(ProcessModuleRunning("Process module `~a' already running", alias),
+                     hint=f"{_typed(alias)} cannot be another name of {_typed(name)}: a module of that name runs. Take another alias.")
     return alias
 
 

@@ -98,12 +98,11 @@ def find_environment(name):
     found = _environments.get(name)
     if found is not None:
         return found
-    problem = SimpleError("Cannot find projection environment `~a'.", name)
     known = [prin1_to_string(key) for key in _environments]
     near = near_names(prin1_to_string(name), known, 1)
-    problem.hint = (f"Did you mean {near[0]}?" if near else f"Defined are {', '.join(known)}." if known else
-                    "None is defined: write (define-projection-environment NAME ...).")
-    return error(problem)
+    hint = (f"Did you mean {near[0]}?" if near else f"Defined are {', '.join(known)}." if known else
+            "None is defined: write (define-projection-environment NAME ...).")
+    return error(SimpleError("Cannot find projection environment `~a'.", name), hint=hint)
 
 
 def with_projection_environment(name, body):

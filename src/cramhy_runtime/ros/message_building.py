@@ -63,9 +63,7 @@ def _bad_initargs(cls, initargs):
 def modify_message_copy(message, specs):
     """A new message that differs in ``specs``; parts that are not touched are the same objects."""
     if not isinstance(message, RosMessage):
-        problem = TypeError_(message, "ROSLISP:ROS-MESSAGE")
-        problem.hint = NO_MESSAGE_YET if message is None else None
-        return conditions.error(problem)
+        return conditions.error(TypeError_(message, "ROSLISP:ROS-MESSAGE"), hint=NO_MESSAGE_YET if message is None else None)
     return set_fields(message.copy(), specs)
 
 
@@ -105,10 +103,8 @@ def _attribute(target, name, whole):
 
 def _no_field(name, target):
     dump = princ_to_string(_as_deep_list(target))
-    problem = SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}")
-    if isinstance(target, RosMessage):
-        problem.hint = _fields_hint(type(target))
-    return conditions.error(problem)
+    hint = _fields_hint(type(target)) if isinstance(target, RosMessage) else None
+    return conditions.error(SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}"), hint=hint)
 
 
 def _fields_hint(cls):
@@ -149,10 +145,7 @@ def msg_slot_value(message, slot):
         return getattr(message, attribute)
     home = message.lisp_symbol.package if isinstance(message, RosMessage) else COMMON_LISP
     name = symbol_name(slot) if isinstance(slot, Symbol) or slot is None else str(slot)
-    problem = MissingSlot(home.intern(name.upper()), message)
-    if message is None:
-        problem.hint = NO_MESSAGE_YET
-    return conditions.error(problem)
+    return conditions.error(MissingSlot(home.intern(name.upper()), message), hint=NO_MESSAGE_YET if message is None else None)
 
 
 # ----------------------------------------------------------------------------------------------------- list form, constants
@@ -172,9 +165,8 @@ def list_to_ros_message(form):
 
 def _field_of(entry, form):
     if not isinstance(entry, Cons) or not is_symbol(entry.car):
-        problem = SimpleError("~s is no field of a message in list form, in ~s.", entry, form)
-        problem.hint = "The list form is (CLASS (FIELD . value) ...), as ros-message-to-list gives it."
-        return conditions.error(problem)
+        return conditions.error(SimpleError("~s is no field of a message in list form, in ~s.", entry, form),
+                                hint="The list form is (CLASS (FIELD . value) ...), as ros-message-to-list gives it.")
     value = entry.cdr
     return (symbol_name(entry.car),), list_to_ros_message(value) if isinstance(value, Cons) and messages.named(value.car) else value
 

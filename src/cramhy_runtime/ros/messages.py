@@ -110,10 +110,9 @@ class BrokenDefinition(SimpleError):
 
 
 def _signal_broken(problem, package, folder):
-    condition = BrokenDefinition("~a", problem.problem)
-    condition.hint = problem.hint
+    broken = BrokenDefinition("~a", problem.problem)
     retry = (sym("RETRY"), lambda: _read(package, folder), f"Read the definitions of {package} again.")
-    return conditions.restart_case([retry], lambda: conditions.error(condition))
+    return conditions.restart_case([retry], lambda: conditions.error(broken, hint=problem.hint))
 
 
 def _define_package(package, definitions, classes, services):
@@ -377,9 +376,7 @@ def _folded_or_error(text):
 
 
 def _unknown(text, hint):
-    problem = SimpleError("~a", text)
-    problem.hint = hint
-    return conditions.error(problem)
+    return conditions.error(SimpleError("~a", text), hint=hint)
 
 
 def _packages_hint(package):

@@ -39,16 +39,14 @@ class Misfit(Exception):
 def _misfit(value, expected, context=""):
     def signal(hint):
         condition = TypeError_(value, expected)
-        condition.context, condition.hint = context, hint
-        return conditions.error(condition)
+        condition.context = context
+        return conditions.error(condition, hint=hint)
 
     return Misfit(signal)
 
 
 def _overflow(hint):
-    condition = FloatingPointOverflow()
-    condition.hint = hint
-    return conditions.error(condition)
+    return conditions.error(FloatingPointOverflow(), hint=hint)
 
 
 def as_float(value):

@@ -29,7 +29,7 @@ from ..ros.parameter_tree import ParameterTree
 from ..ros.roslisp import logging
 from ..ros.roslisp.services import LispService
 from .no_answers import reason, taken_apart
-from .refusal import connect
+from .refusal import connect, leave
 from .server import ServerError
 
 NODE = "rosbridge_client"
@@ -129,6 +129,7 @@ class Link:
         self._parameters = here.parameters
         here.before_first_node.clear()  # our turtle is not started: the robot is there
         self.kernel.count_outside(1)
+        self.kernel.on_stop.append(self.close)
         ros.on("close", lambda *_: self.kernel.post(self._lost))
         refusal.complained = lambda text: self.kernel.post(lambda: self._hear(text))
 
@@ -155,9 +156,11 @@ class Link:
             self.graph.on_change.remove(self._changed)
         self.graph.parameters = self._parameters
         self.kernel.count_outside(-1)
+        if self.close in self.kernel.on_stop:
+            self.kernel.on_stop.remove(self.close)
         self._fail_all("the connection was closed")
         self.node.shutdown()
-        self.ros.close()
+        leave(self.ros)
 
     def _lost(self):
         if self.connected and not self.closed:
@@ -415,25 +418,20 @@ def join(url, patience=PATIENCE):
     ros, refusal = connect(url)
     ros.factory.set_max_delay(LONGEST_DELAY)
 
-    def give_up():
-        ros.factory.stopTrying() if hasattr(ros.factory, "stopTrying") else ros.close()
-
     try:
         kernel.run_blocking(ros.run, patience)
     except roslibpy.core.RosTimeoutError:
-        give_up()
+        leave(ros)
         raise ServerError(f"No rosbridge server answers at {url}. Does it run there (roslaunch rosbridge_server rosbridge_websocket.launch,"
                           " or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), and can this machine reach it?") from None
     refusal.waited_for = False
     if refusal.why:
-        give_up()
+        leave(ros)
         raise ServerError(refusal.why)
     link = Link(here, url, ros, refusal)
     try:
         link.begin()
     except BaseException:
         link.close()
-        if refusal.why:
-            give_up()
         raise
     return link

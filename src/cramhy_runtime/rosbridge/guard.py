@@ -8,7 +8,7 @@ WebSocket; and whoever wants to say anything needs the token. It can be brought 
 * as the first message, ``{"op": "auth", "token": "…"}``: our page does that, with the token from the fragment of its address,
   which browsers send to nobody;
 * in the path, ``ws://127.0.0.1:PORT/TOKEN``: for clients that know nothing but an address (roslibpy, roslib, Foxglove);
-* as a query, ``ws://127.0.0.1:PORT/?token=TOKEN``: likewise;
+* as a query, ``ws://127.0.0.1:PORT/?token=TOKEN``: likewise, and for our tools, which learn with the handshake whether they are let in;
 * as the ``mac`` of rosbridge's own first message ``auth``, made as the ROS package rosauth makes it, with the token for its secret.
 
 No path is ever logged. Tokens are compared in constant time.

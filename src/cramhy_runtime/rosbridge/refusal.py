@@ -1,4 +1,4 @@
-"""Why a rosbridge server does not let us in, and what it complains of later, as far as roslibpy's connection tells it.
+"""roslibpy's connection: how it begins and ends, why a server does not let us in, and what it complains of later.
 
 Autobahn only logs such a reason, and roslibpy tries for ever; it has no ear for the operation ``status`` either. Here the protocol of a
 `roslibpy.Ros` is replaced by one that keeps the reason, ends the wait for the connection, and hands complaints on. The logs of both
@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import logging
 import re
+
+FAREWELL = 1.0  # s that the other side gets to say that it has heard everything
 
 ADDRESS = "The session prints its address with the right one when it starts with --serve (docs/ros-bridge.md)."
 REFUSED = "{url} is refused: the server answered {answer}. If it is a session of cramhy, the token in this address is wrong. " + ADDRESS
@@ -29,6 +31,27 @@ def connect(url):
             super().connect()
 
     return Watched(url), refusal
+
+
+def leave(ros):
+    """End the connection of a `roslibpy.Ros`, or its attempts at one. What was sent before has arrived then, if the other side still
+    answers: the last message of a plan may be the command to stop."""
+    from twisted.internet import reactor, threads
+    from twisted.internet.defer import Deferred
+
+    def close():  # in roslibpy's thread
+        if not ros.is_connected:
+            ros.factory.stopTrying()
+            return None
+        gone = Deferred()
+        gone.addTimeout(FAREWELL, reactor, lambda *_: None)
+        ros.on("close", lambda *_: gone.called or gone.callback(None))
+        ros.emit("closing")
+        ros.factory.on_ready(lambda protocol: protocol.send_close())
+        return gone
+
+    if reactor.running:
+        threads.blockingCallFromThread(reactor, close)
 
 
 class Refusal:

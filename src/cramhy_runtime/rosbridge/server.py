@@ -65,7 +65,7 @@ class Server:
         self._uvicorn = self._stopping = None
         self.kernel.count_outside(1)  # with the baton, so that the next prompt knows; `outside_source` is for other threads
         self.company = Company(self._main, "cramhy rosbridge", self.kernel)
-        self.task = self.kernel.spawn(self._stay, name=f"rosbridge server on port {self.port}", parent=self.kernel.main)
+        self.kernel.on_stop.append(self.close)
 
     def _announce(self):
         try:
@@ -73,13 +73,6 @@ class Server:
         except (sessions.Unsafe, OSError) as problem:
             self.socket.close()
             raise ServerError(f"The server cannot be announced to the other programs of this user. {problem}") from None
-
-    def _stay(self):
-        try:
-            while True:
-                kernel.park("clients of rosbridge")
-        finally:
-            self.close()
 
     def close(self):
         """End the server and its clients; what they had on the graph goes. To be called with the baton. Does nothing a second time."""
@@ -94,8 +87,8 @@ class Server:
         self.company.join(LONGEST_STOP)
         self.socket.close()
         self.kernel.count_outside(-1)
-        if self.task is not kernel.current():
-            self.task.cancel("the server was closed")
+        if self.close in self.kernel.on_stop:
+            self.kernel.on_stop.remove(self.close)
 
     stop = close
 

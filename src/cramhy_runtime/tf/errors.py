@@ -62,6 +62,4 @@ class TimeoutError_(TransformStampedError):
 
 def transform_error(kind, text, hint=None):
     """Signal a condition of the class ``kind``."""
-    condition = kind(text)
-    condition.hint = hint
-    return error(condition)
+    return error(kind(text), hint=hint)

@@ -185,9 +185,8 @@ def ensure_pose_stamped(obj, frame_id=None, stamp=None):
     if not isinstance(obj, Pose):
         return no_applicable_method("CL-TRANSFORMS-STAMPED:ENSURE-POSE-STAMPED", None, obj, frame_id, stamp)
     if frame_id is None or stamp is None:
-        problem = SimpleError("Cannot convert POSE into POSE-STAMPED without `frame-id' and `stamp'.")
-        problem.hint = 'A pose does not know its frame: (ensure-pose-stamped pose "map" 0.0).'
-        return error(problem)
+        return error(SimpleError("Cannot convert POSE into POSE-STAMPED without `frame-id' and `stamp'."),
+                     hint='A pose does not know its frame: (ensure-pose-stamped pose "map" 0.0).')
     return PoseStamped(frame_id, stamp, obj.origin, obj.orientation)
 
 

@@ -173,9 +173,7 @@ def lookup_cached_transform(tf, *, target_frame=None, source_frame=None, time=No
         return found
     if found.kind in _KINDS:
         return errors.transform_error(_KINDS[found.kind], found.text, found.hint)
-    problem = SimpleError("~a", found.text)
-    problem.hint = found.hint
-    return error(problem)
+    return error(SimpleError("~a", found.text), hint=found.hint)
 
 
 def execute_changed_callbacks(tf):

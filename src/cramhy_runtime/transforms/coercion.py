@@ -44,8 +44,8 @@ def _binding(parameter, package="CL-TRANSFORMS"):
 def wrong_type(value, expected, parameter, hint=None, package="CL-TRANSFORMS"):
     """Signal a type-error: ``value`` was given for ``parameter``, which must be of the type ``expected``."""
     condition = TypeError_(value, expected)
-    condition.context, condition.hint = _binding(parameter, package), hint
-    return error(condition)
+    condition.context = _binding(parameter, package)
+    return error(condition, hint=hint)
 
 
 def float_argument(value, parameter):

@@ -205,10 +205,9 @@ def normalize(q):
     components = general(q)
     norm = math.sqrt(sum(component * component for component in components))
     if norm < TOLERANCE:
-        problem = SimpleError("Attempted to normalize quaternion ~a with norm ~a", q, DoubleFloat(norm))
-        problem.hint = ("A message that nobody filled in has the orientation (0 0 0 0), which is no rotation; "
-                        "(make-identity-rotation) is the one that turns nothing.")
-        return error(problem)
+        return error(SimpleError("Attempted to normalize quaternion ~a with norm ~a", q, DoubleFloat(norm)),
+                     hint="A message that nobody filled in has the orientation (0 0 0 0), which is no rotation; "
+                          "(make-identity-rotation) is the one that turns nothing.")
     return _made(tuple([component / norm for component in components]), q)
 
 

@@ -34,9 +34,8 @@ class Lock:
         me = kernel.current()
         if self.holder is me:
             if not self.recursive:
-                again = SimpleError("Recursive lock attempt ~S.", self)
-                again.hint = "This task has the lock already. One that its holder may take again is made with MAKE-RECURSIVE-LOCK."
-                error(again)
+                error(SimpleError("Recursive lock attempt ~S.", self),
+                      hint="This task has the lock already. One that its holder may take again is made with MAKE-RECURSIVE-LOCK.")
             self.depth += 1
         elif self.holder is None:
             self.holder, self.depth = me, depth

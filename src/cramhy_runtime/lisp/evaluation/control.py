@@ -32,7 +32,11 @@ def fdefinition(name):
     return support.setf_function(name.cdr.car) if isinstance(name, Cons) else support.fdefinition(name)
 
 
-error, signal, warn, cerror, break_ = conditions.error, conditions.signal, conditions.warn, conditions.cerror, conditions.break_
+def error(datum, *arguments):
+    return conditions.error(datum, *arguments)  # the keyword ``hint`` is for Python
+
+
+signal, warn, cerror, break_ = conditions.signal, conditions.warn, conditions.cerror, conditions.break_
 invoke_debugger = conditions.invoke_debugger
 
 

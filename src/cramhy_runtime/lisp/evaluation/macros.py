@@ -80,11 +80,9 @@ def malformed(form, symbol, problem):
         if marker in why:
             why = "it has the wrong number of parts, or a part is not a list."
             break
-    condition = CompileError("The ~A form ~S is malformed: ~A", symbol, form, why)
     shape = SHAPES.get(symbol.name) if symbol.package is COMMON_LISP else (symbol.compiler_data or {}).get("shape")
-    if shape is not None:
-        condition.hint = f"It is written {shape}."
-    return error(condition)
+    hint = None if shape is None else f"It is written {shape}."
+    return error(CompileError("The ~A form ~S is malformed: ~A", symbol, form, why), hint=hint)
 
 
 def from_hy(model, package, form=None):

@@ -94,9 +94,7 @@ class Tokens:
     def fail(self, control, *arguments, hint=None):
         """Signal that the loop is malformed."""
         context = self.items[self.start:self.index]
-        condition = SimpleProgramError(control + "~%current LOOP context:~{ ~S~}.", *arguments, list_from(context))
-        condition.hint = hint
-        error(condition)
+        error(SimpleProgramError(control + "~%current LOOP context:~{ ~S~}.", *arguments, list_from(context)), hint=hint)
 
     def unknown(self, keyword, known):
         """Signal that ``keyword`` begins no clause."""

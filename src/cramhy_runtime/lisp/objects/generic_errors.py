@@ -52,9 +52,7 @@ def no_primary_method_error(generic_function, arguments):
 
 
 def _no_method(kind, generic_function, arguments):
-    problem = kind(generic_function, list_from(arguments))
-    problem.hint = getattr(generic_function, "advice", None)
-    return error(problem)
+    return error(kind(generic_function, list_from(arguments)), hint=getattr(generic_function, "advice", None))
 
 
 def no_next_method_error(generic_function, method, arguments):

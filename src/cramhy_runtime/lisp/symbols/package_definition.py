@@ -40,9 +40,8 @@ class Definition:
         self.clauses = {}
         for option in options or ():
             if not isinstance(option, Cons) or not is_symbol(option.car) or symbol_name(option.car) not in OPTIONS:
-                condition = CompileError("bogus DEFPACKAGE option: ~S", option)
-                condition.hint = f"There are {', '.join(':' + known.lower() for known in OPTIONS)}. Is a parenthesis missing?"
-                error(condition)
+                error(CompileError("bogus DEFPACKAGE option: ~S", option),
+                      hint=f"There are {', '.join(':' + known.lower() for known in OPTIONS)}. Is a parenthesis missing?")
             kind = symbol_name(option.car)
             if kind in ONCE and kind in self.clauses:
                 program_error("can't specify ~S more than once.", keyword(kind))
@@ -122,11 +121,10 @@ def _existing(source, name):
     found, status = source.lookup(name)
     if status:
         return found
-    condition = SimplePackageError(source, "no symbol named ~S in ~S", name, source.name)
     near = near_names(name, [*source.external, *source.internal])
-    if near:
-        condition.hint = f"Did you mean {' or '.join(near)}?"
-    return restart_case([(sym("CONTINUE"), lambda: source.intern(name), "INTERN it.")], lambda: error(condition))
+    hint = f"Did you mean {' or '.join(near)}?" if near else None
+    return restart_case([(sym("CONTINUE"), lambda: source.intern(name), "INTERN it.")],
+                        lambda: error(SimplePackageError(source, "no symbol named ~S in ~S", name, source.name), hint=hint))
 
 
 def _warn_of_differences(package, definition, uses):

@@ -178,9 +178,7 @@ def find_system(name, required_by=None):
     system = systems.get(name)
     if system is None:
         by = f", required by #<SYSTEM {required_by!r}>".replace("'", '"') if required_by else ""
-        condition = MissingComponent(f"Component ~S not found{by}", name)
-        condition.hint = _why_missing(name, path)
-        return error(condition)
+        return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path))
     return system
 
 
@@ -202,9 +200,8 @@ def check_version(system, least, required_by):
         return
     if system.version is None or _numbers(system.version) < _numbers(least):
         has = f"it is version {system.version}" if system.version else "it has no version"
-        condition = MissingComponent(f'Component ~S does not match version ~A, required by #<SYSTEM "{required_by}">', system.name, least)
-        condition.hint = f"In {system.file} {has}."
-        error(condition)
+        error(MissingComponent(f'Component ~S does not match version ~A, required by #<SYSTEM "{required_by}">', system.name, least),
+              hint=f"In {system.file} {has}.")
 
 
 def _numbers(version):

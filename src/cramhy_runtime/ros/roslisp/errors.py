@@ -58,9 +58,7 @@ def ros_error(control, *arguments, hint=None):
     hint: what to try, or a function that gives it; it is shown below the error and is no part of its text.
     """
     logging.log_text(logging.ERROR, None, format_to_string(control, *arguments))
-    problem = SimpleError(control, *arguments)
-    problem.hint = hint
-    return conditions.error(problem)
+    return conditions.error(SimpleError(control, *arguments), hint=hint)
 
 
 def close_names(name, names, otherwise):

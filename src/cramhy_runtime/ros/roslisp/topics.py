@@ -173,10 +173,10 @@ def publication_type(pub):
     """The message class of a publication object (``publish-msg`` and ``make-publisher-msg`` build on it)."""
     if isinstance(pub, Publication):
         return pub.type
-    problem = SimpleTypeError("~a", f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  "
-                              "ROSLISP::PUBLICATION.", datum=pub, expected_type="ROSLISP::PUBLICATION")  # fmt: skip
-    problem.hint = "This macro takes what (advertise topic type) returns. With a topic's name one writes (publish name (make-msg ...))."
-    return conditions.error(problem)
+    text = f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION."
+    return conditions.error(
+        SimpleTypeError("~a", text, datum=pub, expected_type="ROSLISP::PUBLICATION"),
+        hint="This macro takes what (advertise topic type) returns. With a topic's name one writes (publish name (make-msg ...)).")
 
 
 def num_subscribers(pub):
