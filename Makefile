@@ -28,6 +28,7 @@ bench: $(READY)
 
 soak: $(READY)
 	@CRAMHY_SOAK=1 $(BIN)/python -m pytest
+	@CRAMHY_LATE=$$$$ $(BIN)/python -m pytest tests/rosbridge tests/ros_tools tests/view tests/chronicle tests/repl tests/actionlib
 
 lint: $(READY)
 	@$(BIN)/ruff check src hy_src tests benchmarks tutorials

@@ -190,6 +190,6 @@ def test_in_wall_time_the_turtle_moves_and_cannot_be_paused(repl, visit):
 def test_when_the_session_ends_the_page_says_so(repl, visit):
     session = repl("--time", "virtual")
     page = visit(session.url)
+    page.foresee("WebSocket connection to")
     session.type("(quit)")
     wait_for_text(page, "#connection", "connection lost")
-    page.complaints.clear()  # Chromium itself writes to the console that it could not connect

@@ -161,6 +161,7 @@ def test_a_lost_connection_is_said_and_made_again(fake, visit):
     par = task("1", "[TOP-LEVEL]", began=0.0)
     fake.tasks(par)
     wait_for_text(page, "#tasks", "TOP-LEVEL")
+    page.foresee("WebSocket connection to")
     fake.close()
     page.wait_for_selector("#connection[data-state=lost]")
     wait_for_text(page, "#banner", "The connection to the session is lost. Trying again; what you see is the last that was heard.")
@@ -176,7 +177,6 @@ def test_a_lost_connection_is_said_and_made_again(fake, visit):
     assert not page.locator("#banner").is_visible()
     fake.world([turtle(x=5, y=4)])
     wait_for_reading(page, "x", "5.00")
-    page.complaints.clear()  # Chromium itself writes to the console that it could not connect
 
 
 def test_another_session_at_the_same_address_begins_anew(fake, visit):
@@ -187,6 +187,7 @@ def test_another_session_at_the_same_address_begins_anew(fake, visit):
     fake.stamp = 100.0
     fake.world([turtle(x=9, y=9)], [stroke(1, 4, 4, 4, (255, 0, 0), 9)])
     wait_for_pixel(page, 2, 4, [255, 0, 0])
+    page.foresee("WebSocket connection to")
     fake.close()
     page.wait_for_selector("#connection[data-state=lost]")
     fake.stamp = 1.0
@@ -198,7 +199,6 @@ def test_another_session_at_the_same_address_begins_anew(fake, visit):
     wait_for_reading(page, "x", "2.00")
     page.wait_for_function("() => Number(document.getElementById('moment').max) === 1")
     wait_for_count(page, "#tasks [role=treeitem]", 2)  # what was closed belonged to another plan
-    page.complaints.clear()
 
 
 def test_a_wrong_token_is_said_and_not_tried_again(fake, visit):
@@ -211,8 +211,8 @@ def test_a_wrong_token_is_said_and_not_tried_again(fake, visit):
 def test_a_page_that_cannot_start_says_so(fake, visit):
     fake._files = {path: file for path, file in fake._files.items() if path != "/shapes.json"}
     page = visit(fake.address, connected=False)
+    page.foresee("404")
     wait_for_text(page, "#banner", "The page could not start: the server has no shapes.json (404). Load it again; if that does not help, ")
-    page.complaints.clear()  # Chromium itself writes to the console what was not found
 
 
 def test_an_address_without_a_token_is_said(fake, visit):
