@@ -32,7 +32,8 @@ Taken from trio: cancellation at checkpoints, the shield, a clock that jumps, th
 out: cancel scopes and nurseries, because CPL brings its own tree and its own rules for it. Taken from Erlang:
 counting reductions. Taken from SimPy: real time on top of simulated time, and not the other way round.
 
-Two hooks are attributes of this package, to be replaced by assignment: `describe_frame` and `unhandled` (see `reports`).
+Two hooks are attributes of this package, to be replaced by assignment: `describe_frame` and `unhandled` (see `reports`). Whatever
+serves a session and has to end with it puts its `close` into the kernel's list ``on_stop``.
 """
 
 from .active import (
