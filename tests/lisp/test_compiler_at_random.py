@@ -313,7 +313,7 @@ def lists(value):
 _session = []
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 @given(programs())
 def test_the_compiler_and_the_interpreter_agree(program):
     if not _session:

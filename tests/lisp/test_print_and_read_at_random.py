@@ -200,7 +200,7 @@ def reread(form, values, case, **more):
             raise AssertionError(f"{text!r} is not readable: {problem.report()}") from problem
 
 
-PROPERTY = settings(max_examples=FORMS, deadline=None, derandomize=not SOAK, suppress_health_check=list(HealthCheck))
+PROPERTY = settings(max_examples=FORMS, deadline=None, suppress_health_check=list(HealthCheck))
 
 
 @PROPERTY

@@ -23,7 +23,7 @@ START = """[(ROSLISP TOP) INFO] 1292688669.674: Node name is /turtle1
 
 
 def topic(*names):
-    return lisp_list(*(sym(name) for name in names))
+    return lisp_list(*(sym(f"COMMON-LISP-USER::{name}") for name in names))
 
 
 class TestLife:
@@ -138,7 +138,7 @@ class TestLogging:
     def test_the_form_of_a_line(self, running, printed):
         logging.ros_log(logging.INFO, topic("A", "B"), "hello ~a", 3)
         logging.ros_log(logging.WARN, None, "x")
-        logging.ros_log(logging.INFO, sym("A"), "x")
+        logging.ros_log(logging.INFO, sym(":A"), "x")
         assert [re.sub(r"\d+\.\d{3}", "T", line) for line in printed().splitlines()] == [
             "[(A B) INFO] T: hello 3",
             "[NIL WARN] T: x",

@@ -226,7 +226,10 @@ class Run:
         def body():
             if task.status not in (SUSPENDED, *DEAD):
                 self.complain("not suspended", task.status)
-            self.follow(steps)
+            try:
+                self.follow(steps)
+            finally:
+                self.wakes += 1
 
         cpl.with_task_suspended(task, body)
 
