@@ -72,6 +72,48 @@ def test_a_second_interrupt_leaves_nobody_in_a_protected_region():
     assert made.tasks == [made.main]
 
 
+def test_who_suspended_the_task_around_it_comes_down_with_it():
+    """The branch, woken by another, wakes its parent on its way out, and the parent, which was ended, waits for the branch's death."""
+    def body():
+        branches = []
+
+        def branch():
+            branches.append(cpl.current_task())
+            cpl.with_task_suspended(cpl.current_task().parent, lambda: cpl.sleep(10))
+
+        parent = started(lambda: cpl.par(branch))
+        cpl.sleep(1)
+        cpl.wake_up(branches[0])
+        cpl.sleep(1)
+        cpl.evaporate(parent)
+        return parent.status, branches[0].status
+
+    assert plan(body) == (EVAPORATED, EVAPORATED) and kernel.now() == 2
+
+
+def test_who_is_woken_does_not_wait_for_a_branch_that_comes_down_and_waits_for_it():
+    def body():
+        branches = []
+
+        def branch():
+            branches.append(cpl.current_task())
+            try:
+                cpl.sleep(10)
+            finally:
+                cpl.sleep(1)
+                cpl.wake_up(cpl.current_task().parent)
+
+        parent = started(lambda: cpl.par(branch))
+        cpl.sleep(1)
+        cpl.suspend(parent)
+        cpl.evaporate(branches[0], sync=False)
+        cpl.wake_up(parent)
+        cpl.join_task(parent)
+        return parent.status, branches[0].status
+
+    assert plan(body) == (SUCCEEDED, EVAPORATED) and kernel.now() == 2
+
+
 @pytest.mark.parametrize("recovers", [True, False])
 def test_a_task_that_fails_while_it_is_suspended_may_wait_and_end_in_any_way(recovers):
     def work():

@@ -48,7 +48,7 @@ def release(task):
 
 def obey(task):
     """Suspend the current task, which is ``task``, if that is still wanted; returns after the wake-up."""
-    if task.unschedulable or task.kernel_task.cancelled_delivered:
+    if task.unschedulable or task.comes_down:
         return
     while task.held:
         if task.retry_level:
@@ -96,11 +96,14 @@ def _be_suspended(task):
             _pass_on("WAKEUP", child)
             release(child)
         for child in children:
-            child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}", lambda child=child: child.held)
+            child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}",
+                              lambda child=child: child.held or child.comes_down)
     except BaseException:  # it fails here, and may recover, or be suspended again in its cleanup
         for child in task.children:
             release(child)
-        if task.status is SUSPENDED and not task.kernel_task.cancelled_delivered:
+        if task.comes_down:
+            task.tell_observers()  # it goes on, with its cleanup, but keeps its status: who waits for its wake-up has waited enough
+        elif task.status is SUSPENDED:
             task.change_status(RUNNING)
         raise
     task.change_status(RUNNING)

@@ -135,6 +135,11 @@ class AbstractTask:
         return self.status in DEAD
 
     @property
+    def comes_down(self):
+        """True once it unwinds because it was asked to end: whatever its status says, it runs its cleanup, and then it is dead."""
+        return self.kernel_task is not None and self.kernel_task.cancelled_delivered
+
+    @property
     def unexecuted(self):
         """True until `execute` has been called."""
         return self.kernel_task is None and self.started_at is None
@@ -373,7 +378,7 @@ class AbstractTask:
             log_sending("WAKEUP", self, reason)
         release(self)
         if truth(sync) and self is not current_task():
-            self.park_until(AWAKE, lambda: f"the wake-up of {self.name}", lambda: self.held)
+            self.park_until(AWAKE, lambda: f"the wake-up of {self.name}", lambda: self.held or self.comes_down)
 
     def join(self) -> Any:
         """Wait until the task is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
