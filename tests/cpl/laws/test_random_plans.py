@@ -40,7 +40,7 @@ def grown(step):
 
 
 plans = st.lists(st.recursive(leaf, grown, max_leaves=12), min_size=1, max_size=4)
-MOST_TASKS = 25
+MOST_TASKS, MOST_ATTEMPTS = 25, 10
 
 
 class Run:
@@ -188,7 +188,8 @@ class Run:
         failures.attempt(lambda: self.follow(steps))
 
     def retry_after_suspension(self, steps):
-        cpl.retry_after_suspension(lambda: self.follow(steps))
+        left = [None] * MOST_ATTEMPTS  # who suspends the task around it there is suspended too, and begins again, for ever
+        cpl.retry_after_suspension(lambda: self.follow(steps) if left and not left.pop() else None)
 
     def on_suspension(self, steps):
         cpl.on_suspension(lambda: self.note("handler"), lambda: self.follow(steps))
