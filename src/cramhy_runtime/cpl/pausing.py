@@ -97,7 +97,7 @@ def _be_suspended(task):
             release(child)
         for child in children:
             child.park_until(AWAKE, lambda child=child: f"the wake-up of {child.name}",
-                              lambda child=child: child.held or child.comes_down)
+                             lambda child=child: child.held or child.comes_down)
     except BaseException:  # it fails here, and may recover, or be suspended again in its cleanup
         for child in task.children:
             release(child)

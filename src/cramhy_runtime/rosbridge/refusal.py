@@ -40,8 +40,8 @@ def leave(ros):
     from twisted.internet.defer import Deferred
 
     def close():  # in roslibpy's thread
+        ros.factory.stopTrying()
         if not ros.is_connected:
-            ros.factory.stopTrying()
             return None
         gone = Deferred()
         gone.addTimeout(FAREWELL, reactor, lambda *_: None)
