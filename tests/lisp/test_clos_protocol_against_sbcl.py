@@ -385,6 +385,8 @@ PROTOCOLS = r'''
 (defmethod make-instance :around ((c (eql 'dup)) &rest args) (list :made (call-next-method)))
 (first (make-instance 'dup))
 => :MADE
+(progn (remove-method #'make-instance (find-method #'make-instance '(:around) '((eql dup)))) nil)
+=> NIL
 (defclass ini () ((a :initform (error "no a")) ))
 (make-instance 'ini)
 => SIMPLE-ERROR: no a
