@@ -10,6 +10,14 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.backends import threads
 
 
+def wait_for_the_end(log):
+    """The body of a task that is ended; it notes its cleanup."""
+    try:
+        kernel.park("for ever")
+    finally:
+        log.append("cleaned up")
+
+
 def test_stop_cancels_the_tasks_and_lets_them_clean_up(k):
     log = []
 
@@ -31,19 +39,14 @@ def test_stop_cancels_the_tasks_and_lets_them_clean_up(k):
 def test_what_serves_the_tasks_is_closed_when_they_have_cleaned_up_and_the_last_first(k):
     log = []
 
-    def body():
-        try:
-            kernel.park("for ever")
-        finally:
-            log.append("cleaned up")
-
     def begin_something():
         kernel.spawn(lambda: kernel.park("until it is abandoned"))
         log.append("second")
 
-    kernel.spawn(body)
+    kernel.spawn(wait_for_the_end, log)
     kernel.yield_()
-    k.on_stop += [lambda: log.append("first"), begin_something]
+    k.at_stop(lambda: log.append("first"))
+    k.at_stop(begin_something)
     kernel.stop()
     assert log == ["cleaned up", "second", "first"]
     assert k.tasks == [k.main]
@@ -51,7 +54,8 @@ def test_what_serves_the_tasks_is_closed_when_they_have_cleaned_up_and_the_last_
 
 def test_one_that_cannot_be_closed_is_told_and_the_others_are(k, capsys):
     log = []
-    k.on_stop += [lambda: log.append("closed"), lambda: 1 / 0]
+    k.at_stop(lambda: log.append("closed"))
+    k.at_stop(lambda: 1 / 0)
     kernel.stop()
     assert log == ["closed"] and kernel.active() is None
     assert "ZeroDivisionError" in capsys.readouterr().err
@@ -159,13 +163,7 @@ def test_stop_twice_is_stop_once(k):
 def test_requests_to_the_main_task_do_not_disturb_the_end(k):
     log = []
 
-    def body():
-        try:
-            kernel.park("for ever")
-        finally:
-            log.append("cleaned up")
-
-    kernel.spawn(body)
+    kernel.spawn(wait_for_the_end, log)
     kernel.yield_()
     kernel.current().cancel()
     kernel.stop()

@@ -70,7 +70,7 @@ class Recorder:
         self.graph.on_change.append(self._changed)
         if not self.kernel.clock.virtual:
             self.kernel.watch_instants(self._idle)
-        self.kernel.on_stop.append(self.close)
+        self.kernel.at_stop(self.close)
         atexit.register(self.close)  # a process that ends by an error stops no kernel
 
     def __enter__(self):
@@ -184,8 +184,7 @@ class Recorder:
     def _let_go(self):
         self.closed = True
         atexit.unregister(self.close)
-        if self.close in self.kernel.on_stop:
-            self.kernel.on_stop.remove(self.close)
+        self.kernel.not_at_stop(self.close)
         self.kernel.unwatch_instants(self._idle)
         if self._event in self._chronicler.listeners:
             self._chronicler.listeners.remove(self._event)

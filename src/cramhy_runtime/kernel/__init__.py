@@ -33,7 +33,7 @@ out: cancel scopes and nurseries, because CPL brings its own tree and its own ru
 counting reductions. Taken from SimPy: real time on top of simulated time, and not the other way round.
 
 Two hooks are attributes of this package, to be replaced by assignment: `describe_frame` and `unhandled` (see `reports`). Whatever
-serves a session and has to end with it puts its `close` into the kernel's list ``on_stop``.
+serves a session and has to end with it says so by ``at_stop`` of the kernel.
 """
 
 from .active import (

@@ -115,7 +115,7 @@ class Endings:
     def stop(self):
         """Cancel all tasks, let them unwind, and end the kernel. Called by the main task.
 
-        Tasks get `GRACE` seconds of the kernel's clock; then what serves them is closed (``on_stop``), and their cleanup is
+        Tasks get `GRACE` seconds of the kernel's clock; then what serves them is closed (`at_stop`), and their cleanup is
         abandoned; for calls that block it waits half a second. A task that is still there after that stays parked for ever.
         """
         if self.stopped:
@@ -129,8 +129,8 @@ class Endings:
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
         self._let_unwind()
-        while self.on_stop:
-            self._call(self.on_stop.pop())
+        while self._at_stop:
+            self._call(self._at_stop.popitem()[0])
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
             task.abandon()
@@ -142,6 +142,14 @@ class Endings:
         self.stopped = True
         self.backend.close()
         self.when_stopped()
+
+    def at_stop(self, fn):
+        """Have FN called when the kernel stops and the tasks had their time to clean up; what was registered last comes first."""
+        self._at_stop[fn] = None
+
+    def not_at_stop(self, fn):
+        """FN need not be called any more; harmless when it was not registered, or is being called."""
+        self._at_stop.pop(fn, None)
 
     def _let_unwind(self):
         until = self.now() + GRACE

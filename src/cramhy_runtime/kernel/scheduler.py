@@ -48,7 +48,7 @@ class Kernel(Endings, Outside):
     __slots__ = (
         "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_tasks", "_born", "_streak",
         "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts", "_unwinding", "_stopping",
-        "_patience", "on_stop", "stopped", "when_stopped", "interruptible", "_scheduler", "main", "current", "__weakref__",
+        "_patience", "_at_stop", "stopped", "when_stopped", "interruptible", "_scheduler", "main", "current", "__weakref__",
     )
 
     def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
@@ -76,7 +76,7 @@ class Kernel(Endings, Outside):
         self._unwinding = False  # one was raised in the main task and is not over
         self._stopping = False
         self._patience = PATIENCE
-        self.on_stop = []  # functions that `stop` calls when the tasks had their time to clean up, the last first
+        self._at_stop = {}  # its keys: see `at_stop`
         self.stopped = False
         self.when_stopped = lambda: None  # for `active`, which keeps track of the kernels
         self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
@@ -98,7 +98,7 @@ class Kernel(Endings, Outside):
     def untouched(self):
         """Whether it is as it was at first: no task but the main one, no timer, no message, and no time has passed."""
         return (len(self._tasks) == 1 and self.current is self.main and not self.now()
-                and not (self.stopped or self.on_stop or self._timers.entries or self._inbox or self._unclaimed))
+                and not (self.stopped or self._at_stop or self._timers.entries or self._inbox or self._unclaimed))
 
     def now(self):
         """Seconds since the kernel was started."""

@@ -129,7 +129,7 @@ class Link:
         self._parameters = here.parameters
         here.before_first_node.clear()  # our turtle is not started: the robot is there
         self.kernel.count_outside(1)
-        self.kernel.on_stop.append(self.close)
+        self.kernel.at_stop(self.close)
         ros.on("close", lambda *_: self.kernel.post(self._lost))
         refusal.complained = lambda text: self.kernel.post(lambda: self._hear(text))
 
@@ -156,8 +156,7 @@ class Link:
             self.graph.on_change.remove(self._changed)
         self.graph.parameters = self._parameters
         self.kernel.count_outside(-1)
-        if self.close in self.kernel.on_stop:
-            self.kernel.on_stop.remove(self.close)
+        self.kernel.not_at_stop(self.close)
         self._fail_all("the connection was closed")
         self.node.shutdown()
         leave(self.ros)

@@ -65,7 +65,7 @@ class Server:
         self._uvicorn = self._stopping = None
         self.kernel.count_outside(1)  # with the baton, so that the next prompt knows; `outside_source` is for other threads
         self.company = Company(self._main, "cramhy rosbridge", self.kernel)
-        self.kernel.on_stop.append(self.close)
+        self.kernel.at_stop(self.close)
 
     def _announce(self):
         try:
@@ -87,8 +87,7 @@ class Server:
         self.company.join(LONGEST_STOP)
         self.socket.close()
         self.kernel.count_outside(-1)
-        if self.close in self.kernel.on_stop:
-            self.kernel.on_stop.remove(self.close)
+        self.kernel.not_at_stop(self.close)
 
     stop = close
 
