@@ -199,13 +199,15 @@ class Connection:
         outbox, send, stirred, loop = self.outbox, self._send, self._stirred, asyncio.get_running_loop()
         while True:
             stirred.clear()
-            self._leave_if_asked()
+            if outbox.reason is not None:
+                self._leave_if_asked()
             frames, pause = outbox.next(time.monotonic())
             for frame in frames:
                 self._sending = True
                 await send({"type": "websocket.send", "bytes" if frame.__class__ is bytes else "text": frame})
                 self._sending = False
             if not frames:
+                self._leave_if_asked()  # what was said before is heard, such as the last command of a plan
                 reminder = None if pause is None else loop.call_later(pause, stirred.set)
                 await stirred.wait()
                 if reminder is not None:

@@ -80,11 +80,11 @@ class Server:
             return
         self.closed = True
         self.file.unlink(missing_ok=True)
-        self.hub.close()
-        self.rosapi.close()
         self.company.share.forgiven = True
         self.company.call(self._stop_soon)
         self.company.join(LONGEST_STOP)
+        self.hub.close()  # only now: what clients were to hear still had to reach them
+        self.rosapi.close()
         self.socket.close()
         self.kernel.count_outside(-1)
         self.kernel.not_at_stop(self.close)
