@@ -20,8 +20,9 @@ timer, so the virtual clock jumps there. The wall clock is the same with a pace-
 
 Where the parts are:
 
-* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `outside`
-  other threads and calls that block; `company` a thread of the system's that serves clients, and its share of the processor
+* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `signals` what the
+  system asks of the process; `outside` other threads and calls that block; `standard_input`, `lost_output` what a terminal may do;
+  `company` a thread of the system's that serves clients, and its share of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
 * `timers`, `clocks`, `pace` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
@@ -63,12 +64,14 @@ from .active import (
     time_held,
     time_wanted,
     unpark,
+    woken_by,
     yield_,
 )
 from .cleanup import cleanup
 from .clocks import VirtualClock, WallClock
 from .depth import allow_deep_recursion
-from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, TimeLimit, WaitEnded
+from .endings import CLEANUP_LIMIT
+from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, Terminated, TimeLimit, WaitEnded
 from .reports import describe_frame, unhandled
 from .scheduler import Kernel
 from .tasks import Task
@@ -76,9 +79,9 @@ from .timers import Timer
 from .waiting import Waiting
 
 __all__ = [
-    "Abandoned", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "TimeLimit", "Timer", "VirtualClock",
-    "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at", "call_every", "checkpoint",
-    "cleanup", "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source", "pace", "park", "post", "refill",
-    "run_blocking", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled",
-    "unpark", "yield_",
+    "Abandoned", "CLEANUP_LIMIT", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "Terminated", "TimeLimit",
+    "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
+    "call_every", "checkpoint", "cleanup", "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source",
+    "pace", "park", "post", "refill", "run_blocking", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop",
+    "time_held", "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
 ]  # fmt: skip

@@ -10,7 +10,9 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
+from . import signals
 from .budget import budget
+from .endings import CLEANUP_LIMIT
 from .errors import KernelError
 from .pace import Pace, TimeWanted
 from .scheduler import Kernel
@@ -19,21 +21,26 @@ _active = None
 T = TypeVar("T")
 
 
-def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=Kernel):
+def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=Kernel, cleanup_limit=CLEANUP_LIMIT):
     """Make a fresh kernel active, whose main task is the caller. The one before, if any, is stopped first.
+
+    In the main thread it hears SIGINT and the signals that end a process from now on, if nobody else has a handler for them
+    (`signals`).
 
     CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", or a back end. SEED: None for first
     come, first served; a number shuffles the order, reproducibly; a function of the queue gives the place in it of the
     task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main task gets `TimeLimit`, or None.
-    KIND: a subclass of `Kernel`, for tests that look on.
+    KIND: a subclass of `Kernel`, for tests that look on. CLEANUP_LIMIT: seconds that plans get for their cleanup when the process is
+    asked to end, by the kernel's clock and by the wall's, or None.
     """
     global _active
     if _active is not None and _active.main.carrier.ident == get_ident():
         _active.stop()
     _active = None
-    kernel = kind(clock, backend, seed, time_limit)
+    kernel = kind(clock, backend, seed, time_limit, cleanup_limit)
     kernel.when_stopped = lambda: _forget(kernel)
     _active = kernel
+    signals.listen(kernel)
     return kernel
 
 
@@ -89,15 +96,21 @@ def at_hand():
 
 def _forget(kernel):
     global _active
+    signals.forget(kernel)
     if _active is kernel:
         _active = None
 
 
 @atexit.register
 def _stop_at_exit():
-    """A script that just ends shall not leave out the cleanup of its tasks."""
-    if _active is not None and _active.current is _active.main and _active.main.carrier.ident == get_ident():
-        stop()
+    """A script that just ends shall not leave out the cleanup of its tasks, nor what serves them (a recording, a robot's connection)."""
+    kernel = _active
+    if kernel is not None:
+        if kernel.current is kernel.main and kernel.main.carrier.ident == get_ident():
+            stop()
+        else:
+            kernel.close_what_serves()
+    signals.end_as_interrupted()
 
 
 def active():
@@ -193,6 +206,11 @@ def post(fn):
 def outside_source():
     """See `Kernel.outside_source`."""
     return (_active or _none()).outside_source()
+
+
+def woken_by(wake):
+    """See `Kernel.woken_by`."""
+    return (_active or _none()).woken_by(wake)
 
 
 def run_blocking(fn: Callable[..., T], *args: Any) -> T:

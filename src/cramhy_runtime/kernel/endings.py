@@ -1,6 +1,7 @@
-"""How a run ends: interrupts, alarms, abandoned cleanup, stopping, and the failures that nobody looked at.
+"""How a run ends: interrupts, termination, alarms, abandoned cleanup, stopping, and the failures that nobody looked at.
 
-The main task hears of what concerns the run as a whole, by alarms: Ctrl-C, a deadlock, the time limit. An alarm wakes it
+The main task hears of what concerns the run as a whole, by alarms: Ctrl-C, a signal that ends the process, a deadlock, the time
+limit. An alarm wakes it
 ahead of the queue. From there the tree comes down in the ordinary way: the main task unwinds, cancels its children and
 joins them, and so on below.
 
@@ -9,15 +10,30 @@ the clock, or is outside in a blocking call. So `interrupt` only puts a message 
 rings the bell: three operations that a handler may do between any two instructions. The message does the rest.
 """
 
+import time
 from _thread import get_ident
 
-from . import reports
+from . import reports, signals
 from .budget import budget
-from .errors import Abandoned, Deadlock, Interrupted, KernelError
+from .errors import Abandoned, Deadlock, Interrupted, KernelError, Terminated, TerminatedAtOnce
 from .tasks import BLOCKED, RUNNABLE, Alarm
 
-GRACE = 1.0  # s of kernel time that tasks get for their cleanup when the kernel stops
+CLEANUP_LIMIT = 5.0  # s that plans get for their cleanup when the kernel stops, or the process is asked to end
+GRACE = 1.0  # s of kernel time that tasks get to come down when their cleanup was given up
+INFINITY = float("inf")
 PATIENCE = 10  # how often a stopping kernel looks whether calls that block have come back, with `LONGEST_WAIT` in between
+
+
+class Request:
+    """A message in the inbox that asks the main task to end what it does."""
+
+    __slots__ = ("_read",)
+
+    def __init__(self, read):
+        self._read = read
+
+    def __call__(self):
+        self._read()
 
 
 class Endings:
@@ -25,7 +41,7 @@ class Endings:
 
     __slots__ = ()
 
-    # ------------------------------------------------------------------ interrupts
+    # ------------------------------------------------------------------ interrupts, and signals that end the process
 
     def interrupt(self):
         """Raise `Interrupted` in the main task. Safe from signal handlers and from any thread.
@@ -33,23 +49,47 @@ class Endings:
         A second call before the first is over (`interrupt_over`, `settle`) gives up cleanup: `Abandoned` is raised at
         every park point and checkpoint of all tasks that are cleaning up, in shields too, and in the main task.
         """
+        self._ask(Interrupted, Abandoned)
+
+    def terminate(self, number):
+        """Raise `Terminated` in the main task, because of the signal NUMBER. Safe from signal handlers and from any thread.
+
+        Plans get `cleanup_limit` seconds for their cleanup. A second call, or an interrupt before it, gives up cleanup as a second
+        interrupt does. A process that does not end by that is ended all the same (`signals`).
+        """
+        self.will_end(number)
+        self._ask(lambda: Terminated(number), lambda: TerminatedAtOnce(number))
+
+    def will_end(self, number):
+        """The signal NUMBER has asked the process to end; from now on it is watched whether it does."""
+        if self.ended_by is None:
+            self.ended_by = number
+            signals.watch(self, number)
+
+    def _ask(self, first, second):
+        """Have an exception raised in the main task: one that FIRST makes, or SECOND when it unwinds already."""
         main = self.main
-        if self.interruptible and get_ident() == main.carrier.ident and (self._unwinding or not main.shielded):
+        if self.interruptible and not self._wakers and get_ident() == main.carrier.ident and (self._unwinding or not main.shielded):
             # We are a signal handler in the main thread, on top of a call that blocks: break it off.
             self.interruptible = False
             if self._unwinding:
                 self.post(self._abandon_tasks)
-                raise Abandoned
+                raise second()
             self._unwinding = True
-            raise Interrupted
+            self._limit_cleanup()
+            raise first()
+        if not self._interrupts:
+            self._asked_at = time.monotonic()
         self._interrupts += 1
-        self._inbox.append(self._read_interrupt)
+        self._inbox.append(Request(lambda: self._read_interrupt(first, second)))
         budget.end()
         self._bell.ring()
+        self.wake()
 
     def interrupt_over(self):
-        """Whoever caught `Interrupted` says that it is dealt with: the next interrupt is a first one again."""
-        self._unwinding = False
+        """Whoever caught `Interrupted` says that it is dealt with: the next interrupt is a first one again. A process that was asked
+        to end goes on to do so."""
+        self._unwinding = self.ended_by is not None
 
     def interrupt_waits(self):
         """True if the main task, about to go outside, would only hear when it is back that it was interrupted before."""
@@ -59,22 +99,60 @@ class Endings:
             return bool(waiting and self._unwinding) or any(alarm.pierces_shield for alarm in alarms)
         return bool(waiting or alarms)
 
-    def _read_interrupt(self):
+    @property
+    def interrupted(self):
+        """Whether an interrupt, or a signal that ends the process, was sent and is not over yet."""
+        return bool(self._interrupts) or self._unwinding
+
+    def deaf_for(self):
+        """For how many seconds an interrupt has been waiting to be read: the task that has the baton passes no checkpoint."""
+        since = self._asked_at
+        return 0.0 if since is None or not self._interrupts else time.monotonic() - since
+
+    def take_back(self):
+        """Nobody reads the requests in the inbox, so the signal handler raises by itself: they are dealt with by that."""
+        for message in [message for message in self._inbox if isinstance(message, Request)]:
+            try:
+                self._inbox.remove(message)
+            except ValueError:
+                continue  # it was read at this very moment
+            self._interrupts -= 1
+        self._asked_at = None
+        self._unwinding = True
+        self._limit_cleanup()
+
+    def _read_interrupt(self, first, second):
         if not self._unwinding:
             self._unwinding = True
-            self._alarm(Interrupted(), False)
+            self._limit_cleanup()
+            self._alarm(first(), False)
         else:
             self._abandon_tasks()
             if self.main.alarms:
                 self.main.alarms.clear()
-            self._alarm(Abandoned(), True)
+            self._alarm(second(), True)
         self._interrupts -= 1  # last, so that `interrupt_waits` sees it either here or among the alarms
+        self._asked_at = time.monotonic() if self._interrupts else None
 
-    def _abandon_tasks(self):
+    def _limit_cleanup(self):
+        """The process shall end: after `cleanup_limit` seconds of the kernel's clock cleanup is given up."""
+        if self.ended_by is not None and self.cleanup_limit is not None:
+            self.post(lambda: self._timers.add(self.now() + self.cleanup_limit, self.give_up))
+
+    def give_up(self):
+        """The limit of cleanup is reached: abandon it, in the scheduler."""
+        if not (self._stopping or self.stopped):
+            self._abandon_tasks(f"It took longer than {self.cleanup_limit:g} s.")
+            self._alarm(TerminatedAtOnce(self.ended_by), True)
+
+    def _abandon_tasks(self, why=""):
         """Give up the cleanup of all tasks that were asked to end, and the tasks below them: a request to end would not reach one
-        that is in a shield, and nobody waits for it any more."""
+        that is in a shield, and nobody waits for it any more. The user is told whose cleanup it is, and WHY."""
         main = self.main
-        cleaning = {task for task in self.tasks if task is not main and task.cancel_request is not None}
+        asked = [task for task in self.tasks if task is not main and task.cancel_request is not None]
+        if told := [task for task in asked if not task.abandoned]:
+            reports.tell(reports.abandoned_text(self, told, why))
+        cleaning = set(asked)
         for task in self.tasks:  # oldest first, so a parent comes before its children
             below = task.parent in cleaning
             if task in cleaning or below and task.shielded:
@@ -93,7 +171,8 @@ class Endings:
         main.attention = True
         if main.shielded and not pierces_shield:
             return
-        if main.state is BLOCKED and self.backend.calls_back:
+        self.wake()
+        if main.state is BLOCKED and self.backend.calls_back and not self._wakers:
             self.comes_back(main)
         self.rouse(main)
         if main.state is RUNNABLE and self._urgent is None:
@@ -115,8 +194,9 @@ class Endings:
     def stop(self):
         """Cancel all tasks, let them unwind, and end the kernel. Called by the main task.
 
-        Tasks get `GRACE` seconds of the kernel's clock; then what serves them is closed (`at_stop`), and their cleanup is
-        abandoned; for calls that block it waits half a second. A task that is still there after that stays parked for ever.
+        Tasks get `cleanup_limit` seconds of the kernel's clock; then what serves them is closed (`at_stop`), and their cleanup is
+        abandoned, which the user is told; for calls that block it waits half a second. A task that is still there after that stays
+        parked for ever.
         """
         if self.stopped:
             return
@@ -128,13 +208,14 @@ class Endings:
         main.attention = False
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
-        self._let_unwind()
-        while self._at_stop:
-            self._call(self._at_stop.popitem()[0])
+        self._let_unwind(INFINITY if self.cleanup_limit is None else self.cleanup_limit)
+        if late := [task for task in self.tasks[1:] if task.carrier is not None and task.state is not BLOCKED]:
+            reports.tell(reports.abandoned_text(self, late))
+        self.close_what_serves()
         for task in self.tasks[1:]:
             task.cancel("the kernel stops")
             task.abandon()
-        self._let_unwind()
+        self._let_unwind(GRACE)
         for task in self.tasks[1:]:
             if task.carrier is not None:
                 self.backend.forsake(task.carrier)
@@ -142,6 +223,11 @@ class Endings:
         self.stopped = True
         self.backend.close()
         self.when_stopped()
+
+    def close_what_serves(self):
+        """Call what was registered by `at_stop`, the last first."""
+        while self._at_stop:
+            self._call(self._at_stop.popitem()[0])
 
     def at_stop(self, fn):
         """Have FN called when the kernel stops and the tasks had their time to clean up; what was registered last comes first."""
@@ -151,12 +237,12 @@ class Endings:
         """FN need not be called any more; harmless when it was not registered, or is being called."""
         self._at_stop.pop(fn, None)
 
-    def _let_unwind(self):
-        until = self.now() + GRACE
+    def _let_unwind(self, seconds):
+        until = self.now() + seconds
         try:
             while len(self._tasks) > 1 and self.now() < until:
                 self.park("the other tasks to end", until)
-        except (Deadlock, Interrupted, Abandoned):
+        except (Deadlock, Interrupted, Terminated, Abandoned):
             pass  # they cannot, or the user does not want to wait: on to the next step
 
     # ------------------------------------------------------------------ failures that nobody looked at
@@ -176,6 +262,9 @@ class Endings:
                 self._unclaimed.append(task)
 
     def _report(self, task, exception):
+        if isinstance(exception, SystemExit):  # a task that nobody joins asks for the end of the program
+            self._alarm(exception, False)
+            return
         try:
             reports.hooks().unhandled(task, exception)
         except BaseException as broken:  # the hook is somebody else's, and the scheduler must go on

@@ -1,10 +1,12 @@
 """What the kernel raises.
 
-Requests to end (`Cancelled`, `Interrupted`, `Abandoned`) are no errors: they derive from `BaseException`, so that no
+Requests to end (`Cancelled`, `Interrupted`, `Terminated`, `Abandoned`) are not errors: they derive from `BaseException`, so that no
 `except Exception` and no Lisp handler of `error` swallows them on their way out (law 1: nothing outlives its parent).
 What went wrong with a run as a whole (`Deadlock`, `TimeLimit`) and wrong use of the kernel (`KernelError`) are
 ordinary exceptions.
 """
+
+import signal
 
 
 class Cancelled(BaseException):
@@ -25,11 +27,22 @@ class WaitEnded(Cancelled):
     """Somebody ended the wait that a task's cleanup was stuck in (`Task.end_wait`). Unwinds to the end of that cleanup form."""
 
 
-class Interrupted(BaseException):
-    """The user asked the main task to stop (Ctrl-C)."""
+class Interrupted(KeyboardInterrupt):
+    """The user asked the main task to stop (Ctrl-C). A script that does not catch it ends as Python ends one at Ctrl-C."""
 
     def __str__(self):
         return "interrupted"
+
+
+class Terminated(SystemExit):
+    """The system asked the process to end by the signal ``number``. Raised in the main task; as exit status it gives 128 + ``number``."""
+
+    def __init__(self, number):
+        super().__init__(128 + number)
+        self.number = number
+
+    def __str__(self):
+        return f"ended by {signal.Signals(self.number).name}"
 
 
 class Abandoned(BaseException):
@@ -37,6 +50,13 @@ class Abandoned(BaseException):
 
     def __str__(self):
         return "cleanup abandoned"
+
+
+class TerminatedAtOnce(Abandoned, Terminated):
+    """The system asked the process to end a second time, or cleanup took longer than its limit: cleanup is given up."""
+
+    def __str__(self):
+        return f"{Terminated.__str__(self)}, cleanup abandoned"
 
 
 class KernelError(RuntimeError):

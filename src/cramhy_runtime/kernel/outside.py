@@ -10,6 +10,7 @@ takes; likewise while somebody outside owes an answer (`time_held`). A source th
 """
 
 from _thread import get_ident
+from contextlib import contextmanager
 
 from .budget import SLICE, budget, need_headroom
 from .tasks import BLOCKED, RUNNING
@@ -66,7 +67,7 @@ class Outside:
 
         In virtual time the clock stands still as long as such a call is out. A request to end the task is delivered
         when FN has returned; an interrupt of the main task breaks FN off, if it comes from a signal handler or if FN
-        runs in a helper thread (which then goes on for nothing).
+        runs in a helper thread (which then goes on for nothing). Inside of `woken_by` it does not: FN is woken, and returns.
         """
         me = self.current
         if me.attention:
@@ -88,6 +89,25 @@ class Outside:
                 dynamic.enter()
             if me.attention:
                 me.deliver()
+
+    @contextmanager
+    def woken_by(self, wake):
+        """While the block runs, an interrupt, and a signal that ends the process, calls WAKE, which ends the wait in the block.
+
+        For waits that must not be broken off by an exception, since they hold something: a line that was typed. WAKE may be called
+        more than once, by a signal handler and by any thread, and must do no more than both may do.
+        """
+        before = self._wakers
+        self._wakers = (*before, wake)
+        try:
+            yield
+        finally:
+            self._wakers = before
+
+    def wake(self):
+        """Call what `woken_by` named, the innermost one last."""
+        for wake in self._wakers:
+            wake()
 
     def leave(self, task):
         """TASK goes outside. Returns the number of this visit, which `comes_back` takes."""

@@ -73,6 +73,29 @@ def waiting_list(kernel):
     return "\n".join(lines)
 
 
+def tell(text):
+    """Say TEXT to the user, on the process's error output; where nobody reads that any more nothing is said."""
+    try:
+        print(f"cramhy: {text}", file=sys.stderr, flush=True)
+    except (OSError, ValueError, AttributeError):  # the terminal was closed, or there is none
+        pass
+
+
+def abandoned_text(kernel, tasks, why=""):
+    """Whose cleanup is given up: of TASKS, each with what it waits for, and WHY."""
+    lines = []
+    for task in tasks[:LONGEST_LIST]:
+        line = f"  {task.name} {f'waits for {task.describe_why()}' if task.state in (PARKED, BLOCKED) else 'computes'}"
+        if place := where(kernel.frame_of(task)):
+            line += f"\n      at {place}"
+        lines.append(line)
+    if len(tasks) > LONGEST_LIST:
+        lines.append(f"  and {len(tasks) - LONGEST_LIST} more")
+    listed = "\n".join(lines)
+    whose = "this task" if len(tasks) == 1 else f"these {len(tasks)} tasks"
+    return f"The cleanup of {whose} was given up.{f' {why}' if why else ''} What it was to stop may still be going on:\n{listed}"
+
+
 def deadlock_text(kernel):
     return (
         "Nothing can happen any more: every task waits, and no timer and no outside event can wake one.\n"

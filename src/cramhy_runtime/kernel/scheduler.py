@@ -24,8 +24,8 @@ from . import reports
 from .backends import make_backend
 from .budget import SLICE, budget, need_headroom, need_steps
 from .clocks import Bell, make_clock
-from .endings import PATIENCE, Endings
-from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, TimeLimit
+from .endings import CLEANUP_LIMIT, PATIENCE, Endings
+from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .outside import Outside
 from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
 from .timers import CALLBACK, TimerHeap
@@ -47,11 +47,12 @@ class Kernel(Endings, Outside):
     # Slots, since Python finds attributes of an object that has thirty or more of them in a slower way.
     __slots__ = (
         "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_tasks", "_born", "_streak",
-        "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts", "_unwinding", "_stopping",
-        "_patience", "_at_stop", "stopped", "when_stopped", "interruptible", "_scheduler", "main", "current", "__weakref__",
+        "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts", "_asked_at",
+        "_unwinding", "_stopping", "_patience", "_at_stop", "_wakers", "cleanup_limit", "ended_by", "stopped", "when_stopped",
+        "interruptible", "_scheduler", "main", "current", "__weakref__",
     )
 
-    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
+    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None, cleanup_limit=CLEANUP_LIMIT):
         self.clock = make_clock(clock)
         self.backend = make_backend(backend)
         self.time_limit = time_limit
@@ -73,10 +74,14 @@ class Kernel(Endings, Outside):
         self._blocking = 0
         self._outside = 0
         self._interrupts = 0  # sent, but not yet read from the inbox
+        self._asked_at = None  # when the first of these was sent, by the wall's clock
         self._unwinding = False  # one was raised in the main task and is not over
         self._stopping = False
         self._patience = PATIENCE
         self._at_stop = {}  # its keys: see `at_stop`
+        self._wakers = ()  # functions that end what the main thread waits for outside of the kernel: see `woken_by`
+        self.cleanup_limit = cleanup_limit
+        self.ended_by = None  # the number of the signal that asked the process to end
         self.stopped = False
         self.when_stopped = lambda: None  # for `active`, which keeps track of the kernels
         self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
@@ -232,7 +237,7 @@ class Kernel(Endings, Outside):
         if me is self._scheduler:
             budget.renew()
             if self._interrupts:
-                raise Interrupted  # Ctrl-C gets the user out of a callback that loops for ever, too
+                raise Interrupted  # a signal gets the user out of a callback that loops for ever, too
             return
         if me.carrier.ident != get_ident():
             budget.end()  # an outside thread came by; the task whose slice it is shall find it over
@@ -267,7 +272,7 @@ class Kernel(Endings, Outside):
         self.rest(me)
         if me.attention:
             me.deliver()
-        self._unwinding = False
+        self.interrupt_over()
         self._report_unclaimed()
 
     def shield(self):
@@ -522,9 +527,9 @@ class Kernel(Endings, Outside):
     def _call(self, fn):
         try:
             fn()
+        except (Interrupted, Terminated):
+            pass  # meant for the main task, which gets its own
         except KeyboardInterrupt:
             self.interrupt()
-        except Interrupted:
-            pass  # meant for the main task, which gets its own
         except BaseException as exception:
             self._report(self._scheduler, exception)

@@ -17,7 +17,7 @@ from collections import deque
 
 from ..clocks import LONGEST_WAIT
 from ..depth import STACK_SIZE
-from ..errors import NoStack
+from ..errors import NoStack, Terminated
 from .nearness import nearness
 
 KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
@@ -137,9 +137,9 @@ class ThreadBackend:
             try:
                 if mine.lock.acquire(timeout=LONGEST_WAIT):
                     return
-            except KeyboardInterrupt:  # nobody installed a handler that interrupts the kernel
+            except (KeyboardInterrupt, Terminated) as asked:  # from Python's own handler, or from one that nobody had heard
                 kernel = self._kernel
-                kernel.interrupt()
+                kernel.terminate(asked.number) if isinstance(asked, Terminated) else kernel.interrupt()
                 if kernel.current.carrier is mine:
                     # The baton came at the same moment. Either the lock is ours already, and this times out, or it is
                     # about to be released, and this takes it.

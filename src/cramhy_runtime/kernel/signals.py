@@ -1,0 +1,206 @@
+"""Signals: how the system asks a process to end, and how the kernel hears of it.
+
+SIGINT (Ctrl-C) interrupts the main task. SIGTERM, SIGHUP (the terminal was closed), SIGQUIT, and SIGBREAK on Windows end the process:
+the main task unwinds, plans are ended through their cleanup forms, so a robot gets its stop command, and what serves them is closed.
+The exit status is 128 + the signal's number, as a shell says it. A signal that the process ignores (``nohup``), or that somebody else
+handles, is left alone.
+
+A handler runs between any two instructions of the main thread. So it raises nothing: it puts a message into the inbox
+(`Kernel.interrupt`, `Kernel.terminate`), and the main task hears of it at its next park point or checkpoint. There are two exceptions. A
+blocking call that the main task made by `run_blocking` is broken off. And when nobody has read the message for a second, the main thread
+computes, or waits, in code that knows nothing of the kernel; then the next signal raises right there, as Python's own handler does.
+
+A program must end even if a plan does not. So the first signal that ends it starts a thread that looks on (`watch`). After a second it
+sends the signal again to a main thread that has not heard it. After the limit of cleanup it has cleanup given up. And if the kernel has
+not stopped soon after that, it says whose fault it is, closes what serves the plans, and ends the process.
+"""
+
+import os
+import signal
+import sys
+import threading
+import time
+from contextlib import contextmanager
+
+from . import reports
+from .budget import budget
+from .errors import Interrupted, Terminated
+
+ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGBREAK") if hasattr(signal, name))
+"""The signals that end a process."""
+
+DEAF = 1.0  # s after which a main thread that has not read a message is taken to compute outside of the kernel
+FORCE = 2.0  # s that a process gets to end after its cleanup was given up
+LAST = 2.0  # s that what serves plans gets to be closed when the process is ended by force
+LOOK = 0.05  # s between two looks
+
+_kernels = []  # those that listen, the innermost last
+_before = {}  # the handlers that stood there before ours
+_held = 0  # how many programs keep our handlers between kernels
+
+received = []
+"""The numbers of the signals that have asked this process to end, the first first."""
+
+restore_terminal = []
+"""Functions that bring the terminal back to what it was; called when a process is ended by force."""
+
+
+def listen(kernel):
+    """From now on KERNEL hears signals. Only Python's main thread does, so elsewhere nothing happens."""
+    if threading.current_thread() is threading.main_thread():
+        _kernels.append(kernel)
+        _install()
+
+
+def forget(kernel):
+    """KERNEL has stopped: signals are for the one before it, or for whoever had them before us."""
+    if kernel in _kernels:
+        _kernels.remove(kernel)
+        _restore()
+
+
+@contextmanager
+def held():
+    """While the block runs, signals are ours between kernels, too: for a program, which ends in order before and after its session."""
+    global _held
+    _held += 1
+    _install()
+    try:
+        yield
+    finally:
+        _held -= 1
+        _restore()
+
+
+def answered():
+    """The program has done what the signals asked for, as a part of what it is there for: its exit status is its own."""
+    received.clear()
+
+
+def _install():
+    if sys.excepthook is sys.__excepthook__:
+        sys.excepthook = _uncaught
+    for number in (signal.SIGINT, *ENDING):
+        handler = signal.getsignal(number)
+        if number not in _before and handler in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(number, _hear)
+            _before[number] = handler
+
+
+def _restore():
+    if _kernels or _held or threading.current_thread() is not threading.main_thread():
+        return
+    for number, handler in _before.items():
+        if signal.getsignal(number) is _hear:
+            signal.signal(number, handler)
+    _before.clear()
+
+
+def _uncaught(kind, exception, traceback):
+    """The main program ends by an exception."""
+    if issubclass(kind, Interrupted):
+        _uncaught_interrupts.append(exception)
+    sys.__excepthook__(kind, exception, traceback)
+
+
+_uncaught_interrupts = []
+
+
+def end_as_interrupted():
+    """The last thing of a process whose main program did not catch Ctrl-C: it ends by the signal, as Python ends it. Else nothing."""
+    if _uncaught_interrupts and threading.current_thread() is threading.main_thread():
+        _flush()
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        signal.raise_signal(signal.SIGINT)
+
+
+def _hear(number, frame):
+    kernel = _kernels[-1] if _kernels else None
+    if number != signal.SIGINT:
+        received.append(number)
+    if kernel is None or kernel.stopped:
+        raise KeyboardInterrupt if number == signal.SIGINT else Terminated(number)
+    again = kernel in _reminded
+    _reminded.discard(kernel)
+    if kernel.deaf_for() >= DEAF and _has_the_baton(kernel):
+        kernel.take_back()
+        if number == signal.SIGINT:
+            raise Interrupted
+        kernel.will_end(number)
+        raise Terminated(number)
+    if number == signal.SIGINT:
+        kernel.interrupt()
+    elif not again:
+        kernel.terminate(number)
+
+
+def _has_the_baton(kernel):
+    """Whether the task that has the baton runs in this thread; or a callback, in whichever."""
+    carrier = kernel.current.carrier
+    return carrier is None or carrier.ident == threading.get_ident()
+
+
+_reminded = set()  # kernels to whose main thread `watch` sends the signal once more: that does not count as a second one
+
+
+def watch(kernel, number):
+    """See to it that the process ends by the signal NUMBER, which KERNEL has been told."""
+    try:
+        threading.Thread(target=_watch, args=(kernel, number), name="cramhy ends", daemon=True).start()
+    except RuntimeError:
+        pass  # no more threads: the limit of cleanup by the kernel's clock is left
+
+
+def _watch(kernel, number):
+    limit = kernel.cleanup_limit
+    began = time.monotonic()
+
+    def over(seconds):
+        """Whether the kernel stopped within SECONDS from the beginning."""
+        while not kernel.stopped and time.monotonic() < began + seconds:
+            time.sleep(LOOK)
+        return kernel.stopped
+
+    if over(DEAF + LOOK):
+        return
+    if kernel.deaf_for() >= DEAF:
+        _reminded.add(kernel)
+        _send_to_main_thread(number)
+    if limit is None or over(limit):
+        return
+    kernel.post(kernel.give_up)
+    budget.end()
+    if not over(limit + FORCE):
+        _end_by_force(kernel, number)
+
+
+def _send_to_main_thread(number):
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident, number)
+    else:
+        import _thread
+
+        _thread.interrupt_main(number)
+
+
+def _end_by_force(kernel, number):
+    """The task that has the baton does not give it away: end the process without it."""
+    name = kernel.current.name
+    reports.tell(f"{name} did not come to a point where it can be ended within {kernel.cleanup_limit + FORCE:g} s after "
+                 f"{signal.Signals(number).name}, so the process ends without its cleanup. A long computation in Python should call "
+                 "kernel.checkpoint() now and then, and a call that blocks belongs into kernel.run_blocking.")
+    closing = threading.Thread(target=kernel.close_what_serves, daemon=True)
+    closing.start()
+    closing.join(LAST)
+    for restore in restore_terminal:
+        restore()
+    _flush()
+    os._exit(128 + number)
+
+
+def _flush():
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except (OSError, ValueError, AttributeError):
+            pass  # nobody reads it, or there is none

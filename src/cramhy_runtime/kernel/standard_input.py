@@ -1,0 +1,267 @@
+"""Standard input whose wait for a line can be ended, from a signal handler or by another thread, and loses nothing by that.
+
+Python's own `sys.stdin` waits in a system call, which only an exception in the middle of it breaks off; what was read by then is lost.
+This one waits for two things at once, input and a pipe of its own (`wake`), and moves what it has read into its buffer before anybody
+looks. It takes the place of `sys.stdin` (`install`), so that the prompt, READ-LINE in a form and Python's `input` share one buffer.
+
+On a terminal it can keep Ctrl-C in its place among the typed lines (`at_prompt`). Otherwise the terminal makes a signal of the key, which
+overtakes what was typed before, and throws that away. So at the prompt the key ends a line, as Enter does, and the line says so.
+
+It needs `select` on standard input, so on Windows Python's own stays.
+"""
+
+import codecs
+import io
+import os
+import select
+import sys
+from contextlib import contextmanager, nullcontext
+
+from . import signals
+from .active import run_blocking, woken_by, yield_
+
+try:
+    import termios
+except ImportError:  # not a POSIX system
+    termios = None
+
+INTERRUPT = "\x03"
+CHUNK = 65536
+
+
+class BrokenOff(Exception):
+    """The wait for a line was ended by `StandardInput.wake`."""
+
+
+class StandardInput(io.TextIOBase):
+    """The lines of the text file FILE, which must have a file descriptor."""
+
+    def __init__(self, file):
+        self._file = file
+        self._fd = file.fileno()
+        self._text = ""
+        self.reconfigure(file.encoding)
+        self._ended = self._woken = self._interrupted = False
+        self._bell, self._ring = os.pipe()
+        for end in (self._bell, self._ring):
+            os.set_blocking(end, False)
+        self._keys = False  # whether Ctrl-C comes as a character
+
+    def reconfigure(self, encoding="utf-8", errors="replace"):
+        """Read bytes as ENCODING says. A byte that is none of it costs no more than itself."""
+        decoder = codecs.getincrementaldecoder(encoding or "utf-8")("replace" if errors == "strict" else errors)
+        self._decoder = io.IncrementalNewlineDecoder(decoder, translate=True)
+
+    encoding = property(lambda self: self._file.encoding)
+    errors = property(lambda self: self._file.errors)
+    name = property(lambda self: self._file.name)
+
+    def fileno(self):
+        return self._fd
+
+    def isatty(self):
+        return self._file.isatty()
+
+    def readable(self):
+        return True
+
+    def wake(self):
+        """End the wait for a line that goes on, or the next one. May be called by a signal handler, and by any thread."""
+        self._woken = True
+        try:
+            os.write(self._ring, b"!")
+        except OSError:
+            pass  # the pipe is full, or closed: it is awake
+
+    def forget_wake(self):
+        """What it was woken for is dealt with."""
+        self._woken = False
+
+    def readline(self, size=-1):
+        """The next line with its end, "" at the end of the input. Raises `BrokenOff` when it is woken before there is one."""
+        while True:
+            if self._woken:
+                self._woken = False
+                self._empty_pipe()
+                raise BrokenOff
+            line = self._take_line(size)
+            if line is not None:
+                return line
+            self._wait()
+
+    def read(self, size=-1):
+        """All that is left, or SIZE characters."""
+        while not self._ended and (size < 0 or len(self._text) < size):
+            self._wait()
+        size = len(self._text) if size < 0 else size
+        taken, self._text = self._text[:size], self._text[size:]
+        return taken
+
+    def ready(self):
+        """Whether something can be read without a wait."""
+        return bool(self._text) or self._ended or bool(select.select([self._fd], [], [], 0)[0])
+
+    def _take_line(self, size):
+        end = self._text.find("\n") + 1
+        if not end and not self._ended:
+            return None
+        end = end or len(self._text)
+        if 0 <= size < end:
+            end = size
+        line, self._text = self._text[:end], self._text[end:]
+        return line
+
+    def _wait(self):
+        ready, _, _ = select.select([self._fd, self._bell], [], [])
+        if self._bell in ready:
+            self._woken = True  # first what was asked, then what was typed
+        elif self._fd in ready:
+            self._fill()
+
+    def _fill(self):
+        try:
+            data = os.read(self._fd, CHUNK)
+        except OSError:  # the terminal was closed
+            data = b""
+        self._ended = not data
+        self._text += self._decoder.decode(data, self._ended)
+        if self._keys and INTERRUPT in self._text:
+            before, _, after = self._text.rpartition(INTERRUPT)
+            self._text = drop_unfinished(before, "\n".__eq__).replace(INTERRUPT, "") + after
+            self._interrupted = self._woken = True
+
+    def _empty_pipe(self):
+        try:
+            while os.read(self._bell, CHUNK):
+                pass
+        except OSError:
+            pass  # it is empty
+
+    # ------------------------------------------------------------------------------------------------------------ terminals
+
+    @contextmanager
+    def at_prompt(self, pressed):
+        """While the block waits for a line, Ctrl-C wakes it in its turn. PRESSED is called when the key was pressed after the line
+        that the block has read, but before the terminal makes a signal of it again."""
+        if not self.isatty():
+            yield
+            return
+        self._keys, self._interrupted = True, False
+        try:
+            with ctrl_c_as_a_key(self._fd, end_of_line=True):
+                yield
+        finally:
+            self._interrupted = False  # it was for the line
+            while not self._ended and select.select([self._fd], [], [], 0)[0]:
+                self._fill()
+            self._keys = False
+            if self._interrupted:
+                self._woken = False
+                pressed()
+
+    def forget_unfinished_line(self):
+        """Throw away what was typed on the terminal and not entered: Ctrl-C was pressed meanwhile."""
+        if termios is not None and self.isatty():
+            with typed_ahead(self._fd):
+                while not self._ended and select.select([self._fd], [], [], 0)[0]:
+                    self._fill()
+            self._text = drop_unfinished(self._text, "\n".__eq__)
+
+
+def drop_unfinished(typed, is_end):
+    """What was TYPED, a text or a list of keys, up to the last one that ends a line: the rest is forgotten at Ctrl-C."""
+    end = len(typed)
+    while end and not is_end(typed[end - 1]):
+        end -= 1
+    return typed[:end]
+
+
+def ctrl_c_as_a_key(fd, end_of_line=False):
+    """While the block runs, Ctrl-C on the terminal FD sends no signal. It is a character; END_OF_LINE: one that ends a line."""
+    if termios is None:
+        return nullcontext()
+    keys = {termios.VINTR: os.fpathconf(fd, "PC_VDISABLE").to_bytes(1, "little")}
+    return terminal_modes(fd, keys={**keys, termios.VEOL: INTERRUPT.encode()} if end_of_line else keys)
+
+
+def typed_ahead(fd):
+    """While the block runs, a read gets what was typed on the terminal FD so far: the system gives out a line without its end, too."""
+    return nullcontext() if termios is None else terminal_modes(fd, off=termios.ICANON | termios.ECHO)
+
+
+@contextmanager
+def terminal_modes(fd, on=0, off=0, keys=None):
+    """While the block runs the terminal FD has other local modes (ON, OFF: bits of termios) and special KEYS; then those it had."""
+    try:
+        before = termios.tcgetattr(fd)
+        changed = [*before[:6], list(before[6])]
+        changed[3] = before[3] & ~off | on
+        for key, value in (keys or {}).items():
+            changed[6][key] = value
+        termios.tcsetattr(fd, termios.TCSANOW, changed)
+    except termios.error:  # the terminal was closed
+        yield
+        return
+    try:
+        yield
+    finally:
+        _set_modes(fd, before)
+
+
+def _set_modes(fd, modes):
+    try:
+        termios.tcsetattr(fd, termios.TCSANOW, modes)
+    except termios.error:
+        pass  # the terminal was closed
+
+
+@contextmanager
+def terminal_of_a_session():
+    """While the block runs, the keys that send signals do not throw away what was typed ahead. Afterwards, however the process
+    ends, the terminal is as it was."""
+    if termios is None or not _is_terminal(0):
+        yield
+        return
+    before = termios.tcgetattr(0)
+    signals.restore_terminal.append(lambda: _set_modes(0, before))
+    with terminal_modes(0, on=termios.NOFLSH):
+        try:
+            yield
+        finally:
+            signals.restore_terminal.pop()
+
+
+def _is_terminal(fd):
+    try:
+        return os.isatty(fd)
+    except OSError:
+        return False
+
+
+def install():
+    """Let `sys.stdin` be a `StandardInput`, where that is possible; returns it, or what stays there."""
+    if isinstance(sys.stdin, StandardInput) or os.name != "posix":
+        return sys.stdin
+    try:
+        sys.stdin = StandardInput(sys.stdin)
+    except (AttributeError, OSError, ValueError):  # there is none, or none of the system's
+        pass
+    return sys.stdin
+
+
+def read_line(file):
+    """The next line of the text file FILE, "" at its end. The other tasks run while the current one waits for it, and an interrupt ends
+    the wait without the loss of a line."""
+    if not isinstance(file, StandardInput):
+        return run_blocking(file.readline)
+
+    def line():
+        try:
+            return file.readline()
+        except BrokenOff:
+            return None
+
+    with woken_by(file.wake):
+        while (found := run_blocking(line)) is None:
+            yield_()
+        return found
