@@ -81,11 +81,14 @@ def define_tf():
     package.define_faces(TF_PACKAGES)
 
 
-def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, turtlesim=True):
-    """Start a kernel with an image: nothing runs, the random numbers begin anew, the simulator waits for the first node."""
+def fresh_start(clock="virtual", backend="threads", seed=None, time_limit=None, turtlesim=True, **options):
+    """Start a kernel with an image: nothing runs, the random numbers begin anew, the simulator waits for the first node.
+
+    options: more of `kernel.start`.
+    """
     from cramhy_runtime import kernel
 
-    kernel.start(clock=clock, backend=backend, seed=seed, time_limit=time_limit)
+    kernel.start(clock=clock, backend=backend, seed=seed, time_limit=time_limit, **options)
     boot()
     from cramhy_runtime.lisp.numbers.random_state import seed_random
     from cramhy_runtime.turtlesim.node import start_with_first_node

@@ -10,7 +10,6 @@ that is killed leaves a file that lacks its last moments only. When the disk is 
 
 from __future__ import annotations
 
-import atexit
 import json
 import os
 from decimal import Decimal
@@ -71,7 +70,6 @@ class Recorder:
         if not self.kernel.clock.virtual:
             self.kernel.watch_instants(self._idle)
         self.kernel.at_stop(self.close)
-        atexit.register(self.close)  # a process that ends by an error stops no kernel
 
     def __enter__(self):
         return self
@@ -183,7 +181,6 @@ class Recorder:
 
     def _let_go(self):
         self.closed = True
-        atexit.unregister(self.close)
         self.kernel.not_at_stop(self.close)
         self.kernel.unwatch_instants(self._idle)
         if self._event in self._chronicler.listeners:

@@ -12,20 +12,21 @@ import sys
 from contextlib import ExitStack
 
 
-def session(options, default_time="wall", closings=None):
+def session(options, closings, default_time="wall", opened=True):
     """The `Session` that the options describe, opened to the outside as they say, with systems loaded and the package set.
 
-    closings: an `ExitStack` that takes what is to be closed at the session's end; without one nothing is opened. What cannot be opened
-    is told and ends the process, as a wrong option does.
+    closings: an `ExitStack` that ends the session: first its plans, through their cleanup, then what was opened. opened: whether the
+    options can open anything. What cannot be opened is told and ends the process, as a wrong option does.
     """
+    from cramhy_runtime import kernel
     from cramhy_runtime.repl import backtrace
     from cramhy_runtime.repl.session import Session
 
     backtrace.show(options.backtrace)
     made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
-                   turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)))
+                   turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)), cleanup_limit=options.cleanup_limit)
     gc.enable()
-    if closings is not None:
+    if opened:
         from .openings import NotPossible, open_session
 
         try:
@@ -33,6 +34,7 @@ def session(options, default_time="wall", closings=None):
         except NotPossible as problem:
             print(f"cramhy: {problem}", file=sys.stderr)
             sys.exit(2)
+    closings.callback(kernel.stop)
     for system in options.load:
         made.load(system)
     if options.package:
@@ -48,8 +50,19 @@ def evaluate_forms(made, forms):
 
 
 def main(arguments=None):
-    """Run the command; the exit status."""
+    """Run the command; the exit status. That of a process that a signal ended is 128 + the signal's number, as a shell says it."""
+    from cramhy_runtime.kernel import signals, standard_input
+
     arguments = sys.argv[1:] if arguments is None else arguments
+    with signals.held(), standard_input.terminal_of_a_session():
+        standard_input.install()
+        status = _main(arguments)
+        return 128 + signals.received[0] if signals.received else status
+
+
+def _main(arguments):
+    from cramhy_runtime.kernel.errors import Abandoned, Terminated
+
     try:
         if arguments[:1] == ["ros"] and len(arguments) > 1:  # the words belong to the tool, whatever they look like
             from . import shims
@@ -61,10 +74,12 @@ def main(arguments=None):
         if options.command in ("repl", "eval", "run", "test"):
             gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
+    except Terminated as ended:
+        return ended.code
     except BrokenPipeError:
         sys.stderr.close()
         return 1
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Abandoned):
         return 130
     finally:
         gc.enable()
@@ -96,7 +111,7 @@ def _repl(options):
     if not _checked(options):
         return 2
     with ExitStack() as closings:
-        return Console(lambda: session(options, closings=closings)).run()
+        return Console(lambda: session(options, closings)).run()
 
 
 def _eval(options):
@@ -104,34 +119,30 @@ def _eval(options):
     from cramhy_runtime.lisp.conditions import Condition
     from cramhy_runtime.repl import json_lines
     from cramhy_runtime.repl.console import report
-    from cramhy_runtime.repl.session import condition_of, handle_interrupts
+    from cramhy_runtime.repl.session import condition_of
 
     if not _checked(options):
         return 2
     streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
     with ExitStack() as closings:
         try:
-            made = session(options, "virtual", closings)
+            made = session(options, closings, "virtual")
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
-        handle_interrupts()
         json_lines.serve(made)
 
 
 def _run(options):
-    from cramhy_runtime.repl.session import handle_interrupts
-
     if not _checked(options):
         return 2
-    handle_interrupts()
     with ExitStack() as closings:
         closings.callback(_end_line)
         return _status(lambda: _load(options, closings))
 
 
 def _load(options, closings):
-    made = session(options, closings=closings)
+    made = session(options, closings)
     if options.picture:
         from .openings import save_picture
 
@@ -169,11 +180,10 @@ def _end_line():
 def _test(options):
     """Run the tests of a system, an ``.asd``, ``.lisp`` or ``.hy`` file, or of all test files below a folder."""
     from cramhy_runtime.lisp.systems import unit_tests
-    from cramhy_runtime.repl.session import handle_interrupts
 
-    handle_interrupts()
     unit_tests.limit = options.limit
-    return _status(lambda: 0 if session(options, default_time="virtual").test(options.path) else 1)
+    with ExitStack() as closings:
+        return _status(lambda: 0 if session(options, closings, "virtual", opened=False).test(options.path) else 1)
 
 
 def _turtlesim(options):

@@ -57,13 +57,11 @@ def _has_page(session):
 def replay(path, port=None):
     """Show the recording in the file ``path`` in the page, until Ctrl-C."""
     from cramhy_runtime import chronicle, image, kernel
-    from cramhy_runtime.repl.session import handle_interrupts
 
     try:
         openings.require("replay", "cramhy replay")
         kernel.start(clock="wall")
         image.boot()
-        handle_interrupts()
         with ExitStack() as closings:
             closings.callback(kernel.stop)
             try:
@@ -76,5 +74,5 @@ def replay(path, port=None):
     except openings.NotPossible as problem:
         print(f"cramhy: {problem}", file=sys.stderr)
         return 2
-    except (KeyboardInterrupt, kernel.Interrupted, kernel.Abandoned):
+    except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
         return 0

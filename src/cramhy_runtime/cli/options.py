@@ -15,6 +15,8 @@ def _session_options():
     options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
     options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks")
     options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time")
+    options.add_argument("--cleanup-limit", type=float, default=5.0, metavar="SECONDS",
+                         help="what plans get for their cleanup when the process is asked to end (5)")
     options.add_argument("--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first")
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in")
     options.add_argument("--no-turtlesim", action="store_true", help="do not start the simulator with the first node")

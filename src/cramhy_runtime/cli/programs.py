@@ -10,14 +10,13 @@ which the plan moves in the plan's time, is the one that everybody sees.
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from contextlib import ExitStack
 from typing import NamedTuple
 
+from cramhy_runtime.kernel import signals
+
 LOOK_AGAIN = 1.0  # s between two looks for a session that has started elsewhere
-_ENDS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-"""Who closes the window, or ends the process in another way, ends its programs as Ctrl-C does."""
 RUN_USAGE = """Usage: rosrun PACKAGE EXECUTABLE [ARGS]
   rosrun starts EXECUTABLE of PACKAGE with ARGS, such as __name:=x, __ns:=/y, a:=b and _parameter:=value."""
 
@@ -167,7 +166,8 @@ def _started(program, number, pid):
 
 
 def _closing(labels):
-    """What roslaunch prints when it ends its programs, the last first."""
+    """Print what roslaunch prints when it ends its programs, the last first. A signal that asked for that was answered by it."""
+    signals.answered()
     for label in labels:
         print(f"[{label}] killing on exit")
     if labels:
@@ -175,9 +175,9 @@ def _closing(labels):
 
 
 def _run_there(graph, programs, parameters):
-    """Run programs in the session of another process."""
-    for number in _ENDS:  # also when the kernel of a session of our own had them before
-        signal.signal(number, signal.default_int_handler)
+    """Run programs in the session of another process. A closed window, or another end of this process, ends them as Ctrl-C does."""
+    from cramhy_runtime.kernel.errors import Terminated
+
     for name, value in (parameters or {}).items():
         graph.set_parameter(name, value)
     ours, shown, labels = [], set(), []
@@ -200,7 +200,7 @@ def _run_there(graph, programs, parameters):
                     show(message["line"])
                 elif message["ended"]:
                     shown.discard(message["node"])
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, Terminated):
             _closing(labels)
             for node in reversed(ours):
                 if node in shown:
@@ -211,7 +211,6 @@ def _run_there(graph, programs, parameters):
 def _run_here(programs, parameters, port, view):
     """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``."""
     from cramhy_runtime import image, kernel
-    from cramhy_runtime.repl.session import handle_interrupts
     from cramhy_runtime.ros import graph
     from cramhy_runtime.ros.services import Refusal
 
@@ -219,9 +218,6 @@ def _run_here(programs, parameters, port, view):
 
     kernel.start(clock="wall")
     image.boot()
-    handle_interrupts()
-    for number in _ENDS:
-        signal.signal(number, signal.getsignal(signal.SIGINT))
     labels = []
     with ExitStack() as closings:
         closings.callback(kernel.stop)
@@ -242,7 +238,7 @@ def _run_here(programs, parameters, port, view):
                     show(line)
                 node.program.echo = _both(node.program.echo)
             return _wait(nodes)
-        except (KeyboardInterrupt, kernel.Interrupted, kernel.Abandoned):
+        except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
             _closing(labels)
             return "interrupted"
 

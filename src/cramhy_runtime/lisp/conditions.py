@@ -466,9 +466,16 @@ def _were_asked(exception, clusters):
 
 
 def from_python(exception):
-    """The condition that handlers see for a Python exception: itself if it is one, else a wrapper with its cause."""
+    """The condition that handlers see for a Python exception: itself if it is one, else a wrapper with its cause.
+
+    Hy makes an error of its own of everything that leaves a macro. If that was no error, but a request to end or an exit from a form,
+    it is raised again.
+    """
     if isinstance(exception, types.Condition):
         return exception
+    inner = exception.__context__
+    if inner is not None and not isinstance(inner, (Exception, types.Condition)) and type(exception).__name__ == "HyMacroExpansionError":
+        raise inner
     known = getattr(exception, "__lisp_condition__", None)
     if known is None:
         known = types.condition_for(exception)

@@ -8,8 +8,8 @@ installed; from a pipe, lines are read and nothing is echoed but prompts and ans
 
 from __future__ import annotations
 
-import select
 import sys
+from contextlib import nullcontext
 
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl import current_task
@@ -20,8 +20,8 @@ from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
 
 from . import backtrace, commands
-from . import session
-from .session import Interruption, condition_of, handle_interrupts, signalled_here
+from .lines import BROKEN_OFF, Lines, standard_lines
+from .session import Interruption, condition_of, signalled_here
 
 
 def condition_type(condition):
@@ -39,50 +39,18 @@ def report(condition, file=None):
     print("\n".join([f"cramhy: {condition_type(condition)}", explanation(condition), *backtrace.lines(condition)]), file=file or sys.stderr)
 
 
+def exit_status(leaving):
+    """The exit status that a SystemExit asks for, as Python understands it: a text is printed, and is a failure."""
+    code = leaving.code
+    if code is None or isinstance(code, int):
+        return code or 0
+    print(code, file=sys.stderr)
+    return 1
+
+
 def at_the_prompt():
     """Whether the task that runs is the one that reads and evaluates forms."""
     return kernel.current() is kernel.active().main
-
-
-class Input:
-    """Where lines come from: a terminal, with editing if possible, or a pipe."""
-
-    def __init__(self):
-        self.interactive = sys.stdin.isatty()
-        self.editor = None
-        self.turn = 0  # counts the calls of `line`
-        if self.interactive:
-            try:
-                from prompt_toolkit import PromptSession
-                from prompt_toolkit.history import InMemoryHistory
-
-                self.editor = PromptSession(history=InMemoryHistory())
-            except ImportError:
-                pass  # the terminal's own line editing will do
-
-    def line(self, prompt, interrupted=lambda: False):
-        """The next line without its end; ``None`` at the end of input, or when ``interrupted()`` on a terminal."""
-        streams.CONSOLE_OUTPUT.fresh_line()
-        sys.stdout.flush()
-        if self.editor is not None:
-            try:
-                return self.editor.prompt(prompt)
-            except EOFError:
-                return None
-        self.turn = mine = self.turn + 1
-        sys.stdout.write(prompt)
-        sys.stdout.flush()
-        streams.CONSOLE_OUTPUT.column = 0
-        while self.interactive:
-            ready, _, _ = select.select([sys.stdin], [], [], 0.1)
-            if interrupted():
-                return None
-            if self.turn != mine:  # Ctrl-C broke this call off, but its thread waits on: the line is for the next call
-                return None
-            if ready:
-                break
-        line = sys.stdin.readline()
-        return line.rstrip("\n") if line else None
 
 
 class Console:
@@ -90,7 +58,7 @@ class Console:
 
     def __init__(self, make_session, lines=None):
         self.make_session = make_session
-        self.input = lines or Input()
+        self.input = lines
         self.session = None
         self.level = 0
 
@@ -101,19 +69,24 @@ class Console:
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
-        handle_interrupts()
+        self.input = self.input or standard_lines()
         conditions.install_debugger(self.debug)
         streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT  # warnings belong to the transcript
         try:
             while True:
-                text = self.read_text(self.session.prompt())
-                if text is None:
-                    if self.input.interactive:
-                        print()
-                    return 0
-                self.session.with_abort(lambda text=text: self.evaluate(text))
+                try:
+                    text = self.read_text(self.session.prompt())
+                    if text is None:
+                        if self.input.interactive:
+                            streams.CONSOLE_OUTPUT.write("\n")
+                        return 0
+                    self.session.with_abort(lambda text=text: self.evaluate(text))
+                except kernel.Terminated:
+                    raise
+                except (KeyboardInterrupt, kernel.Abandoned, Interruption):  # between two steps of ours, as while values are printed
+                    self.interrupted()
         except SystemExit as leaving:
-            return leaving.code or 0
+            return exit_status(leaving)
         finally:
             conditions.install_debugger(None)
             kernel.stop()
@@ -128,10 +101,16 @@ class Console:
         while True:
             try:
                 line = self.wait_for_line(prompt if not lines else "")
-            except (KeyboardInterrupt, kernel.Interrupted):
-                kernel.interrupt_over()
+            except kernel.Terminated:
+                raise
+            except (KeyboardInterrupt, kernel.Abandoned):
+                if not at_the_prompt():
+                    raise
+                line = BROKEN_OFF
+            if line is BROKEN_OFF:
                 lines = []
-                print()
+                self.forget_interrupt()
+                streams.CONSOLE_OUTPUT.write("\n")
                 continue
             if line is None:
                 return "\n".join(lines) if lines else None
@@ -142,42 +121,73 @@ class Console:
                 lines = []
             elif not incomplete(text):
                 return text
+            elif self.ctrl_c_came():
+                lines = []
+                streams.CONSOLE_OUTPUT.write("\n")
 
     def wait_for_line(self, prompt):
-        # In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait. In both cases
-        # others who are connected (a server listens) are heard and answered meanwhile.
-        if not at_the_prompt():
-            return self.wait_for_line_in_a_task(prompt)
-        if self.session.virtual and not kernel.active().hears_outside:
-            with session.keyboard_interrupts():
-                kernel.settle()  # Ctrl-C that came too late for the last form is for the prompt
-                return self.input.line(prompt)
-        return kernel.run_blocking(self.input.line, prompt)
+        """The next line; ``None`` at the end of input, `BROKEN_OFF` after Ctrl-C.
 
-    def wait_for_line_in_a_task(self, prompt):
-        """In the debugger of a plan's task, which keeps the baton: all others wait for the user. Ctrl-C ends the whole form."""
-        interrupted = kernel.active().interrupt_waits
-        line = self.input.line(prompt, interrupted)
-        if line is None and interrupted():
-            kernel.yield_()  # the main task hears of it, and evaporates the plan with this task
+        In virtual time the clock stands still at the prompt; in wall time the turtle goes on while we wait. In both cases others who
+        are connected (a server listens) are heard and answered meanwhile. In the debugger of a plan's task, which keeps the baton, all
+        others wait for the user; there Ctrl-C ends the whole form.
+        """
+        wake = self.input.wake if getattr(self.input, "can_be_woken", False) else None
+        with kernel.woken_by(wake) if wake else nullcontext():
+            if not self.keeps_baton():
+                line = kernel.run_blocking(self.input.line, prompt)
+            else:
+                if at_the_prompt():
+                    kernel.settle()  # Ctrl-C that came too late for the last form is for the prompt
+                line = self.input.line(prompt)
+            if line is BROKEN_OFF:
+                if not at_the_prompt() and not kernel.active().interrupted:
+                    kernel.interrupt()  # the key was read as a character
+                kernel.yield_()  # what woke us is raised here; in a plan's task the main task hears of it, and ends the plan
+        if isinstance(self.input, Lines):
+            self.input.taken()
         return line
+
+    def ctrl_c_came(self):
+        """Whether Ctrl-C was pressed right after the line that was read."""
+        return isinstance(self.input, Lines) and self.input.take_pressed()
+
+    def keeps_baton(self):
+        """Whether everything else stands still while we wait for a line."""
+        if not at_the_prompt():
+            return True
+        can_be_interrupted = not isinstance(self.input, Lines) or self.input.can_be_woken
+        return self.session.virtual and not kernel.active().hears_outside and can_be_interrupted
+
+    def forget_interrupt(self):
+        kernel.interrupt_over()
+        if isinstance(self.input, Lines):
+            self.input.dealt_with()
+
+    def interrupted(self):
+        """Tell that a form was interrupted; its plan has been cleaned up."""
+        self.forget_interrupt()
+        streams.CONSOLE_OUTPUT.fresh_line()
+        streams.CONSOLE_OUTPUT.write("; Interrupted.\n")
+        streams.CONSOLE_OUTPUT.flush()
 
     # ---------------------------------------------------------------------------------------------------------- evaluating
 
     def evaluate(self, text):
         """Evaluate and print every form of ``text``; a line that is a ROS command is carried out."""
         try:
+            if self.ctrl_c_came():
+                kernel.interrupt()
             if commands.is_command(text):
                 return commands.run_line(text, streams.CONSOLE_OUTPUT.write)
             for form, reader in self.session.forms(text):
                 self.show(self.session.evaluate(form, reader))
         except Interruption:
-            streams.CONSOLE_OUTPUT.fresh_line()
-            print("; Interrupted.")
+            self.interrupted()
         except Condition as condition:
             # a failure that left the form without a debugger, such as one of another task
             streams.CONSOLE_OUTPUT.fresh_line()
-            print(f"{condition_type(condition)}\n{explanation(condition)}")
+            streams.CONSOLE_OUTPUT.write(f"{condition_type(condition)}\n{explanation(condition)}\n")
         except Exception as exception:
             self.debug(condition_of(exception))
 
@@ -230,7 +240,7 @@ class Console:
         if text.isdigit():
             if int(text) < len(restarts):
                 return conditions.invoke_restart_interactively(restarts[int(text)])
-            return print(f"There is no choice {text}; they go from 0 to {len(restarts) - 1}.")
+            return streams.CONSOLE_OUTPUT.write(f"There is no choice {text}; they go from 0 to {len(restarts) - 1}.\n")
         chosen = "ABORT" if name in ("Q", "QUIT", "ABORT") else name
         for restart in restarts:
             if symbol_name(restart.name) == chosen and "(" not in text and (text.startswith(":") or chosen == "ABORT"):

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import nullcontext
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel import standard_input
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.evaluation import compilation_unit
 from cramhy_runtime.lisp.streams import streams
@@ -41,9 +43,22 @@ def serve(session, lines=None, out=None):
 
 
 def _next(lines):
-    if kernel.active().hears_outside:  # a server listens: its clients are answered while we wait
-        return kernel.run_blocking(next, lines, None)
-    return next(lines, None)
+    """The next request, ``None`` at the end. An interrupt between two requests has nothing to end."""
+    wake = getattr(lines, "wake", None)
+    while True:
+        try:
+            with kernel.woken_by(wake) if wake else nullcontext():
+                if kernel.active().hears_outside:  # a server listens: its clients are answered while we wait
+                    return kernel.run_blocking(next, lines, None)
+                return next(lines, None)
+        except standard_input.BrokenOff:
+            try:
+                kernel.yield_()  # what woke us is raised here
+            except kernel.Interrupted:
+                pass
+        except kernel.Interrupted:
+            pass
+        kernel.interrupt_over()
 
 
 def _standard_input():

@@ -11,8 +11,6 @@ import functools
 import gc
 import linecache
 import os
-import signal
-from contextlib import contextmanager
 from pathlib import Path
 
 from cramhy_runtime import image, kernel
@@ -62,11 +60,11 @@ class Session:
 
     time: "virtual" or "wall". seed: of the scheduler's order, ``None`` for first come, first served. backend: "threads" or
     "greenlet". time_limit: seconds of plan time after which a form is ended. turtlesim: whether the simulator starts with the
-    first node.
+    first node. cleanup_limit: seconds that plans get for their cleanup when the session ends, or ``None``.
     """
 
-    def __init__(self, time="wall", seed=None, backend="threads", time_limit=None, turtlesim=True):
-        image.fresh_start(time, backend, seed, time_limit, turtlesim)
+    def __init__(self, time="wall", seed=None, backend="threads", time_limit=None, turtlesim=True, cleanup_limit=kernel.CLEANUP_LIMIT):
+        image.fresh_start(time, backend, seed, time_limit, turtlesim, cleanup_limit=cleanup_limit)
         evaluator.PACKAGE.value = COMMON_LISP_USER
         define_leaving()
         for variables in (HISTORY, LAST_VALUES, LAST_FORMS, [THIS_FORM]):
@@ -93,6 +91,8 @@ class Session:
         """Load a system by name, or a file by its path."""
         try:
             self._load(system)
+        except kernel.Terminated:
+            raise
         except (kernel.Interrupted, kernel.Abandoned):
             raise Interruption from None
         finally:
@@ -116,6 +116,8 @@ class Session:
         """Run the tests of a system by name, a file, or the test files below a folder; whether there were some and all passed."""
         try:
             return self._test(path)
+        except kernel.Terminated:
+            raise
         except (kernel.Interrupted, kernel.Abandoned):
             raise Interruption from None
         finally:
@@ -162,6 +164,8 @@ class Session:
                 values = all_values(evaluator.evaluate(form, reader.filename, reader.positions))
             if kernel.current() is kernel.active().main:  # and not the debugger of a plan's task
                 kernel.settle()
+        except kernel.Terminated:
+            raise
         except (kernel.Interrupted, kernel.Abandoned):
             raise Interruption from None
         except Condition as condition:
@@ -199,23 +203,3 @@ def condition_of(exception):
     condition = from_python(exception)
     locate(condition, exception)
     return condition
-
-
-def handle_interrupts():
-    """Make Ctrl-C end the running form, through its cleanup, instead of raising KeyboardInterrupt anywhere."""
-    signal.signal(signal.SIGINT, lambda number, frame: kernel.interrupt())
-
-
-
-@contextmanager
-def keyboard_interrupts():
-    """Within it Ctrl-C raises KeyboardInterrupt at once, as a wait for input needs it, which is no wait of the kernel's."""
-    try:
-        before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    except ValueError:  # not in the main thread, where signals do not come anyway
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -7,11 +7,10 @@ up at every write, because pytest and REPLs replace ``sys.stdout``. Source: ANSI
 
 from __future__ import annotations
 
-import select
 import sys
 import weakref
 
-from cramhy_runtime import kernel
+from cramhy_runtime.kernel import lost_output, standard_input
 
 from ..data import UNBOUND, lisp_list, one
 from ..dynamic import special
@@ -41,8 +40,19 @@ class ConsoleOutput(FileOutput):
         self.copies = []
 
     def emit(self, text):
-        super().emit(text)
+        try:
+            super().emit(text)
+        except OSError as problem:
+            if not lost_output.lost(self.file, problem):
+                raise
         self.record(text)
+
+    def flush(self):
+        try:
+            super().flush()
+        except OSError as problem:
+            if not lost_output.lost(self.file, problem):
+                raise
 
     def record(self, text):
         """Write only to the copies: what the user typed stands on the terminal already."""
@@ -110,10 +120,12 @@ class ConsoleInput(InputStream):
     def more(self):
         if sys.stdin is None:
             return ""
-        return kernel.run_blocking(sys.stdin.readline)
+        return standard_input.read_line(sys.stdin)
 
     def listen(self):
-        return super().listen() or self.is_interactive and bool(select.select([sys.stdin], [], [], 0)[0])
+        if super().listen():
+            return True
+        return self.is_interactive and isinstance(sys.stdin, standard_input.StandardInput) and sys.stdin.ready()
 
     def close(self, abort=False):
         """The console stays open: the prompt needs it."""
