@@ -7,6 +7,7 @@ import pty
 import re
 import select
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -18,19 +19,33 @@ PATIENCE = 30  # s; only a test that fails waits so long
 class Terminal:
     """``cramhy`` with ``arguments`` in a pseudo-terminal of its own. A context manager.
 
-    editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used.
+    editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used. wrapped: the
+    terminal is kept open by this process, too, as a shell does, so that its modes can be looked at (`slave`); `begin` starts the program.
     """
 
-    def __init__(self, *arguments, editor=False):
+    def __init__(self, *arguments, editor=False, wrapped=False):
         self.text = ""
         self.seen = 0
+        self.slave = None
         environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}", "TERM": "dumb",
                        "PROMPT_TOOLKIT_NO_CPR": "1"}
+        hide = "" if editor else "sys.modules['prompt_toolkit'] = None; "
+        program = f"import sys; {hide}from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
+        self.command = [sys.executable, "-c", program, *arguments]
+        self.environment = environment
+        if wrapped:
+            self.pid = None
+            self.master, self.slave = pty.openpty()
+            return
         self.pid, self.master = pty.fork()
         if self.pid == 0:
-            hide = "" if editor else "sys.modules['prompt_toolkit'] = None; "
-            program = f"import sys; {hide}from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
-            os.execve(sys.executable, [sys.executable, "-c", program, *arguments], environment)
+            os.execve(sys.executable, self.command, environment)
+
+    def begin(self):
+        """Start the program in a terminal that is ``wrapped``."""
+        self.process = subprocess.Popen(self.command, env=self.environment, stdin=self.slave, stdout=self.slave, stderr=self.slave,
+                                        start_new_session=True)
+        self.pid = self.process.pid
 
     def __enter__(self):
         return self
@@ -39,7 +54,15 @@ class Terminal:
         if self.pid is not None:
             os.kill(self.pid, signal.SIGKILL)
             os.waitpid(self.pid, 0)
+        if self.master is not None:
+            os.close(self.master)
+        if self.slave is not None:
+            os.close(self.slave)
+
+    def hang_up(self):
+        """Close the terminal, as its window is closed."""
         os.close(self.master)
+        self.master = None
 
     def type(self, line):
         """Type a line and Enter."""
@@ -56,9 +79,20 @@ class Terminal:
         return self.status()
 
     def status(self):
-        while self._more(PATIENCE):
+        """Wait for the end: the exit status."""
+        if self.slave is not None:
+            status = self.process.wait(PATIENCE)
+            self.pid = None
+            return status
+        while self.master is not None and self._more(PATIENCE):
             pass
-        _, status = os.waitpid(self.pid, 0)
+        until = time.monotonic() + PATIENCE
+        while True:
+            found, status = os.waitpid(self.pid, os.WNOHANG)
+            if found:
+                break
+            assert time.monotonic() < until, f"it does not end; it said {self.text!r}"
+            time.sleep(0.01)
         self.pid = None
         return os.waitstatus_to_exitcode(status)
 
