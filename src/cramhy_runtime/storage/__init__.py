@@ -15,14 +15,16 @@ A process that is killed has no time to tidy up. The name of an unfinished file 
 with the process, also in another container. An unfinished file without a lock is removed by the next start, or by the next write into
 that folder.
 
-Where the parts are: `parts` is a file that is being written, in one go or for hours; `whole` writes a file at once; `unfinished` is about
-their names and locks; `leftovers` removes or recovers what killed processes left; `backups` keeps the older version of a file; `sealed`
-is for code that is kept, and proves whose it is and that it is undamaged before anybody reads it; `reasons` tells what to try.
+Where the parts are: `parts` is a file that is being written, in one go or for hours; `whole` writes a file at once, `trees` several;
+`unfinished` is about their names and locks; `leftovers` removes or recovers what killed processes left; `backups` keeps the older version
+of a file; `sealed` is for code that is kept, and proves whose it is and that it is undamaged before anybody reads it; `reasons` tells
+what to try.
 """
 
 from .leftovers import tidy, tidy_once
 from .parts import Part, growing
 from .reasons import why
+from .trees import Tree
 from .whole import write_whole, writing
 
-__all__ = ["Part", "growing", "tidy", "tidy_once", "why", "write_whole", "writing"]
+__all__ = ["Part", "Tree", "growing", "tidy", "tidy_once", "why", "write_whole", "writing"]

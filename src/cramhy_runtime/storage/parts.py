@@ -78,10 +78,11 @@ class Part:
         problem.filename, problem.filename2 = self.path, None
         return problem
 
-    def finish(self, durable=True, backup=None):
+    def finish(self, durable=True, backup=None, lost=True):
         """Check that everything is on the disk, and give the file its name.
 
-        durable: to wait for the disk, not only for the system. backup: a name for the older file, beside it; else that file goes.
+        durable: to wait for the disk, not only for the system. backup: a name for the older file, beside it; else that file goes. lost:
+        whether to discard what was written if that fails; else it is the caller's to `discard` or `keep`.
         """
         try:
             self.file.flush()
@@ -93,11 +94,11 @@ class Part:
                     os.replace(self.name, self.place)
                 else:
                     backups.replace(self.name, self.place, backup)
-        except OSError as problem:
-            self.discard()
-            raise self._named(problem) from None
-        except BaseException:
-            self.discard()
+        except BaseException as problem:
+            if lost:
+                self.discard()
+            if isinstance(problem, OSError):
+                raise self._named(problem) from None
             raise
         self.name = None
         self._unlock()

@@ -13,6 +13,7 @@ _REMEDIES = {
     "EROFS": "Choose a place that may be written to.",
     "EACCES": "Choose a file and a folder that you may write to.",
     "EPERM": "Choose a file and a folder that you may write to.",
+    "EEXIST": "Choose another name.",
     "ENOENT": "Make its folder first, or choose another one.",
     "ENOTDIR": "Choose a name in a folder.",
     "EISDIR": "Choose the name of a file.",
