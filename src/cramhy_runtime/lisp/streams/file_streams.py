@@ -349,21 +349,21 @@ def _part(path, name, beside=False):
         storage.tidy_once(os.path.dirname(os.path.realpath(name)))
         return storage.Part(name, claim=not beside)
 
-    return _checked(path, opened)
+    return _checked(path, opened, storage.why)
 
 
 def _opened(path, name, mode):
     return _checked(path, lambda: kernel.run_blocking(lambda: open(name, mode)) if not is_regular(name) else open(name, mode))
 
 
-def _checked(path, opened):
-    """The value of ``opened()``; what goes wrong in it is a file-error."""
+def _checked(path, opened, told=reason):
+    """The value of ``opened()``; what goes wrong in it is a file-error. told: makes a text of an `OSError`."""
     try:
         return opened()
     except FileNotFoundError:
         return error(SimpleFileError(path, "The path ~S does not exist.", path))
     except OSError as problem:
-        return error(SimpleFileError(path, "Error opening ~S: ~A", path, reason(problem)))
+        return error(SimpleFileError(path, "Error opening ~S: ~A", path, told(problem)))
     except ValueError as problem:
         return error(SimpleFileError(path, "Error opening ~S: ~A", path, str(problem)))
 
