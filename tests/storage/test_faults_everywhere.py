@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -167,6 +168,7 @@ def test_with_rename_the_older_backup_stays_when_the_new_file_fails(session, tmp
 
 def test_kept_code_that_cannot_be_written_is_no_loss_and_no_rubbish(session, tmp_path, monkeypatch):
     source = tmp_path / "x.lisp"
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
     for disk in each_failure(tmp_path, monkeypatch):
         source.write_text(f"(defparameter cl-user::*loaded* {disk.fails})")
         shutil.rmtree(tmp_path / "__pycache__", ignore_errors=True)
