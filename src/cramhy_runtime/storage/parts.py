@@ -28,15 +28,16 @@ class Part:
     """A file that will be at ``path``. ``file``: to write to, binary, buffered, and to be read again by `seek`.
 
     mode: the permissions of the file, of which the user's umask takes some away; without it those of the file that is replaced, or the
-    usual ones. ending: which kind of part it is. claim: to take the name ``path`` at once, if it is free. Errors: `OSError` with
-    ``path`` as its ``filename``, then and in `finish`.
+    usual ones. ending: which kind of part it is. claim: to take the name ``path`` at once, if it is free. follow: whether a link is
+    followed, and a device written to; else what has the name is replaced, whatever it is. Errors: `OSError` with ``path`` as its
+    ``filename``, then and in `finish`.
     """
 
-    def __init__(self, path, mode=None, ending=PART, claim=False):
+    def __init__(self, path, mode=None, ending=PART, claim=False, follow=True):
         self.path = os.fspath(path)
         self.name = self._lock = self.file = None
         try:
-            self.place, status = _place(self.path)
+            self.place, status = _place(self.path) if follow else (self.path, None)
             if status is not None and (not stat.S_ISREG(status.st_mode) or self.place.startswith(_DIRECT)):
                 self._open_directly()
             else:

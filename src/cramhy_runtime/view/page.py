@@ -90,7 +90,8 @@ def show(url, port, folder):
     path = way(port, folder)
     try:
         storage.write_whole(path, '<!doctype html><meta charset="utf-8"><title>cramhy</title>'
-                                  f'<meta http-equiv="refresh" content="0; url={html.escape(url)}">\n', mode=0o600, durable=False)
+                                  f'<meta http-equiv="refresh" content="0; url={html.escape(url)}">\n',
+                            mode=0o600, durable=False, follow=False)
     except OSError:
         return False  # the page's address has been told, and can be opened by hand
     return webbrowser.open(path.as_uri())

@@ -227,7 +227,8 @@ def _keep(path, fingerprint, codes):
         if distrust_of_folder(target.parent):
             return
         # without waiting for the disk: the checksum shows what a breakdown left
-        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(codes)), mode=0o644, durable=False)
+        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(codes)), mode=0o644, durable=False,
+                            follow=False)
     except OSError:
         pass  # a folder that cannot be written only means compiling again next time
 
