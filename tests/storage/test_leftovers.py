@@ -166,7 +166,7 @@ def test_a_killed_recording_is_recovered_and_told_of_by_the_next_start(tmp_path)
 
     (tmp_path / "q.lisp").write_text("(roslisp:start-ros-node \"n\") (turtlesim:press :up) (sleep 1)")
     (tmp_path / "p.lisp").write_text(RECORDS)
-    command = [sys.executable, "-m", "cramhy_runtime.cli", "run"]
+    command = [sys.executable, "-m", "cramhy_runtime.cli", "run", "--time", "virtual"]
     first = subprocess.run([*command, "q.lisp", "--record", "x.mcap"], cwd=tmp_path, capture_output=True, text=True)
     assert (first.returncode, first.stderr) == (0, "")
     older = (tmp_path / "x.mcap").read_bytes()
