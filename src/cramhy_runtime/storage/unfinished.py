@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
 
 try:
     import fcntl
@@ -24,7 +23,7 @@ def part_name(path, ending):
     """A name for an unfinished file ``path``, beside it, that nobody can foretell."""
     folder, name = os.path.split(path)
     name = os.fsdecode(os.fsencode(name)[:_LONGEST[ending]])
-    return os.path.join(folder, f".{name}.{secrets.token_hex(8)}{ending}")
+    return os.path.join(folder, f".{name}.{os.urandom(8).hex()}{ending}")
 
 
 def parsed(name):
