@@ -42,6 +42,7 @@ def session():
     made.evaluate_text("(turtlesim:press :left) (sleep 1)")
     made.evaluate_text("(def-top-level-cram-function fetch () (sleep 1)) (cet:enable-fluent-tracing) (fetch)")
     yield made
+    made.evaluate_text("(cet:disable-fluent-tracing)")
     kernel.stop()
 
 
