@@ -92,6 +92,29 @@ def test_a_file_cut_off_at_any_byte_is_read_as_far_as_whole_chunks_go(recorded, 
         assert "cut off" in found.cut
 
 
+def test_a_small_file_cut_off_at_every_byte_is_readable_up_to_there(tmp_path):
+    from cramhy_runtime.repl.session import Session
+
+    session = Session(time="virtual", seed=1, turtlesim=False)
+    session.package = "CRAM-USER"
+    with chronicle.record(tmp_path / "x.mcap"):
+        session.evaluate_text("(top-level (sleep 1))")
+    content = (tmp_path / "x.mcap").read_bytes()
+    all_of_them = list(chronicle.read(tmp_path / "x.mcap").messages())
+    finished, counts = [end for end, _ in chunks_of(content)], []
+    assert all_of_them and finished
+    for end in range(len(content)):
+        try:
+            found = read_bytes(tmp_path, content[:end])
+        except RecordingError as problem:
+            assert str(problem).startswith(str(tmp_path / "y.mcap")) and "\n" not in str(problem) and not counts
+        else:
+            counts.append(len(list(found.messages())))
+            assert bool(found.cut) or counts[-1] == len(all_of_them)
+            assert counts[-1] == (len(all_of_them) if end >= finished[-1] else 0) or len(finished) > 1
+    assert counts == sorted(counts) and counts[-1] == len(all_of_them)
+
+
 @given(data=st.data())
 @settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 def test_damaged_bytes_are_a_recording_or_the_declared_error(recorded, tmp_path_factory, data):

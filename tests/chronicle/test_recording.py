@@ -254,19 +254,22 @@ def test_a_full_disk_ends_the_recording_but_not_the_plan(session, tmp_path, monk
     monkeypatch.setattr(recorder, "FLUSH", 10**8)
     made = chronicle.record(tmp_path / "x.mcap")
     with open("/dev/full", "wb") as full:
-        os.dup2(full.fileno(), made._file.fileno())
+        os.dup2(full.fileno(), made._part.file.fileno())
     session.evaluate_text(DRIVE)
     assert made.closed and made.problem == "No space left on device"
     made.close()
     told = " ".join(capsys.readouterr().err.split())
-    assert told.count(f"The recording {tmp_path / 'x.mcap'} ends here: No space left on device. The plan goes on.") == 1
+    assert told.count(f"The recording {tmp_path / 'x.mcap'} ends here: No space left on device. Make room on that disk, or choose "
+                      "another place. The plan goes on.") == 1
     assert not session.evaluate_text("(sleep 1)")[0]
 
 
 @pytest.mark.parametrize("path, text", [
-    ("nowhere/x.mcap", "The recording {0}/nowhere/x.mcap cannot be written: No such file or directory."),
-    ("", "The recording {0} cannot be written: Is a directory."),
-    pytest.param("/dev/full", "The recording /dev/full cannot be written: No space left on device.",
+    ("nowhere/x.mcap", "The recording {0}/nowhere/x.mcap cannot be written: No such file or directory. Make its folder first, or choose "
+                       "another one."),
+    ("", "The recording {0} cannot be written: Is a directory. Choose the name of a file."),
+    pytest.param("/dev/full", "The recording /dev/full cannot be written: No space left on device. Make room on that disk, "
+                 "or choose another place.",
                  marks=pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no disk that is always full")),
 ])
 def test_a_file_that_cannot_be_written_is_told_at_once(session, tmp_path, path, text):

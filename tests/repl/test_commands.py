@@ -181,9 +181,9 @@ class TestShims:
         (tmp_path / "file").write_text("")
         done = cramhy("ros-shims", "--install", "file")
         assert (done.returncode, done.stderr) == (
-            1, "cramhy: the programs cannot be written into file: file: File exists. Choose another folder.\n")
+            1, "cramhy: the programs cannot be written into file: file: File exists. Choose another name.\n")
         done = cramhy("ros", "catkin_create_pkg", "file")
-        assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists\n")
+        assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists. Choose another name.\n")
 
     def test_a_real_ros_on_the_path_is_left_alone(self, cramhy, tmp_path, monkeypatch):
         real = tmp_path / "real"

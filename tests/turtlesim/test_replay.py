@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.condition_types import SimpleError, TypeError_, shown
+from cramhy_runtime.lisp.condition_types import FileError, SimpleError, TypeError_, shown
 from cramhy_runtime.lisp.packages import sym
 from cramhy_runtime.turtlesim import history, package, pictures, replay
 from cramhy_runtime.turtlesim.history import History
@@ -217,9 +217,10 @@ class TestMistakes:
 
     def test_a_folder_that_is_not_there(self, turtle):
         for ending in ("png", "svg"):
-            with pytest.raises(SimpleError) as error:
+            with pytest.raises(FileError) as error:
                 package.save_picture(f"/no/such/folder/x.{ending}")
-            assert error.value.report() == f"The picture /no/such/folder/x.{ending} cannot be written: No such file or directory."
+            assert error.value.report() == (f"The picture /no/such/folder/x.{ending} cannot be written: No such file or directory. "
+                                            "Make its folder first, or choose another one.")
 
     @pytest.mark.parametrize("speed", [0, -1, math.nan, "fast"])
     def test_a_speed_that_is_none(self, turtle, speed, tmp_path):

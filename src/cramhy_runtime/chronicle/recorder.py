@@ -6,15 +6,19 @@ plan on the ROS epoch. In virtual time the same run gives the same bytes (law 5)
 Nobody waits for the file. A message is made JSON when it is sent, some microseconds, and goes into a chunk in memory; a chunk is packed
 and written when it is full, or when the plan's time has gone on by `FLUSH`; a full one takes one to three milliseconds. So a process
 that is killed leaves a file that lacks its last moments only. When the disk is full the recording ends with a warning, the plan does not.
+
+A recording has its name from the beginning if no file has it. An older file of that name stays until the new recording is complete, and is
+replaced then; if the new one is cut off, both stay, the new one under a name like ``x.recovered.mcap`` (`storage.growing`).
 """
 
 from __future__ import annotations
 
 import json
+import errno
 import os
 from decimal import Decimal
 
-from .. import __version__, kernel
+from .. import __version__, kernel, storage
 from ..lisp.condition_types import SimpleWarning
 from ..lisp.conditions import warn
 from ..ros import graph
@@ -50,14 +54,23 @@ class Recorder:
         self._channels = {}  # (topic, type) -> [id, messages so far]
         self._subscriptions = {}
         self._scene = scene.Scene()
+        for recovered in storage.tidy(os.path.dirname(os.path.realpath(self.path))):
+            warn(SimpleWarning("A recording was cut off when its process was killed. It is now ~a.", recovered))
+        self._part = None
         try:
-            self._file = open(self.path, "wb")
-            self._writer = writer.Writer(self._file, chunk_size=CHUNK)
+            self._part = storage.growing(self.path)
+            self._writer = writer.Writer(self._part.file, chunk_size=CHUNK)
             self._writer.start(profile="", library=f"cramhy {__version__}")
             self._writer.add_metadata("cramhy", self._about(program))
             self._writer.flush()  # whenever the process is killed, the file is a recording
-        except OSError as problem:
-            raise RecordingError(f"The recording {path} cannot be written: {problem.strerror or problem}.") from None
+        except BaseException as problem:
+            if self._part is not None:
+                self._part.discard()
+            if not isinstance(problem, OSError):
+                raise
+            if problem.errno == errno.EBUSY and self._part is None:
+                raise RecordingError(f"The recording {path} cannot be written: {problem.strerror}. Choose another name.") from None
+            raise RecordingError(f"The recording {path} cannot be written: {storage.why(problem)}") from None
         self._node = self.graph.node(self._free_name(), hidden=True)
         self._chronicler = chronicler.active()
         for kind, message in self._chronicler.state.messages().items():
@@ -173,11 +186,9 @@ class Recorder:
     def _give_up(self, problem):
         self.problem = f"{problem.strerror or problem}"
         self._let_go()
-        try:
-            self._file.close()
-        except OSError:
-            pass  # it was that file which could not be written
-        warn(SimpleWarning("The recording ~a ends here: ~a. The plan goes on.", self.path, self.problem))
+        kept = self._part.keep()
+        place = "" if kept in (self.path, self._part.place) else f" What it has is in {kept}, since the file of that name is an older one."
+        warn(SimpleWarning("The recording ~a ends here: ~a~a The plan goes on.", self.path, storage.why(problem), place))
 
     def _let_go(self):
         self.closed = True
@@ -201,6 +212,6 @@ class Recorder:
         self._let_go()
         try:
             self._writer.finish()
-            self._file.close()
+            self._part.finish(lost=False)
         except OSError as problem:
             self._give_up(problem)

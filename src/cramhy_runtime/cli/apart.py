@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import ExitStack
 
@@ -64,6 +65,7 @@ def replay(path, port=None):
         image.boot()
         with ExitStack() as closings:
             closings.callback(kernel.stop)
+            openings.tidy(lambda: os.path.dirname(os.path.realpath(path)))
             try:
                 closings.callback(chronicle.replay(path).close)
             except ValueError as problem:

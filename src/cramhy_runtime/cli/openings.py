@@ -7,13 +7,14 @@ closed when the session has ended, the last first, and after the plan's cleanup,
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from cramhy_runtime import chronicle, rosbridge, view
+from cramhy_runtime import chronicle, rosbridge, storage, view
 
 NEEDS = {
     "serve": ("web", ("uvicorn", "websockets")),
@@ -77,6 +78,9 @@ def _is_address(text):
 
 def open_session(options, closings):
     """Open what ``options`` ask for, in the session that has just begun. ``closings`` is an `contextlib.ExitStack`."""
+    tidy(os.getcwd)
+    if getattr(options, "picture", None):
+        tidy(lambda: os.path.dirname(os.path.realpath(options.picture)))
     if options.record:
         closings.callback(chronicle.record(options.record, program_of(options)).close)
     if options.ros:
@@ -91,6 +95,16 @@ def open_session(options, closings):
         server, _ = serve(closings, options.port, options.view, options.origin)
         if not options.view:
             print(f"; Clients of rosbridge: {server.address}", file=sys.stderr, flush=True)
+
+
+def tidy(folder):
+    """Remove or recover what killed processes left in the folder that ``folder()`` gives; a line tells of recordings."""
+    try:
+        recovered = storage.tidy(folder())
+    except OSError:
+        return  # the working folder is gone
+    for path in recovered:
+        print(f"; A recording was cut off when its process was killed. It is now {path}", file=sys.stderr, flush=True)
 
 
 @contextmanager

@@ -6,10 +6,12 @@ programs; both call ``cramhy ros TOOL ...``, which is carried out here. A real R
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
 from pathlib import Path
 
+from cramhy_runtime import storage
 from cramhy_runtime.ros_tools import running
 
 _HOMES = {
@@ -37,15 +39,17 @@ def run(folder=None):
             print('roscd() { local to; to="$(cramhy ros roscd "$@")" && cd "$to"; }')
         return 0
     target = Path(folder)
+    others = [tool for tool in tools if os.path.lexists(target / tool) and not _is_ours(target / tool)]
+    tools = [tool for tool in tools if tool not in others]
+    if others:
+        print(f"cramhy: {', '.join(others)} in {target} were not made by cramhy, so they stay as they are.", file=sys.stderr)
     try:
-        target.mkdir(parents=True, exist_ok=True)
-        for tool in tools:
-            program = target / tool
-            program.write_text(f'#!/bin/sh\n# {_MARK}\nexec "{sys.executable}" -m cramhy_runtime.cli ros {tool} "$@"\n')
-            program.chmod(0o755)
+        with storage.Tree() as made:
+            made.folder(target)
+            for tool in tools:
+                made.write(target / tool, f'#!/bin/sh\n# {_MARK}\nexec "{sys.executable}" -m cramhy_runtime.cli ros {tool} "$@"\n', 0o777)
     except OSError as problem:
-        print(f"cramhy: the programs cannot be written into {target}: {problem.filename}: {problem.strerror}. Choose another folder.",
-              file=sys.stderr)
+        print(f"cramhy: the programs cannot be written into {target}: {problem.filename}: {storage.why(problem)}", file=sys.stderr)
         return 1
     print(f"Wrote {', '.join(tools)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
           'eval "$(cramhy ros-shims)"')
@@ -71,7 +75,7 @@ def tool(name, arguments):
     except BrokenPipeError:
         raise
     except OSError as problem:  # a folder that cannot be read, or written to
-        print(f"{name}: {problem.filename}: {problem.strerror}", file=sys.stderr)
+        print(f"{name}: {problem.filename}: {storage.why(problem)}", file=sys.stderr)
         return 1
 
 

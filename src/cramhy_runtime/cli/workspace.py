@@ -11,6 +11,8 @@ import re
 import sys
 from pathlib import Path
 
+from cramhy_runtime import storage
+
 VERSIONS = {"turtlesim": "0.10.2", "roslisp": "1.9.25"}
 
 
@@ -28,12 +30,14 @@ def catkin_create_pkg(arguments):
     if not re.fullmatch(r"[a-z][a-z0-9_-]*", name):
         return _fail(f"catkin_create_pkg: '{name}' is no name for a package: a lower-case letter, then such letters, digits, _ and - only.")
     folder = Path.cwd() / name
-    if (folder / "package.xml").exists():
-        return _fail(f"catkin_create_pkg: {folder} has a package.xml already.")
-    for sub in ("", "src", f"include/{name}"):
-        (folder / sub).mkdir(parents=True, exist_ok=True)
-    (folder / "package.xml").write_text(_manifest(name, dependencies))
-    (folder / "CMakeLists.txt").write_text(_cmake(name, dependencies))
+    for file in ("package.xml", "CMakeLists.txt"):
+        if os.path.lexists(folder / file):
+            return _fail(f"catkin_create_pkg: {folder} has a {file} already.")
+    with storage.Tree() as made:
+        for sub in ("", "src", f"include/{name}"):
+            made.folder(folder / sub)
+        made.write(folder / "CMakeLists.txt", _cmake(name, dependencies))
+        made.write(folder / "package.xml", _manifest(name, dependencies))  # with it, it is a package
     print(f"Created file {name}/package.xml\nCreated file {name}/CMakeLists.txt\nCreated folder {name}/include/{name}\n"
           f"Created folder {name}/src\nSuccessfully created files in {folder}. Please adjust the values in package.xml.")
     return 0

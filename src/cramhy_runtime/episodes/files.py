@@ -23,7 +23,7 @@ from ..lisp.files.pathnames import pathname
 from ..lisp.packages import keyword
 from ..lisp.printer.printer import princ_to_string
 from ..lisp.streams.basic_streams import Stream
-from ..lisp.streams.file_streams import with_open_file
+from ..lisp.streams.file_streams import open_whole, with_open_file, with_open_stream
 from ..lisp.streams.streams import input_stream, output_stream
 from .knowledge import checked, current_episode, last_episode, stamp, with_episode_knowledge
 from .offline import OfflineEpisodeKnowledge, OfflineTask
@@ -32,7 +32,7 @@ from .trees import nodes_of
 from .values_on_file import BadFile, Reader, Writer
 
 FORMAT, VERSION = "episode", 1
-INPUT, OUTPUT, IF_EXISTS = map(keyword, ("INPUT", "OUTPUT", "IF-EXISTS"))
+INPUT, IF_EXISTS = map(keyword, ("INPUT", "IF-EXISTS"))
 
 
 # ------------------------------------------------------------------------------------------------------------------- saving
@@ -64,7 +64,7 @@ def save_to(destination, episode, if_exists=UNSUPPLIED):
     if isinstance(destination, Stream):
         output_stream(destination).write(text)
     else:
-        with_open_file(lambda stream: None if stream is None else stream.write(text), destination, direction=OUTPUT, if_exists=if_exists)
+        with_open_stream(lambda stream: None if stream is None else stream.write(text), open_whole(destination, if_exists))
 
 
 _save = lispify(lambda destination, episode, *, if_exists=UNSUPPLIED: save_to(destination, episode, if_exists))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from .. import storage
 from . import yaml_reading, yaml_writing
 from .words import TOOLS, CommandError, command, global_name, one, option
 
@@ -85,9 +86,9 @@ def dump(terminal, options, given):
     if not given or given[0] == "-":
         return terminal.write(text)
     try:
-        Path(given[0]).write_text(text)
+        storage.write_whole(given[0], text)
     except OSError as problem:
-        raise CommandError(f"ERROR: {given[0]} cannot be written: {problem.strerror}") from None
+        raise CommandError(f"ERROR: {given[0]} cannot be written: {storage.why(problem)}") from None
     if options:
         terminal.line(f"dumping namespace [{space}] to file [{given[0]}]")
 

@@ -15,8 +15,9 @@ from __future__ import annotations
 
 import math
 
+from .. import storage
 from ..lisp import conditions
-from ..lisp.condition_types import SimpleError, shown
+from ..lisp.condition_types import SimpleError, SimpleFileError, shown
 from ..lisp.numbers.arithmetic import is_real
 from . import replay, stills
 from .node import each_simulator, needed_simulator
@@ -53,9 +54,9 @@ def save(path, simulator=None, speed=None, called=None):
     """Write a picture to ``path``; its ending says which kind (see the module).
 
     simulator: a `Turtlesim`; the running one when it is left out. speed: of a replay, seconds of plan time per second; ``None``: 1, or as
-    fast as it takes to be over in 30 seconds. called: how the user writes the name. Errors, all simple ones: an ending that says nothing,
-    no simulator, no history, a speed that is no number above zero, or with which the replay would take longer than ten minutes, or of a
-    still picture, a folder that cannot be written to.
+    fast as it takes to be over in 30 seconds. called: how the user writes the name. Errors: a file-error when the file cannot be
+    written, which is then as it was; simple errors: an ending that says nothing, no simulator, no history, a speed that is no number above
+    zero, or with which the replay would take longer than ten minutes, or of a still picture.
     """
     path = str(path)
     called = called or path
@@ -72,7 +73,7 @@ def save(path, simulator=None, speed=None, called=None):
             if path.lower().endswith(ending):
                 return write(simulator, path)
     except OSError as problem:
-        conditions.error(SimpleError("~a", f"The picture {called} cannot be written: {problem.strerror or problem}."))
+        conditions.error(SimpleFileError(called, "~a", f"The picture {called} cannot be written: {storage.why(problem)}"))
 
 
 def _check_speed(speed, path):

@@ -14,6 +14,7 @@ import math
 from bisect import bisect_left
 from html import escape
 
+from .. import storage
 from . import sprites, stills
 from .canvas import Canvas
 from .ink import thinned_by
@@ -53,8 +54,7 @@ def write_svg(history, path, speed=None):
     for track in sorted(history.tracks, key=lambda track: track.name):
         if track.ticks:
             parts.append(writer.turtle(track))
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([*parts, "</svg>\n"]))
+    storage.write_whole(path, "\n".join([*parts, "</svg>\n"]))
 
 
 class _Writer:
@@ -163,8 +163,9 @@ def write_gif(history, path, speed=None):
     palette = _palette(history, [*moments[:: max(len(moments) // 6, 1)][:6], moments[-1]])
     frames = (image.quantize(palette=palette, dither=0) for image in _painted(history, moments))
     first = next(frames)
-    first.save(path, "GIF", save_all=True, append_images=frames, duration=[round(moment[3] * 1000) for moment in moments],
-               loop=0, disposal=1, optimize=False)
+    with storage.writing(path) as file:
+        stills.save_image(first, file, "GIF", save_all=True, append_images=frames, duration=[round(moment[3] * 1000) for moment in moments],
+                          loop=0, disposal=1, optimize=False)
 
 
 def _palette(history, moments):

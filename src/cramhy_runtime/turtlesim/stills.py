@@ -9,13 +9,30 @@ from __future__ import annotations
 import math
 from html import escape
 
+from .. import storage
 from . import drawing, sprites
 from .measures import DRAWINGS, METRE, SIZE
 
 
 def still_png(simulator, path):
     """Write what the window shows as a PNG file of 500 by 500 pixels."""
-    picture(simulator).save(path, "PNG")
+    with storage.writing(path) as file:
+        save_image(picture(simulator), file, "PNG")
+
+
+def save_image(image, file, kind, **options):
+    """Write a Pillow image to the open ``file``. Errors: `OSError`, with its number.
+
+    Pillow itself writes to the number of a file that has one, and its error then does not say why it could not.
+    """
+    image.save(_Sink(file), kind, **options)
+
+
+class _Sink:
+    """A file without a number."""
+
+    def __init__(self, file):
+        self.write, self.flush, self.tell, self.seek = file.write, file.flush, file.tell, file.seek
 
 
 def picture(simulator):
@@ -37,8 +54,7 @@ def still_svg(simulator, path):
         if math.isfinite(turtle.x + turtle.y + turtle.heading):
             place = f"translate({turtle.x * METRE:.2f} {turtle.y * METRE:.2f}) rotate({-math.degrees(turtle.heading):.1f})"
             parts.append(f'<g transform="{place}"><title>{escape(turtle.name)}</title>{svg_turtle(turtle.number)}</g>')
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("\n".join([*parts, "</svg>\n"]))
+    storage.write_whole(path, "\n".join([*parts, "</svg>\n"]))
 
 
 def svg_head(title):

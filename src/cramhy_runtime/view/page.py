@@ -15,7 +15,7 @@ import webbrowser
 from importlib import resources
 from pathlib import Path
 
-from .. import chronicle, kernel, rosbridge
+from .. import chronicle, kernel, rosbridge, storage
 
 TYPES = {"html": "text/html", "js": "text/javascript", "css": "text/css", "svg": "image/svg+xml", "json": "application/json"}
 
@@ -88,10 +88,12 @@ def show(url, port, folder):
     if not has_screen():
         return False
     path = way(port, folder)
-    path.unlink(missing_ok=True)
-    with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
-        file.write('<!doctype html><meta charset="utf-8"><title>cramhy</title>'
-                   f'<meta http-equiv="refresh" content="0; url={html.escape(url)}">\n')
+    try:
+        storage.write_whole(path, '<!doctype html><meta charset="utf-8"><title>cramhy</title>'
+                                  f'<meta http-equiv="refresh" content="0; url={html.escape(url)}">\n',
+                            mode=0o600, durable=False, follow=False)
+    except OSError:
+        return False  # the page's address has been told, and can be opened by hand
     return webbrowser.open(path.as_uri())
 
 

@@ -11,6 +11,8 @@ import marshal
 import os
 from pathlib import Path
 
+from ... import storage
+from ...storage.sealed import Unusable, sealed, unsealed
 from ..compiler.constants import NotStorable
 from ..conditions import Error, SimpleFileError, StyleWarning, Warning_, error, handler_bind, type_error
 from ..data import UNSUPPLIED, Cons, LispString, MultipleValues, Symbol, boolean, lisp_list
@@ -24,8 +26,8 @@ from ..reader.readtables import READTABLE
 from ..streams.external_formats import external_format as format_named
 from ..streams.file_streams import FileStream
 from ..streams.streams import ERROR_OUTPUT, Stream, output_stream
-from ..systems.loader import LOAD_PATHNAME, LOAD_TRUENAME, decoded, folder_of_load, load_file, load_text, locate, stamp
-from .files import lisp_path, path_of, reason, say, truename
+from ..systems.loader import LOAD_PATHNAME, LOAD_TRUENAME, decoded, folder_of_load, load_file, load_text, locate, stamp, why_not_kept
+from .files import lisp_path, path_of, say, truename
 from .namestrings import native_namestring, parse_native
 from .pathname_objects import NEWEST, Pathname
 from .pathnames import merge_pathnames, pathname
@@ -36,7 +38,8 @@ LOAD_PRINT, LOAD_VERBOSE = special("*LOAD-PRINT*"), special("*LOAD-VERBOSE*")
 COMPILE_PRINT, COMPILE_VERBOSE = special("*COMPILE-PRINT*"), special("*COMPILE-VERBOSE*", True)
 COMPILE_FILE_PATHNAME, COMPILE_FILE_TRUENAME = special("*COMPILE-FILE-PATHNAME*"), special("*COMPILE-FILE-TRUENAME*")
 
-MAGIC = b"# cramhy compiled file\n"
+FIRST_WORDS = b"# cramhy compiled file"
+FIRST_LINE = FIRST_WORDS + b" 2\n"
 TYPES = ("lisp", "hy", "fasl")
 """What `load` appends to a name without a type, in this order."""
 
@@ -52,8 +55,8 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
     """``load``: run the forms of a file, source or compiled, or of a stream. Returns T.
 
     The type ``.lisp`` may be left out. A relative name is one of ``*default-pathname-defaults*``, or else of the folder of the
-    file being loaded. verbose: say so; print: show the values of each form. A missing file is a file-error, or nil with
-    ``:if-does-not-exist nil``.
+    file being loaded. verbose: say so, and why kept code was refused; print: show the values of each form. A missing file is
+    a file-error, or nil with ``:if-does-not-exist nil``.
     """
     show = _show_values if _flag(print, LOAD_PRINT) is not None else None
     if isinstance(designator, Stream):
@@ -73,6 +76,9 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
         _load_compiled(found)
     else:
         load_file(found, show=show, encoding=None if external_format is None else format_named(external_format).codec)
+        unusable = why_not_kept(found)
+        if _flag(verbose, LOAD_VERBOSE) is not None and unusable is not None and unusable.kind in ("distrusted", "damaged"):
+            say(f";; compiled again: {unusable}")
     return True
 
 
@@ -107,24 +113,27 @@ def _load_stream(stream, show):
 def _is_compiled(path):
     try:
         with open(path, "rb") as file:
-            start = file.read(len(MAGIC))
+            start = file.read(len(FIRST_WORDS))
     except OSError:
         return False  # reading it will say why
     if start.startswith(b"# FASL"):
         return error(SimpleFileError(lisp_path(path), "~A was compiled by SBCL. Load its source, or compile it here with COMPILE-FILE.",
                                      lisp_path(path)))
-    return start == MAGIC
+    return start == FIRST_WORDS
+
+
+_OTHER_VERSION = "~A was compiled by another version of cramhy or Python. Compile its source again."
+_REFUSALS = {"damaged": "~A is damaged: it is no complete compiled file. Compile its source again.",
+             "foreign": _OTHER_VERSION, "outdated": _OTHER_VERSION}
 
 
 def _load_compiled(path):
     try:
-        made_by, source, codes = marshal.loads(Path(path).read_bytes()[len(MAGIC):])
-    except (OSError, ValueError, EOFError, TypeError):
-        return error(SimpleFileError(lisp_path(path), "~A is damaged: it is no complete compiled file. Compile its source again.",
-                                     lisp_path(path)))
-    if made_by != stamp():
-        return error(SimpleFileError(lisp_path(path), "~A was compiled by another version of cramhy or Python. Compile its source again.",
-                                     lisp_path(path)))
+        source, codes = marshal.loads(unsealed(path, FIRST_LINE, stamp(), in_folder=False))
+    except Unusable as problem:
+        told = _REFUSALS.get(problem.kind)
+        return error(SimpleFileError(lisp_path(path), told, lisp_path(path)) if told else
+                     SimpleFileError(lisp_path(path), "~A, so it is not loaded. Compile its source again.", str(problem)))
     namespace = new_namespace(source)
     with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path),
                  LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
@@ -159,7 +168,7 @@ def compile_file(input_file, *, output_file=None, verbose=UNSUPPLIED, print=UNSU
         codes = handler_bind([(Warning_, work.note)], work.codes)
     if codes is None:
         return MultipleValues((None, True, True))
-    _write(target, (stamp(), str(path), codes))
+    _write(target, (str(path), codes))
     if talks:
         say(f"; wrote {target}")
     return MultipleValues((lisp_path(os.path.realpath(target)), boolean(work.warned), boolean(work.failed)))
@@ -174,12 +183,10 @@ def _source(designator):
 
 
 def _write(target, contents):
-    temporary = f"{target}.{os.getpid()}"
     try:
-        Path(temporary).write_bytes(MAGIC + marshal.dumps(contents))
-        os.replace(temporary, target)
+        storage.write_whole(target, sealed(FIRST_LINE, stamp(), marshal.dumps(contents)))
     except OSError as problem:
-        return error(SimpleFileError(parse_native(target), "Cannot write the compiled file ~A: ~A.", target, reason(problem)))
+        return error(SimpleFileError(parse_native(target), "Cannot write the compiled file ~A: ~A", target, storage.why(problem)))
 
 
 EVALUATED = {sym(name) for name in """DEFMACRO DEFPACKAGE IN-PACKAGE DEFTYPE DEFINE-COMPILER-MACRO DEFSETF DEFINE-SETF-EXPANDER

@@ -1,8 +1,10 @@
 """Files as streams: ``open``, ``with-open-file``, and positions in files (ANSI 21.1.3).
 
 A file is read and written as bytes; characters are made of them here, so that ``file-position`` counts bytes as in SBCL, and a
-byte that means no character is an error at its place, not at the beginning of the file. A file that replaces another
-(``:supersede``, ``:rename-and-delete``) takes its name at once, and the old one comes back if writing is aborted.
+byte that means no character is an error at its place, not at the beginning of the file. A file that replaces another (``:supersede``,
+``:rename``, ``:rename-and-delete``) is written beside it and takes its name when the stream is closed (`storage`); until then, and if
+writing is aborted or fails, the old one stays. A file of a new name has it at once, and goes if writing it is aborted or if closing it
+fails.
 """
 
 from __future__ import annotations
@@ -12,10 +14,12 @@ import os
 
 from cramhy_runtime import kernel
 
-from ..conditions import SimpleFileError, StreamError, error, restart_case, type_error
+from ... import storage
+from ..conditions import FileError, SimpleFileError, StreamError, error, restart_case, type_error
 from ..data import UNSUPPLIED, Cons, Symbol, lisp_list
 from ..files.files import FileDoesNotExist, FileExists, absolute, is_regular, physical, reason
 from ..files.namestrings import native_namestring
+from ..files.pathnames import pathname
 from ..late import late
 from ..packages import is_symbol, sym
 from ..types.type_relations import subtypep
@@ -34,17 +38,19 @@ class FileStreamClass(OutputStream, InputStream):
     lisp_name = "FILE-STREAM"
 
 
-class SimpleStreamError(StreamError):
-    """The system could not read or write: ``problem`` is Python's exception."""
+class SimpleStreamError(StreamError, FileError):
+    """The system could not read or write: ``problem`` is Python's exception. A file-error, too; its pathname is what `open` was given."""
 
     lisp_name = "SB-INT::SIMPLE-STREAM-ERROR"
 
     def __init__(self, stream=None, doing="read from", problem=None):
         super().__init__(stream)
         self.doing, self.problem = doing, problem
+        self.pathname = getattr(stream, "given", None)
 
     def report(self):
-        return f"couldn't {self.doing} {late.prin1_to_string(self.stream)}:\n  {reason(self.problem)}"
+        why = reason(self.problem) if self.doing == "read from" or not isinstance(self.problem, OSError) else storage.why(self.problem)
+        return f"couldn't {self.doing} {late.prin1_to_string(self.stream)}:\n  {why}"
 
 
 class FileStream(FileStreamClass):
@@ -60,7 +66,9 @@ class FileStream(FileStreamClass):
         self.characters, self.bytes = kind is CHARACTER or kind is None, kind is not CHARACTER
         self.format = format_ or external_format(None)
         self.waits = False
-        self.original = self.target = None
+        self.given = pathname
+        self.part = self.backup = None
+        self.replaces = False
 
     # ------------------------------------------------------------------------------------------------------- characters
 
@@ -202,11 +210,13 @@ class FileStream(FileStreamClass):
     # ---------------------------------------------------------------------------------------------------------- closing
 
     def close(self, abort=False):
-        """Close the file. With ``abort`` a file that was made is gone again, and one that was replaced is back."""
+        """Close the file. With ``abort`` a file that was made is gone again, and one that was to be replaced stays as it is."""
         if self.closed:
             return
         try:
-            if self.file is not None and not abort:
+            if self.part is not None:
+                self.part.discard() if abort else self._system(lambda: self.part.finish(self.replaces, self.backup), "close")
+            elif self.file is not None and not abort:
                 self._system(self.file.close, "close")
         finally:
             self.closed = True
@@ -214,13 +224,6 @@ class FileStream(FileStreamClass):
             with contextlib.suppress(OSError):  # what could not be written is known, or not wanted any more
                 if self.file is not None:
                     self.file.close()
-        if self.target is None:
-            return
-        with contextlib.suppress(FileNotFoundError):  # somebody deleted it meanwhile
-            if abort:
-                os.replace(self.original, self.target) if self.original else os.unlink(self.target)
-            elif self.original and not self.original.endswith(".bak"):
-                os.unlink(self.original)
 
 
 # -------------------------------------------------------------------------------------------------------------- opening
@@ -274,7 +277,7 @@ def _python_mode(reads, writes, exists, if_exists):
         return "r+b"
     if exists and if_exists == "APPEND":
         return "r+b" if reads else "ab"
-    return "w+b" if reads else "wb"
+    return "w+b" if reads else "wb"  # a terminal, a pipe or a device
 
 
 def open_(filespec, *, direction=UNSUPPLIED, element_type=UNSUPPLIED, if_exists=UNSUPPLIED, if_does_not_exist=UNSUPPLIED,
@@ -292,6 +295,17 @@ def open_(filespec, *, direction=UNSUPPLIED, element_type=UNSUPPLIED, if_exists=
     missing = _choice(if_does_not_exist, usual, _IF_MISSING)
     kind, size, signed = _element(element_type)
     format_ = _format(external_format) if kind is CHARACTER or kind is None else _format(sym(":LATIN-1"))
+    return _open(filespec, direction, reads, writes, if_exists, missing, kind, size, signed, format_)
+
+
+def open_whole(filespec, if_exists=UNSUPPLIED):
+    """A stream of characters to a file that gets its name when the stream is closed, also if no file has it yet; else as `open_`."""
+    if_exists = _choice(if_exists, "ERROR", _IF_EXISTS)
+    missing = "ERROR" if if_exists in ("APPEND", "OVERWRITE") else "CREATE"
+    return _open(filespec, "OUTPUT", False, True, if_exists, missing, CHARACTER, 1, False, _format(None), beside=True)
+
+
+def _open(filespec, direction, reads, writes, if_exists, missing, kind, size, signed, format_, beside=False):
     path = absolute(physical(filespec))
     name = native_namestring(path)
     exists = os.path.lexists(name)
@@ -306,25 +320,21 @@ def open_(filespec, *, direction=UNSUPPLIED, element_type=UNSUPPLIED, if_exists=
         return error(SimpleFileError(path, "OPEN :IF-EXISTS :NEW-VERSION is not supported when a new version must be created."))
     if direction == "PROBE":
         if not exists:
-            _opened(path, name, "wb", name).close()
+            _part(path, name).finish(durable=False)
         stream = FileStream(None, path, name, False, False, kind, size, signed, format_)
         stream.close()
         return stream
-    original = None
     if not exists and not writes:
-        _opened(path, name, "wb", name).close()
-    if exists and writes and if_exists in ("SUPERSEDE", "RENAME", "RENAME-AND-DELETE") and is_regular(name):
-        original = _set_aside(path, name, ".bak" if if_exists == "RENAME" else ".old")
-    try:
-        file = _opened(path, name, _python_mode(reads, writes, exists and not original, if_exists), original)
-    except BaseException:
-        if original:
-            os.replace(original, name)
-        raise
+        _part(path, name).finish(durable=False)
+    part = None
+    if writes and (not exists or if_exists in ("SUPERSEDE", "RENAME", "RENAME-AND-DELETE") and is_regular(name)):
+        part = _part(path, name, beside)
+    file = part.file if part is not None else _opened(path, name, _python_mode(reads, writes, exists, if_exists))
     stream = FileStream(file, path, f"file {name}", reads, writes, kind, size, signed, format_)
+    stream.given, stream.part, stream.replaces = pathname(filespec), part, exists or beside
     stream.waits = not is_regular(name)
-    if writes and (original or not exists):
-        stream.original, stream.target = original, name
+    if exists and if_exists == "RENAME":
+        stream.backup = os.path.realpath(name) + ".bak"
     if writes and reads and if_exists == "APPEND":
         file.seek(0, os.SEEK_END)
     return stream
@@ -333,35 +343,29 @@ def open_(filespec, *, direction=UNSUPPLIED, element_type=UNSUPPLIED, if_exists=
 _format = external_format
 
 
-def _opened(path, name, mode, original):
-    try:
-        file = kernel.run_blocking(lambda: open(name, mode)) if not is_regular(name) else open(name, mode)
-        if original and original != name and os.path.exists(original):
-            import shutil  # it reads four libraries that pack files
+def _part(path, name, beside=False):
+    """A `storage.Part` for the file: at its place if there is none, unless ``beside``; else beside the one that there is."""
+    def opened():
+        storage.tidy_once(os.path.dirname(os.path.realpath(name)))
+        return storage.Part(name, claim=not beside)
 
-            shutil.copymode(original, name)
-        return file
+    return _checked(path, opened, storage.why)
+
+
+def _opened(path, name, mode):
+    return _checked(path, lambda: kernel.run_blocking(lambda: open(name, mode)) if not is_regular(name) else open(name, mode))
+
+
+def _checked(path, opened, told=reason):
+    """The value of ``opened()``; what goes wrong in it is a file-error. told: makes a text of an `OSError`."""
+    try:
+        return opened()
     except FileNotFoundError:
         return error(SimpleFileError(path, "The path ~S does not exist.", path))
     except OSError as problem:
-        return error(SimpleFileError(path, "Error opening ~S: ~A", path, reason(problem)))
+        return error(SimpleFileError(path, "Error opening ~S: ~A", path, told(problem)))
     except ValueError as problem:
         return error(SimpleFileError(path, "Error opening ~S: ~A", path, str(problem)))
-
-
-def _set_aside(path, name, ending):
-    """Give the file another name until its successor is complete; the new name."""
-    if os.path.isdir(name):
-        return error(SimpleFileError(path, "Error opening ~S: Is a directory", path))
-    target, number = os.path.realpath(name) + ending, 0
-    while ending == ".old" and os.path.lexists(target):
-        number += 1
-        target = f"{os.path.realpath(name)}.old{number}"
-    try:
-        os.rename(os.path.realpath(name), target)
-    except OSError as problem:
-        return error(SimpleFileError(path, "Error opening ~S: ~A", path, reason(problem)))
-    return target
 
 
 def with_open_file(function, filespec, *, direction=UNSUPPLIED, element_type=UNSUPPLIED, if_exists=UNSUPPLIED,

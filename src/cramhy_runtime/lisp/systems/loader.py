@@ -4,13 +4,15 @@
 what follows ``(in-package ...)`` is the same language, so they are loaded in the same way (run by ``hy`` itself, the macro
 ``in-package`` takes the reader over: see ``hy_src/cramhy/language.hy``). A ``.hy`` file that goes into no package is Hy's alone.
 
-What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written, in the user's cache folder).
-A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system, and
-cramhy itself. So an unchanged system loads without compiling, and without importing Hy.
+What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written or belongs to another user, in the user's
+cache folder). A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system,
+cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.sealed`). `why_not_kept` tells
+why one was not used. So an unchanged system loads without compiling, and without importing Hy.
 """
 
 from __future__ import annotations
 
+import errno
 import importlib.util
 import linecache
 import marshal
@@ -20,6 +22,8 @@ import runpy
 import sys
 from pathlib import Path
 
+from ... import storage
+from ...storage.sealed import Unusable, distrust_of_folder, sealed, unsealed
 from ..conditions import CompileError, Condition, FileError, error
 from ..data import Cons, all_values
 from ..dynamic import binding
@@ -34,7 +38,10 @@ LOAD_PATHNAME, LOAD_TRUENAME = sym("*LOAD-PATHNAME*"), sym("*LOAD-TRUENAME*")
 for _variable in (LOAD_PATHNAME, LOAD_TRUENAME):
     _variable.value, _variable.special = None, True
 
+FIRST_LINE = b"# cramhy kept code 1\n"
+
 _stamp = None
+_not_used = {}
 
 
 def _sha256(text):
@@ -63,13 +70,17 @@ def stamp():
 
 
 def kept_path(path):
-    """Where the compiled form of ``path`` is kept: beside it if possible."""
+    """Where the compiled form of ``path`` is kept: beside it if that is possible and safe. `OSError` if there is no place at all."""
     folder = path.parent / "__pycache__"
     name = f"{path.name}.{sys.implementation.cache_tag}.cramhy"
-    if os.access(folder if folder.exists() else path.parent, os.W_OK):
+    there = os.path.lexists(folder)
+    if os.access(folder if there else path.parent, os.W_OK) and not (there and distrust_of_folder(folder)):
         return folder / name
-    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cramhy"
-    return cache / f"{_sha256(str(path)).hexdigest()[:16]}-{name}"
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    base = base if os.path.isabs(base) else os.path.expanduser("~/.cache")
+    if not os.path.isabs(base):
+        raise FileNotFoundError(errno.ENOENT, "This user has no folder", base)
+    return Path(base, "cramhy") / f"{_sha256(str(path)).hexdigest()[:16]}-{name}"
 
 
 def decoded(path, encoding=None):
@@ -100,6 +111,7 @@ def load_file(path, chain="", finished=None, show=None, encoding=None):
     fingerprint = _sha256(f"{stamp()}{chain}{path}{text}").hexdigest()
     with binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path),
                   LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
+        _not_used.pop(str(path), None)
         codes = _kept(path, fingerprint) if show is None else None
         if codes is not None:
             namespace = new_namespace(str(path))
@@ -189,23 +201,34 @@ def _run_hy(path):
 
 
 def _kept(path, fingerprint):
+    """The code objects that are kept for ``path``, or ``None``."""
     try:
-        data = kept_path(path).read_bytes()
-        kept, codes = marshal.loads(data)
-    except (OSError, ValueError, EOFError, TypeError):
-        return None
-    return codes if kept == fingerprint else None
+        return marshal.loads(unsealed(kept_path(path), FIRST_LINE, fingerprint))
+    except Unusable as problem:
+        _not_used[str(path)] = problem
+    except (OSError, ValueError, EOFError, TypeError) as problem:
+        _not_used[str(path)] = Unusable("unreadable", f"no code is kept for {path}: {problem}")
+    return None
+
+
+def why_not_kept(path):
+    """Why the kept code of the file ``path`` was not used when it was loaded last, an `Unusable`; ``None`` if it was used."""
+    return _not_used.get(str(Path(path).absolute()))
 
 
 def _keep(path, fingerprint, codes):
     if sys.dont_write_bytecode:
         return
-    target = kept_path(path)
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        temporary = target.with_suffix(f".{os.getpid()}")
-        temporary.write_bytes(marshal.dumps((fingerprint, codes)))
-        temporary.replace(target)
+        target = kept_path(path)
+        if not target.parent.is_dir():
+            os.makedirs(target.parent.parent, mode=0o755, exist_ok=True)
+            os.mkdir(target.parent, 0o755)  # others must not be able to write there, whatever the umask is
+        if distrust_of_folder(target.parent):
+            return
+        # without waiting for the disk: the checksum shows what a breakdown left
+        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(codes)), mode=0o644, durable=False,
+                            follow=False)
     except OSError:
         pass  # a folder that cannot be written only means compiling again next time
 

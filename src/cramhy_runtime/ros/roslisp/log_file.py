@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from ... import storage
+
 _file = None
 
 
@@ -22,19 +24,30 @@ def start(path):
     global _file
     stop()
     path.parent.mkdir(parents=True, exist_ok=True)
-    _file = open(path, "a", encoding="utf-8")
+    _file = open(path, "a", encoding="utf-8", errors="backslashreplace")
 
 
 def write(line):
-    """Add a line, if there is a log file."""
-    if _file is not None:
+    """Add a line, if there is a log file. Returns why that is the end of the log, a text, or ``None`` when all is well."""
+    global _file
+    if _file is None:
+        return None
+    try:
         _file.write(line)
         _file.flush()
+    except OSError as problem:
+        name = _file.name
+        stop()
+        return f"The log file {name} ends here: {storage.why(problem)} The program goes on."
+    return None
 
 
 def stop():
     """Close it."""
     global _file
-    if _file is not None:
-        _file.close()
-        _file = None
+    file, _file = _file, None
+    if file is not None:
+        try:
+            file.close()
+        except OSError:
+            pass  # each line was written when it came; what could not be was told then

@@ -8,7 +8,7 @@ Source: roslisp.md 4. The macros evaluate their arguments only when `enabled` sa
 from __future__ import annotations
 
 from ...lisp import conditions
-from ...lisp.condition_types import SimpleError
+from ...lisp.condition_types import SimpleError, SimpleWarning
 from ...lisp.data import Cons, LispString, Symbol, lisp_list, list_from
 from ...lisp.format.format import format_to_string
 from ...lisp.packages import intern, string_designator, sym, symbol_name
@@ -76,7 +76,9 @@ def _print(level, topic, text):
     line = f"[{shown_topic} {LEVEL_NAMES[level]}] {float(ros_time()):.3f}: {text}"
     stream.write(line)
     stream.fresh_line()
-    log_file.write(line + "\n")
+    complaint = log_file.write(line + "\n")
+    if complaint is not None:
+        conditions.warn(SimpleWarning("~a", complaint))
     here = graph.active()
     lisp_node = here.lisp_node
     if lisp_node is None:

@@ -1,0 +1,30 @@
+"""Files that cramhy writes: the whole of a file or nothing of it, whatever the disk does. Beside the kernel; it knows nothing of Lisp.
+
+    from cramhy_runtime import storage
+
+    storage.write_whole("turtle.svg", text)          # the old file stays as it is until the new one is complete
+    with storage.writing("turtle.gif") as file:      # the same for what is made piece by piece
+        file.write(...)
+
+A file is written under another name in the same folder, checked (`write`, `fsync` and `close` may each be the call that says that the disk
+is full), and renamed. So a reader sees the old file or the new one, and an error or a jump leaves the old one. A symbolic link is
+followed, and an existing file keeps its mode and its owner, as when a file is simply opened and written to. Terminals, pipes and devices
+are written to as they are. A file with several names (hard links) becomes a file of its own.
+
+A process that is killed has no time to tidy up. The name of an unfinished file is held by a lock of the operating system, which ends
+with the process, also in another container. An unfinished file without a lock is removed by the next start, or by the next write into
+that folder.
+
+Where the parts are: `parts` is a file that is being written, in one go or for hours; `whole` writes a file at once, `trees` several;
+`unfinished` is about their names and locks; `leftovers` removes or recovers what killed processes left; `backups` keeps the older version
+of a file; `sealed` is for code that is kept, and proves whose it is and that it is undamaged before anybody reads it; `reasons` tells
+what to try.
+"""
+
+from .leftovers import tidy, tidy_once
+from .parts import Part, growing
+from .reasons import why
+from .trees import Tree
+from .whole import write_whole, writing
+
+__all__ = ["Part", "Tree", "growing", "tidy", "tidy_once", "why", "write_whole", "writing"]
