@@ -53,6 +53,13 @@ def cbor_of(operation):
     return cbor2.dumps(operation)
 
 
+def encoded(operation, compression):
+    """The text or the bytes of an operation, for the compression "none", "png" or "cbor"."""
+    if compression == "cbor":
+        return cbor_of(operation)
+    return png_of(text_of(operation)) if compression == "png" else text_of(operation)
+
+
 class Parcel:
     """A message of a topic on its way to clients; each form of it is made once."""
 

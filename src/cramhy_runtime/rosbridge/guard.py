@@ -43,9 +43,11 @@ HEADERS = {
 class Limits:
     """How much clients may ask. Times are seconds of the wall, sizes bytes."""
 
-    connections: int = 100
-    strangers: int = 20  # connections that have not shown the token yet
-    first_message: float = 5.0  # until the token must have come
+    connections: int = 100  # of clients that have shown the token
+    silent: int = 400  # connections that have said nothing yet
+    strangers: int = 100  # connections without a token that have not finished a request, and as many WebSockets
+    first_message: float = 1.0  # until a stranger must have said something, have finished its request, have shown the token
+    first_size: int = 1 << 16  # of the message that brings the token
     message: int = 1 << 20  # one frame, or one message made of frames
     reassembled: int = 8 << 20  # what the fragments of one client that wait for others may hold
     fragments: int = 1000  # of one message

@@ -160,6 +160,11 @@ class Hub:
         self.sides = {False: Side(self, NODE, False), True: Side(self, OBSERVER, True)}
         self.sessions = set()
 
+    def answer_all(self):
+        """Every call that a client waits for is answered, since the session ends."""
+        for session in list(self.sessions):
+            session.answer_all()
+
     def close(self):
         """Every client goes."""
         for session in list(self.sessions):
