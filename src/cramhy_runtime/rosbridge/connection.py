@@ -17,6 +17,8 @@ from .parsing import Fragments, Malformed, parse
 from .protocol import Session
 
 POLICY, TOO_MUCH, LATER = 1008, 1013, 1013
+PONG = {"op": "pong"}
+"""What answers an operation "ping", without the plan: a page cannot see the pings of WebSockets, and has to know whether we live."""
 ENDED = 1001, "The session has ended."
 
 
@@ -162,7 +164,10 @@ class Connection:
         while True:
             text = await self._text()
             found = self._understood(text)
-            if found is not None:
+            if found is not None and found["op"] == "ping":
+                self.outbox.put(PONG)
+                self.stir()
+            elif found is not None:
                 self.waiting += 1
                 self.server.post(lambda found=found: self._do(found))
             pause = bucket.take(time.monotonic())

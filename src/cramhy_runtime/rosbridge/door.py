@@ -4,15 +4,21 @@ Nobody can tell a stranger from a client before the token comes. So strangers wa
 have said nothing (`Door`), connections that have not finished a request (`http`), and WebSockets without a token (`connection`). Each room
 has a limit and a time (`Limits.silent`, `Limits.strangers`, `Limits.first_message`). When a room is full, the stranger that has waited
 longest goes, never the one that comes: a client needs a few milliseconds in each room, so it is through before its turn to go has come.
-A connection that says nothing costs a socket and nothing else, and one that is closed at once not even that.
+
+A connection that says nothing costs a socket and nothing else. The first words of the others decide when they have their turn: one that
+shows the token at once, then whole plain requests, such as for files of the page, then the rest. Few of the latter two are taken in at a
+time, so that a flood of them does not keep the thread from those that it serves.
 """
 
 from __future__ import annotations
 
 import asyncio
 import socket
+from collections import deque
 
 AT_ONCE = 16  # connections that are taken before those that are there have their turn
+TURNS = (3, 1)  # plain requests, and others, that are taken in before those that are there have their turn
+FIRST_WORDS = 4096  # bytes that are looked at
 LATE = 0.05  # s; a loop that comes later than that has been kept from looking, and gives those who wait so much more
 PAUSE = 0.05  # s; until connections are taken again, when the system has no room for one more
 
@@ -31,8 +37,7 @@ class WaitingRoom:
         return len(self._since)
 
     def enter(self, one):
-        """ONE waits from now on; one who waits already begins anew."""
-        self._since.pop(one, None)
+        """ONE waits from now on; for one who waits already the time begins anew, but not its turn to make room."""
         self._since[one] = self._loop.time()
         if len(self._since) > self._most:
             self.make_room(one)
@@ -59,7 +64,7 @@ class WaitingRoom:
 
     def _watch(self):
         if self._since:
-            self._due = max(next(iter(self._since.values())) + self._seconds, self._loop.time())
+            self._due = max(min(self._since.values()) + self._seconds, self._loop.time())
             self._timer = self._loop.call_at(self._due, self._look)
         else:
             self._timer = None
@@ -85,12 +90,14 @@ class WaitingRoom:
 class Door:
     """Takes the connections that come to a listening socket, and hands those that say something to a protocol.
 
-    loop: of the server's thread. protocol: makes an `asyncio.Protocol`. To be used in that thread.
+    loop: of the server's thread. token: which those who may come in know. protocol: makes an `asyncio.Protocol`. To be used in that thread.
     """
 
-    def __init__(self, loop, listening, limits, protocol):
-        self._loop, self._listening, self._protocol = loop, listening, protocol
+    def __init__(self, loop, listening, limits, token, protocol):
+        self._loop, self._listening, self._limits, self._token, self._protocol = loop, listening, limits, token.encode(), protocol
         self._silent = WaitingRoom(loop, limits.silent, limits.first_message, self._end)
+        self._queues = deque(), deque()
+        self._admitting = False
         self._coming = set()
         self._open = False
 
@@ -100,11 +107,14 @@ class Door:
         self._loop.add_reader(self._listening, self._accept)
 
     def close(self):
-        """Take none, and close those that have said nothing."""
+        """Take none, and close those that have not come in."""
         if self._open:
             self._open = False
             self._loop.remove_reader(self._listening)
             self._silent.close()
+            for queue in self._queues:
+                while queue:
+                    queue.popleft().close()
 
     def _accept(self):
         for _ in range(AT_ONCE):
@@ -132,23 +142,43 @@ class Door:
         self._silent.leave(found)
         self._loop.remove_reader(found)
         if not self._look(found):
-            self._end(found)
+            found.close()
 
     def _look(self, found):
         """Hand the connection on if it has said something, and close it if it has gone; false when it is silent."""
         try:
-            said = found.recv(1, socket.MSG_PEEK)
+            said = found.recv(FIRST_WORDS, socket.MSG_PEEK)
         except (BlockingIOError, InterruptedError):
             return False
         except OSError:
             said = b""
         if not said:
             found.close()
-            return True
+        elif self._token in said.partition(b"\r\n")[0]:
+            self._come_in(found)
+        else:
+            whole_and_plain = said.startswith((b"GET ", b"HEAD ")) and said.endswith(b"\r\n\r\n") and b"\r\nupgrade:" not in said.lower()
+            queue = self._queues[0 if whole_and_plain else 1]
+            queue.append(found)
+            if len(queue) > self._limits.silent:
+                queue.popleft().close()
+            if not self._admitting:
+                self._admitting = True
+                self._loop.call_soon(self._admit)
+        return True
+
+    def _admit(self):
+        for queue, number in zip(self._queues, TURNS):
+            for _ in range(min(number, len(queue))):
+                self._come_in(queue.popleft())
+        self._admitting = any(self._queues)
+        if self._admitting:
+            self._loop.call_soon(self._admit)  # when the others have had their turn
+
+    def _come_in(self, found):
         task = self._loop.create_task(self._enter(found))
         self._coming.add(task)
         task.add_done_callback(self._coming.discard)
-        return True
 
     async def _enter(self, found):
         try:
@@ -156,7 +186,7 @@ class Door:
         except (OSError, asyncio.CancelledError):
             found.close()
 
-    def _end(self, found, late=False):
+    def _end(self, found, late):
         self._loop.remove_reader(found)
         found.close()
         return True

@@ -45,7 +45,7 @@ class Limits:
 
     connections: int = 100  # of clients that have shown the token
     silent: int = 400  # connections that have said nothing yet
-    strangers: int = 100  # connections without a token that have not finished a request, and as many WebSockets
+    strangers: int = 64  # connections without a token that have not finished a request, and as many WebSockets
     first_message: float = 1.0  # until a stranger must have said something, have finished its request, have shown the token
     first_size: int = 1 << 16  # of the message that brings the token
     message: int = 1 << 20  # one frame, or one message made of frames

@@ -7,22 +7,14 @@ many (`door`). A WebSocket may send little before it has shown the token, and it
 
 from __future__ import annotations
 
-from .door import WaitingRoom
-
 CHUNK = 8192  # bytes that are read at once: what they cost is the least that the thread spends before it looks at its share again
+TOO_LONG = 1009  # the code with which a WebSocket is closed that sends too much
 EXTENSION = "cramhy"  # the place in the scope of a WebSocket where its protocol stands
 
 
-def make_protocol(limits):
-    """uvicorn's protocol for HTTP/1.1, with the limits."""
+def make_protocol(room):
+    """uvicorn's protocol for HTTP/1.1; ``room``: the `door.WaitingRoom` of those that have not finished a request."""
     from uvicorn.protocols.http.h11_impl import H11Protocol
-
-    rooms = {}
-
-    def room_in(loop):
-        if loop not in rooms:
-            rooms[loop] = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.end())
-        return rooms[loop]
 
     class Impatient(H11Protocol):
         """Waits in a room of strangers, but for while it is we who answer, and when it has become a WebSocket."""
@@ -30,26 +22,25 @@ def make_protocol(limits):
         def connection_made(self, transport):
             super().connection_made(transport)
             transport.max_size = CHUNK
-            self.room = room_in(self.loop)
-            self.room.enter(self)
+            room.enter(self)
 
-        def end(self):
-            """End the connection; false when it is we who are slow."""
-            if self.cycle is not None and not self.cycle.response_complete and not self.flow.write_paused:
+        def end(self, late):
+            """End the connection; false when it has not been answered in time because we are slow."""
+            if late and self.cycle is not None and not self.cycle.response_complete and not self.flow.write_paused:
                 return False
             self.transport.abort()
             return True
 
         def handle_websocket_upgrade(self, event):
-            self.room.leave(self)
+            room.leave(self)
             super().handle_websocket_upgrade(event)
 
         def on_response_complete(self):
-            self.room.enter(self)
+            room.enter(self)
             super().on_response_complete()
 
         def connection_lost(self, exc):
-            self.room.leave(self)
+            room.leave(self)
             super().connection_lost(exc)
 
     return Impatient
@@ -60,19 +51,24 @@ def make_websocket(limits):
     from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
     class Modest(WebSocketsSansIOProtocol):
-        """Takes short messages only, until `trust`; stands in the scope of its connection."""
+        """Takes few bytes, until `trust`; stands in the scope of its connection."""
 
-        def __init__(self, *arguments, **keywords):
-            super().__init__(*arguments, **keywords)
-            self._take(limits.first_size)
-
-        def _take(self, size):
-            name = "max_message_size" if hasattr(self.conn, "max_message_size") else "max_size"  # before websockets 16
-            setattr(self.conn, name, size)
+        trusted = False
+        heard = 0
 
         def trust(self):
-            """Take messages of the size that clients may send."""
-            self._take(limits.message)
+            """Take messages as clients may send them."""
+            self.trusted = True
+
+        def data_received(self, data):
+            if not self.trusted:  # websockets has a limit too, but it takes a new one only for the message after the next
+                self.heard += len(data)
+                if self.heard > limits.first_size and not self.close_sent:
+                    self.conn.fail(TOO_LONG, f"{limits.first_size} bytes may come before the token.")
+                    self.transport.write(b"".join(self.conn.data_to_send()))
+                    self.transport.close()
+                    return
+            super().data_received(data)
 
         def abandon(self, seconds=0.0):
             """Close the socket, after so many seconds, whether the other side says good-bye or not."""

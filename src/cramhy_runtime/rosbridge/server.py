@@ -145,22 +145,23 @@ class Server:
 
         from .http import make_protocol, make_websocket
 
+        loop, limits = asyncio.get_running_loop(), self.limits
+        asking = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.end(late))
+        self.strangers = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.give_up(late))
         config = uvicorn.Config(
-            self.application, interface="asgi3", loop="asyncio", http=make_protocol(self.limits), ws=make_websocket(self.limits),
-            lifespan="off", log_config=None, log_level=100, access_log=False, server_header=False, date_header=False, proxy_headers=False,
+            self.application, interface="asgi3", loop="asyncio", http=make_protocol(asking), ws=make_websocket(limits), lifespan="off",
+            log_config=None, log_level=100, access_log=False, server_header=False, date_header=False, proxy_headers=False,
             ws_max_size=self.limits.message, ws_per_message_deflate=False, ws_ping_interval=20.0, ws_ping_timeout=20.0,
             timeout_keep_alive=5, timeout_graceful_shutdown=1, h11_max_incomplete_event_size=16384,
         )  # fmt: skip
         self._uvicorn = served = uvicorn.Server(config)
         if self.closed:
             return
-        loop = asyncio.get_running_loop()
 
         def protocol():
             return config.http_protocol_class(config=config, server_state=served.server_state, app_state=served.lifespan.state, _loop=loop)
 
-        self.strangers = WaitingRoom(loop, self.limits.strangers, self.limits.first_message, lambda one, late: one.give_up(late))
-        self.door = Door(loop, self.socket, self.limits, protocol)
+        self.door = Door(loop, self.socket, limits, self.token, protocol)
         loop.call_soon(self.door.open)  # when uvicorn is ready
         loop.call_later(RENEW, self._renew, loop)
         await served.serve([])
@@ -223,8 +224,7 @@ async def _respond(scope, send, status, kind, body, headers):
     fields = {"content-type": kind, "content-length": str(len(data)), **HEADERS, **{name.lower(): value for name, value in headers.items()}}
     if status == HTTPStatus.METHOD_NOT_ALLOWED:
         fields["allow"] = "GET, HEAD"
-    if status >= 400:
-        fields["connection"] = "close"
+    fields["connection"] = "close"  # the next request takes its place behind those that others have made meanwhile
     lines = [(name.encode("latin-1"), value.encode("latin-1")) for name, value in fields.items()]
     await send({"type": "http.response.start", "status": status, "headers": lines})
     await send({"type": "http.response.body", "body": b"" if scope["method"] == "HEAD" else data})
