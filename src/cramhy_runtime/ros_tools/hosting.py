@@ -14,7 +14,7 @@ from ..lisp import conditions
 from ..lisp.condition_types import Error
 from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact
-from ..ros.services import Refusal, Service
+from ..ros.services import OfCaller, Refusal, Service
 from ..ros.wire import ros_text
 from ..turtlesim.executables import PROGRAMS
 from ..turtlesim.executables import start as start_executable
@@ -23,13 +23,6 @@ LOG = "/cramhy/program_log"
 SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode"}
 SHARED = ("turtlesim_node",)
 """What runs once: who starts it a second time under its name looks on, as at a window."""
-
-
-class Starting(Service):
-    """The service that starts programs, which needs to know for whom."""
-
-    def respond(self, call):
-        return self.handler(call.request, call.caller)
 
 
 class Host:
@@ -44,7 +37,7 @@ class Host:
         for name, kind in SERVICES.items():
             service_type = service_type_exact(f"cramhy_msgs/{kind}")
             handler = self._handler(getattr(self, name), service_type.response)
-            made = Starting if name == "start_program" else Service
+            made = OfCaller if name == "start_program" else Service
             self.node.add_service(made(self.node, f"/cramhy/{name}", service_type, handler))
 
     def close(self):
@@ -63,6 +56,9 @@ class Host:
         if there is not None and hasattr(there, "program"):
             self.tell(there.program)
             return there.name, True, list(there.program.lines)
+
+        if caller is not None and len(caller.at_end) >= caller.limits.programs:
+            raise Refusal(f"You have started {len(caller.at_end)} programs that still run; more are not allowed. End some.")
 
         def fail(condition):
             raise Refusal(condition.report())

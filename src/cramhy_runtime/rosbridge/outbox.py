@@ -38,27 +38,35 @@ class Feed:
         self.promised = not (throttle_rate or queue_length)
         keep = None if self.promised else queue_length or 1
         if keep != self.queue.maxlen:
-            waiting, self.queue = self.queue, deque(maxlen=keep)
-            for parcel in waiting:
-                self.queue.append(parcel)
+            waiting, self.queue = self.queue, deque(self.queue, maxlen=keep)
+            self.outbox.weight += sum(parcel.weight for parcel in self.queue) - sum(parcel.weight for parcel in waiting)
         self.compression, self.fragment_size = compression, fragment_size
 
     def offer(self, parcel):
         """A new message; what has no room falls out at the other end."""
         if self.closed:
             return
-        self.queue.append(parcel)
         outbox = self.outbox
+        if len(self.queue) == self.queue.maxlen:
+            outbox.weight -= self.queue[0].weight
+        self.queue.append(parcel)
+        outbox.weight += parcel.weight
         if not self.listed:
             self.listed = True
             outbox.items.append(self)
         if self.promised and len(self.queue) > outbox.limits.messages:
             outbox.overflow(f"More than {outbox.limits.messages} messages of {self.topic} wait for you. Subscribe with throttle_rate or "
                             "queue_length.")
+        while not self.promised and outbox.weight > outbox.limits.heavy and len(self.queue) > 1:
+            outbox.weight -= self.queue.popleft().weight
+        if outbox.weight > outbox.limits.heavy and self.promised:
+            outbox.overflow(f"More than {outbox.limits.heavy >> 20} MB of messages wait for you. Subscribe with throttle_rate or "
+                            "queue_length.")
 
     def close(self):
         """Nothing more comes."""
         self.closed = True
+        self.outbox.weight -= sum(parcel.weight for parcel in self.queue)
         self.queue.clear()
 
 
@@ -70,7 +78,7 @@ class Outbox:
         self.level = "error"
         self.items = deque()
         self.later = []
-        self.bytes = 0
+        self.bytes = self.weight = 0
         self.reason = None
         self._fragments = self._order = 0
 
@@ -113,6 +121,7 @@ class Outbox:
                 heappush(later, (item.last + item.pause, self._order, item))
             else:
                 parcel = item.queue.popleft()
+                self.weight -= parcel.weight
                 item.last = now
                 if item.queue:
                     items.append(item)

@@ -19,7 +19,7 @@ from __future__ import annotations
 from .. import kernel
 from ..ros import services
 from ..ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json
-from .encoding import COMPRESSIONS, text_of
+from .encoding import COMPRESSIONS, text_of, weight
 from .hub import Refused
 from .no_answers import SESSION_ENDS, reason
 from .parsing import json_type
@@ -107,6 +107,7 @@ class Session:
         self.level = "error"
         self.interests = {}
         self.advertised = {}
+        self.latched = {}  # topic -> bytes of its last message
         self.offered = {}
         self.asked = {}
         self.calls = {}
@@ -209,6 +210,7 @@ class Session:
 
     def _unadvertise(self, topic):
         del self.advertised[topic]
+        self.latched.pop(topic, None)
         self.side.unadvertise(topic, self)
 
     def publish(self, operation):
@@ -219,7 +221,18 @@ class Session:
         else:
             message_type = self.hub.message_type(topic, operation.get("type"))
             publication = self._advertise(topic, message_type, operation.get("id"), boolean(operation, "latch"))
-        publication.send(from_json(publication.type, operation.get("msg", {}), self.hub.graph.now()))
+        message = from_json(publication.type, operation.get("msg", {}), self.hub.graph.now())
+        if publication.latch:
+            self._keep(topic, weight(message))
+        publication.send(message)
+
+    def _keep(self, topic, size):
+        """Count a latched message, which stays until the topic is unadvertised."""
+        others = sum(kept for name, kept in self.latched.items() if name != topic)
+        if others + size > self.limits.latched:
+            raise Refused(f"The latched messages that you publish take {others} bytes, and this one {size}; {self.limits.latched} are "
+                          "allowed. Unadvertise some.")
+        self.latched[topic] = size
 
     # ----------------------------------------------------------------------------------------------------------- subscribing
 

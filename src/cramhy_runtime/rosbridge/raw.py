@@ -29,9 +29,9 @@ def _write(message, put):
         value = getattr(message, field.attribute)
         try:
             _write_field(field, value, put)
-        except (struct.error, OverflowError, TypeError) as problem:  # a ValueError is that of a message in this one
+        except (struct.error, OverflowError, TypeError):  # a ValueError is that of a message in this one
             raise ValueError(f"{message.ros_type}: the field {field.name} holds {reprlib.repr(value)}, which ROS 1 cannot write as "
-                             f"{field.type} ({problem}).") from None
+                             f"{field.type}.") from None
 
 
 def _write_field(field, value, put):

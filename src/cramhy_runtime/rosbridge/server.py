@@ -17,6 +17,7 @@ The server is a task of the kernel's, too: it is closed when that is, with all i
 from __future__ import annotations
 
 import asyncio
+import os
 import socket
 import sys
 import time
@@ -59,7 +60,7 @@ class Server:
         self.address = f"ws://{HOST}:{self.port}/{self.token}"
         self.guard = Guard(self.token, self.port, origins)
         self.hub = Hub(here, self.hand_out, limits)
-        self.rosapi = RosApi(here)
+        self.rosapi = RosApi(here, limits)
         self.connections = set()
         self.strangers = self.door = None
         self.closed = False
@@ -233,7 +234,7 @@ async def _respond(scope, send, status, kind, body, headers):
 def _listen(port):
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
-        if port:
+        if os.name == "posix":  # what is left of connections to a session that was killed keeps nobody from its port; Windows means more
             found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((HOST, port or 0))
         found.listen(BACKLOG)
