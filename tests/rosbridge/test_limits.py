@@ -163,3 +163,31 @@ def test_the_thread_that_is_late_keeps_no_more_than_is_allowed(graph):
         handed.pop(0)()
     assert [int(each["msg"]["data"]) for each in talk.heard()] == list(range(40, 50))
     kernel.sleep(0)
+
+
+def test_a_line_of_the_log_has_a_length(client, graph):
+    from cramhy_runtime.turtlesim.node import running_simulator
+
+    talk = client()
+    assert not talk.call("/kill", name="x" * 100_000)["result"]
+    line = running_simulator().lines[-1]
+    assert line.endswith("Tried to kill turtle [" + "x" * 1978 + "...") and len(graph.log[-1][2]) == 2003
+
+
+def test_what_programs_of_clients_set_has_an_end_though_they_have_ended(client, graph):
+    from cramhy_runtime.ros_tools.hosting import Host
+
+    Host()
+    talk = client(parameters=4)
+
+    def start(name, *arguments):
+        answer = talk.call("/cramhy/start_program", package="turtlesim", executable="mimic",
+                           arguments=[f"__name:={name}", "input:=turtle1", "output:=nobody", *arguments])
+        if answer["result"]:
+            talk.call("/cramhy/end_node", node=f"/{name}")
+        return answer["values"]
+
+    for name, arguments in (("a", ["_x:=1", "_y:=2"]), ("a", ["_x:=5"]), ("b", ["_x:=1", "_y:=2"])):
+        assert start(name, *arguments)["node"] == f"/{name}"
+    assert start("c") == "Programs of clients have set 4 parameters; they may not set more."
+    assert start("a", "_x:=" + "5" * 10_000).startswith("The arguments of the program have 100")

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 from test_page import READING, rows, wait_for_pixel, wait_for_reading, wait_for_text
@@ -230,3 +231,17 @@ def test_another_session_on_the_port_of_one_that_was_killed_is_not_mistaken_for_
                                    '{"op": "auth", "token": "..."} with the token of this session. '
                                    "Open the address that it prints; it has a new token each time.")
     visit(other.url)
+
+
+@pytest.mark.parametrize("way", ["silent", "no token", "half a request"])
+def test_the_page_comes_though_strangers_take_all_the_connections_they_can_get(repl, visit, way):
+    session = repl("--time", "wall")
+    port = session.url.partition("127.0.0.1:")[2].partition("/")[0]
+    stranger = Path(__file__).parents[1] / "rosbridge" / "strangers.py"
+    program = subprocess.Popen([sys.executable, str(stranger), port, way, "300"], stdout=subprocess.PIPE)
+    try:
+        assert program.stdout.readline() == b"begins\n"
+        visit(session.url)
+    finally:
+        program.kill()
+        program.communicate()
