@@ -368,6 +368,14 @@ def test_a_session_is_announced_again_while_a_plan_computes(serve):
     wait_until(announced, "it is announced again")
 
 
+def test_it_is_announced_again_where_it_was(serve, tmp_path, monkeypatch):
+    server = serve()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "elsewhere"))
+    server.file.unlink()
+    wait_until(server.file.exists, "it is announced again")
+    assert not (tmp_path / "elsewhere").exists()
+
+
 def test_a_session_that_ends_removes_its_own_file_and_no_other(serve, announced):
     server = serve()
     other = announced("session-1-1.json", made_up(machine="elsewhere"))

@@ -82,10 +82,10 @@ def base():
     return found
 
 
-def folder(create=False):
-    """The folder of this user; ``None`` when there is none. Raises `Unsafe`."""
+def folder(create=False, path=None):
+    """The folder of this user, or ``path``; ``None`` when there is none. Raises `Unsafe`."""
     uid = os.getuid() if hasattr(os, "getuid") else 0
-    path = base() / f"cramhy-{uid}"
+    path = path or base() / f"cramhy-{uid}"
     try:
         if create:
             path.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -146,7 +146,7 @@ class Announcement:
             pass
         if self.closed:
             return False
-        self._write(folder(create=True))
+        self._write(folder(True, self.path.parent))  # whatever the environment says by now
         if self.closed:  # the session has ended meanwhile
             self.close()
         return True
