@@ -254,7 +254,7 @@ def test_a_first_message_that_is_none_is_closed(server, data):
 
 def test_who_says_nothing_is_closed(server):
     assert talk(server, lambda wire: wire.closed(), stranger(server)) == (
-        1008, 'No token came within 1 s. The first message must be {"op": "auth", "token": "..."}.')
+        1013, 'No token came within 1 s. The first message must be {"op": "auth", "token": "..."}.')
 
 
 def test_the_token_as_the_first_message_is_good(server):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import stat
 import urllib.request
 from time import sleep
 
@@ -11,7 +9,6 @@ import pytest
 
 from bridge_clients import Wire
 from cramhy_runtime import kernel, rosbridge
-from cramhy_runtime.rosbridge import sessions
 from cramhy_runtime.ros import graph
 
 
@@ -152,7 +149,6 @@ def test_cleanup_is_still_heard_by_clients(serve, outside):
     outside(lambda: wire.call("/rosapi/topics"))
 
     def plan():
-        from cramhy_runtime.ros import graph
         from cramhy_runtime.ros.messages import message_class_exact
 
         string = message_class_exact("std_msgs/String")
@@ -199,79 +195,6 @@ def test_a_port_that_is_taken_is_told(serve):
 def test_it_listens_on_loopback_only(serve):
     server = serve()
     assert server.socket.getsockname()[0] == "127.0.0.1"
-
-
-# ------------------------------------------------------------------------------------------------------------------ sessions
-
-
-def test_the_session_is_found_by_its_file(serve, outside, tmp_path):
-    server = serve()
-    found = outside(sessions.current)
-    assert (found.port, found.token, found.pid, found.address, found.url) == (
-        server.port, server.token, os.getpid(), server.address, server.url)
-    folder = tmp_path / f"cramhy-{os.getuid()}"
-    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
-    assert [stat.S_IMODE(path.stat().st_mode) for path in folder.iterdir()] == [0o600]
-    kernel.stop()
-    assert sessions.current() is None
-
-
-def test_the_newest_living_session_is_current_and_dead_ones_are_swept_away(serve, outside, tmp_path):
-    server = serve()
-    folder = server.file.parent
-    text = server.file.read_text()
-    closed, nobody, broken = folder / "session-1-1.json", folder / "session-2-2.json", folder / "session-3-3.json"
-    import json
-
-    values = json.loads(text)
-    closed.write_text(json.dumps({**values, "port": 1, "started": values["started"] + 1}))
-    nobody.write_text(json.dumps({**values, "pid": 2**22 + 1, "started": values["started"] + 2}))
-    broken.write_text("{")
-    for path in (closed, nobody, broken):
-        path.chmod(0o600)
-    assert outside(sessions.current).port == server.port
-    assert list(folder.iterdir()) == [server.file]
-
-
-def test_a_process_that_got_the_number_of_a_dead_one_is_no_session(serve, outside):
-    import json
-
-    server = serve()
-    values = json.loads(server.file.read_text())
-    server.file.write_text(json.dumps({**values, "process": "1"}))
-    assert outside(sessions.current) is None
-
-
-def test_a_folder_that_others_can_enter_is_not_trusted(tmp_path):
-    folder = tmp_path / f"cramhy-{os.getuid()}"
-    folder.mkdir()
-    folder.chmod(0o755)
-    with pytest.raises(sessions.Unsafe) as caught:
-        sessions.current()
-    assert str(caught.value) == (f"{folder} is not a folder that belongs to this user alone, so no session is announced or looked for "
-                                 f"there. Remove it, or type: chmod 700 {folder}")
-
-
-def test_where_no_session_can_be_announced_nothing_is_looked_for_and_no_server_stays(serve, tmp_path, monkeypatch):
-    from cramhy_runtime.rosbridge.server import ServerError, running
-
-    (tmp_path / "file").touch()
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "file"))
-    assert sessions.current() is None
-    with pytest.raises(ServerError) as caught:
-        serve()
-    assert str(caught.value) == (
-        f"The server cannot be announced to the other programs of this user. {tmp_path / 'file' / f'cramhy-{os.getuid()}'}, where "
-        "sessions are announced, cannot be made: Not a directory. Set XDG_RUNTIME_DIR to a folder of your own.")
-    assert running() is None and "/rosapi" not in graph.active().nodes
-
-
-def test_a_file_that_others_can_read_is_not_trusted(serve):
-    server = serve()
-    server.file.chmod(0o644)
-    with pytest.raises(sessions.Unsafe) as caught:
-        sessions.living()
-    assert str(caught.value) == f"{server.file} can be read or written by others than this user, so it is not trusted. Remove it."
 
 
 # --------------------------------------------------------------------------------------------------------------------- pages

@@ -123,6 +123,9 @@ class FakeSession:
             self._connections[connection].add(message["topic"])
         elif message["op"] == "call_service":
             self._answer(connection, message)
+        elif message["op"] == "ping":
+            self._send(connection, {"op": "pong"})
+            return
         with self._news:
             self.heard.append(message)
             self._news.notify_all()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import queue
+import signal
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 from test_page import READING, rows, wait_for_pixel, wait_for_reading, wait_for_text
@@ -193,3 +195,53 @@ def test_when_the_session_ends_the_page_says_so(repl, visit):
     page.foresee("WebSocket connection to")
     session.type("(quit)")
     wait_for_text(page, "#connection", "connection lost")
+
+
+def test_a_session_that_is_stopped_is_said_to_be_lost_and_shown_again_when_it_goes_on(repl, visit):
+    session = repl("--time", "wall")
+    page = visit(session.url)
+    page.foresee("WebSocket connection to")
+    session.type('(roslisp:start-ros-node "wall")')
+    wait_for_reading(page, "x", "5.54")
+    page.keyboard.press("ArrowUp")
+    page.wait_for_function("() => parseFloat(document.querySelector('[data-reading=x]').textContent) > 7.0")
+    wait_for_reading(page, "speed", "0.00")
+    x = page.inner_text("[data-reading=x]")
+    session.process.send_signal(signal.SIGSTOP)
+    page.wait_for_selector("#connection[data-state=lost]")
+    wait_for_text(page, "#banner", "The connection to the session is lost. Trying again; what you see is the last that was heard.")
+    assert page.inner_text("[data-reading=x]") == x
+    session.process.send_signal(signal.SIGCONT)
+    page.wait_for_selector("#connection[data-state=open]")
+    wait_for_reading(page, "x", x)
+    page.keyboard.press("ArrowUp")
+    page.wait_for_function("(x) => document.querySelector('[data-reading=x]').textContent !== x", arg=x)
+
+
+def test_another_session_on_the_port_of_one_that_was_killed_is_not_mistaken_for_it(repl, visit):
+    session = repl("--time", "wall")
+    page = visit(session.url)
+    page.foresee("WebSocket connection to")
+    port = session.url.partition("127.0.0.1:")[2].partition("/")[0]
+    session.process.kill()
+    session.process.wait()
+    page.wait_for_selector("#connection[data-state=lost]")
+    other = repl("--time", "wall", "--port", port)
+    wait_for_text(page, "#banner", "The session does not let this page in: The first message must be "
+                                   '{"op": "auth", "token": "..."} with the token of this session. '
+                                   "Open the address that it prints; it has a new token each time.")
+    visit(other.url)
+
+
+@pytest.mark.parametrize("way", ["silent", "no token", "half a request"])
+def test_the_page_comes_though_strangers_take_all_the_connections_they_can_get(repl, visit, way):
+    session = repl("--time", "wall")
+    port = session.url.partition("127.0.0.1:")[2].partition("/")[0]
+    stranger = Path(__file__).parents[1] / "rosbridge" / "strangers.py"
+    program = subprocess.Popen([sys.executable, str(stranger), port, way, "300"], stdout=subprocess.PIPE)
+    try:
+        assert program.stdout.readline() == b"begins\n"
+        visit(session.url)
+    finally:
+        program.kill()
+        program.communicate()

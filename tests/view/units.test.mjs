@@ -13,6 +13,10 @@ import { Session } from "./session.js";
 import { State } from "./state.js";
 import { Strokes } from "./strokes.js";
 
+// A connection that is left alone tries again for ever; node shall not wait for that.
+const { setTimeout: set } = globalThis;
+globalThis.setTimeout = (...of) => set(...of).unref();
+
 // ------------------------------------------------------------------------------------------------------------------ helpers
 
 const turtle = (x, more = {}) => ({ name: "turtle1", x, y: 1, theta: 0, ...more });
@@ -31,6 +35,9 @@ class FakeSocket {
   }
   hear(message) {
     this.onmessage({ data: JSON.stringify(message) });
+  }
+  close() {
+    this.closed = true;
   }
 }
 
@@ -352,12 +359,58 @@ test("answers find their questions; refusals carry the session's text; broken JS
   await assert.rejects(other, { message: "not so" });
 });
 
+test("a server that says nothing is asked, and given up for a new connection when it does not answer", (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  const { sockets, states } = connected();
+  sockets[0].onopen();
+  t.mock.timers.tick(2999);
+  assert.ok(!sockets[0].sent.some(({ op }) => op === "ping"));
+  t.mock.timers.tick(1);
+  assert.equal(sockets[0].sent.at(-1).op, "ping");
+  t.mock.timers.tick(2000);
+  sockets[0].hear({ op: "pong" });
+  for (const passed of [3000, 2999]) t.mock.timers.tick(passed);
+  assert.deepEqual([states.at(-1), sockets.length], ["open", 1]);
+  t.mock.timers.tick(1);
+  assert.deepEqual([states.at(-1), sockets[0].closed], ["lost", true]);
+  t.mock.timers.tick(400);
+  assert.deepEqual([states.at(-1), sockets.length], ["connecting", 2]);
+  for (const passed of [3000, 3000]) t.mock.timers.tick(passed); // this one is not even accepted
+  assert.deepEqual([states.at(-1), sockets[1].closed], ["lost", true]);
+});
+
+test("the token is in the address; after an attempt that failed it goes out with the first message alone, which is told why", (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  const addresses = [];
+  const sockets = [];
+  const connection = new Connection({ url: "ws://x/", token: "a b", make: (address) => {
+    addresses.push(address);
+    sockets.push(new FakeSocket());
+    return sockets.at(-1);
+  } });
+  connection.connect();
+  sockets[0].onclose({ code: 1006, reason: "" });
+  t.mock.timers.tick(1000);
+  sockets[1].onopen();
+  sockets[1].hear({ op: "pong" });
+  assert.deepEqual(sockets[1].sent[0], { op: "auth", token: "a b", hidden: true });
+  sockets[1].onclose({ code: 1006, reason: "" });
+  t.mock.timers.tick(1000);
+  sockets[2].onclose({ code: 1006, reason: "" });
+  t.mock.timers.tick(1000);
+  const shown = "ws://x/?token=a%20b&hidden=1";
+  assert.deepEqual(addresses, [shown, "ws://x/", "ws://x/", shown]);
+});
+
 test("who does not answer is not waited for", async (t) => {
   t.mock.timers.enable({ apis: ["setTimeout"] });
   const { connection, sockets } = connected();
   sockets[0].onopen();
   const call = connection.call("/a");
-  t.mock.timers.tick(10_000);
+  for (let second = 0; second < 10; second++) {
+    sockets[0].hear({ op: "pong" });
+    t.mock.timers.tick(1000);
+  }
   await assert.rejects(call, { message: "/a has not answered for 10 seconds." });
 });
 

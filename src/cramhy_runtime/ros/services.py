@@ -56,6 +56,13 @@ class Service:
             call.serve()
 
 
+class OfCaller(Service):
+    """A service whose handler gets the ``caller`` of `start_call` as its second argument."""
+
+    def respond(self, call):
+        return self.handler(call.request, call.caller)
+
+
 class Call:
     """One request on its way. When ``done``: ``failure`` is the server's text if it refused, ``lost`` that it gave no answer,
     else ``response`` is the answer. ``when_done`` is called with the call. ``caller``: see `start_call`."""
@@ -104,8 +111,8 @@ def start_call(service, request, when_done, caller=None):
 
     when_done: a function of the finished call; it is called in whatever task serves the request, or in none, and must not wait.
     It may run before this function returns. caller: a client of another process; it has a set ``at_end`` of functions that are called
-    when it has gone, so that a service can end what it began for it. A request that cannot be sent (a wrong type in a field) is a
-    failed call.
+    when it has gone, so that a service can end what it began for it, and ``limits``, how much it may ask for (`rosbridge.guard.Limits`). A
+    request that cannot be sent (a wrong type in a field) is a failed call.
     """
     call = Call(service, request, when_done, caller)
 

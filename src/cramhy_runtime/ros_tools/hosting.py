@@ -14,22 +14,17 @@ from ..lisp import conditions
 from ..lisp.condition_types import Error
 from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact
-from ..ros.services import Refusal, Service
+from ..ros.services import OfCaller, Refusal, Service
 from ..ros.wire import ros_text
 from ..turtlesim.executables import PROGRAMS
 from ..turtlesim.executables import start as start_executable
 
 LOG = "/cramhy/program_log"
 SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode"}
+MOST_ARGUMENTS = 10_000
+"""Characters in the arguments of a program that a client starts."""
 SHARED = ("turtlesim_node",)
 """What runs once: who starts it a second time under its name looks on, as at a window."""
-
-
-class Starting(Service):
-    """The service that starts programs, which needs to know for whom."""
-
-    def respond(self, call):
-        return self.handler(call.request, call.caller)
 
 
 class Host:
@@ -41,10 +36,11 @@ class Host:
         self.line_type = message_class_exact("cramhy_msgs/ProgramLine")
         self.log = self.node.advertise(LOG, self.line_type)
         self._told = set()
+        self._parameters = 0  # that programs of clients have added
         for name, kind in SERVICES.items():
             service_type = service_type_exact(f"cramhy_msgs/{kind}")
             handler = self._handler(getattr(self, name), service_type.response)
-            made = Starting if name == "start_program" else Service
+            made = OfCaller if name == "start_program" else Service
             self.node.add_service(made(self.node, f"/cramhy/{name}", service_type, handler))
 
     def close(self):
@@ -64,15 +60,30 @@ class Host:
             self.tell(there.program)
             return there.name, True, list(there.program.lines)
 
+        if caller is not None:
+            self._check(arguments, caller)
+        before = len(self.graph.parameters.names())
+
         def fail(condition):
             raise Refusal(condition.report())
 
         program = conditions.handler_case([(Error, fail)], lambda: start_executable(executable, arguments))
         self.tell(program)
         if caller is not None:
+            self._parameters += max(0, len(self.graph.parameters.names()) - before)
             caller.at_end.add(program.shutdown)
             program.node.on_shutdown.append(lambda: caller.at_end.discard(program.shutdown))
         return program.node.name, False, list(program.lines)
+
+    def _check(self, arguments, caller):
+        """Refuse a client that asks for too much: what its programs set stays among the parameters when they end."""
+        limits = caller.limits
+        if len(caller.at_end) >= limits.programs:
+            raise Refusal(f"You have started {len(caller.at_end)} programs that still run; more are not allowed. End some.")
+        if sum(map(len, arguments)) > MOST_ARGUMENTS:
+            raise Refusal(f"The arguments of the program have {sum(map(len, arguments))} characters; {MOST_ARGUMENTS} are allowed.")
+        if self._parameters >= limits.parameters:
+            raise Refusal(f"Programs of clients have set {self._parameters} parameters; they may not set more.")
 
     def tell(self, program):
         """Send the lines of the program's log to the terminals from now on."""

@@ -7,6 +7,7 @@ Ctrl-C is the ordinary end of a command that goes on for ever. Modules are impor
 from __future__ import annotations
 
 import importlib
+from queue import Empty, SimpleQueue
 
 from . import words
 from .reach import NoSession, Refused, SessionEnded
@@ -20,6 +21,9 @@ _HOMES = {
 """The modules of each tool, with the commands in each where there are several."""
 TOOLS = tuple(_HOMES)
 NO_SESSION = 'No session serves here. Start one with: roslisp_repl --serve (after eval "$(cramhy ros-shims)" plain roslisp_repl does it).'
+
+
+LOOK_AGAIN = 0.5  # s between two looks for a session to join again
 
 
 class Terminal:
@@ -43,10 +47,34 @@ class Terminal:
             self._graph = self._reach()
         return self._graph
 
+    def rejoin(self, problem):
+        """The session has gone, or the connection to it (``problem``): wait until one is announced, and go on with its graph."""
+        self._graph.close()
+        self._graph = None
+        self.complain(f"; {problem} Waiting for a session to join; Ctrl-C ends.\n")
+        told = ""
+        while self._graph is None:
+            try:
+                self._graph = self._reach()
+            except NoSession as why:
+                if str(why) not in ("", told):
+                    told = str(why)
+                    self.complain(f"; {told}\n")
+                pause(LOOK_AGAIN)
+        self.complain(f"; Joined the session of process {self._graph.pid}.\n")
+
     def close(self):
         """Let go of the graph."""
         if self._graph is not None:
             self._graph.close()
+
+
+def pause(seconds):
+    """Wait, in a process that has no kernel."""
+    try:
+        SimpleQueue().get(timeout=seconds)
+    except Empty:
+        pass
 
 
 def run(command_words, terminal):

@@ -14,7 +14,7 @@ from collections import deque
 from contextlib import contextmanager
 from urllib.parse import urlencode
 
-from ..rosbridge.no_answers import taken_apart
+from ..rosbridge.no_answers import SESSION_ENDS, taken_apart
 from .reach import Graph, Listener, NodeFacts, NoSession, Refused, SessionEnded, reached
 
 PATIENCE = 5.0  # s until a session that listens must have let us in
@@ -109,7 +109,10 @@ class ThereGraph(Graph):
         answer = self.answers.pop(identity)
         if answer["result"]:
             return answer["values"]
-        raise Refused(*taken_apart(answer["values"] if isinstance(answer["values"], str) else "", name))
+        text = answer["values"] if isinstance(answer["values"], str) else ""
+        if text == SESSION_ENDS.format(name):
+            raise SessionEnded(text)
+        raise Refused(*taken_apart(text, name))
 
     def _ask(self, service, /, **arguments):
         return self.call(f"/rosapi/{service}", "", arguments)

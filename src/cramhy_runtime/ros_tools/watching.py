@@ -1,6 +1,7 @@
 """``rostopic echo``, ``hz`` and ``bw``: listening to a topic, line by line as messages come, until Ctrl-C or as many as ``-n`` says.
 
-A topic that nobody publishes on yet is waited for, after a warning, as in the original.
+A topic that nobody publishes on yet is waited for, after a warning, as in the original. When the session ends, or the connection to it
+breaks, the tool waits for a session and listens there, as the original goes on when its publisher has come back.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import re
 from collections import deque
 
 from . import definitions, yaml_writing
+from .reach import SessionEnded
 from .words import TOOLS, CommandError, command, global_name, meant, one, option
 
 _LOOK_AGAIN = 0.2  # s; how often a topic that is not there yet is looked for
@@ -19,7 +21,11 @@ def _topic_of(terminal, name):
     """The topic, its type and the fields below it that ``name`` means, as soon as there is such a topic."""
     warned = False
     while True:
-        types = terminal.graph.topics()
+        try:
+            types = terminal.graph.topics()
+        except SessionEnded as problem:
+            terminal.rejoin(problem)
+            continue
         topic, fields = name, []
         while topic not in types and "/" in topic[1:]:
             topic, _, field = topic.rpartition("/")
@@ -32,7 +38,10 @@ def _topic_of(terminal, name):
         if not warned:
             terminal.complain(f"WARNING: topic [{name}] does not appear to be published yet\n{meant(name, types)}")
             warned = True
-        terminal.graph.sleep(_LOOK_AGAIN)
+        try:
+            terminal.graph.sleep(_LOOK_AGAIN)
+        except SessionEnded as problem:
+            terminal.rejoin(problem)
 
 
 def _count(text):
@@ -57,12 +66,26 @@ def echo(terminal, options, given):
     topic, ros_type, definition, fields = _topic_of(terminal, name)
     pick = _field_picker(topic, definition, fields)
     show = _table(terminal, options) if "p" in options else _blocks(terminal, options)
-    with terminal.graph.listen(topic, ros_type) as listener:
-        left = options.get("n", math.inf)
+    left = options.get("n", math.inf)
+
+    def listen(listener):
+        nonlocal left
         while left > 0:
             stamp, data = listener.take()
             show(stamp, *pick(data))
             left -= 1
+
+    _following(terminal, topic, ros_type, listen)
+
+
+def _following(terminal, topic, ros_type, listen):
+    """Call ``listen(listener)`` with a listener of the topic, and again with one of the next session whenever a session has ended."""
+    while True:
+        try:
+            with terminal.graph.listen(topic, ros_type) as listener:
+                return listen(listener)
+        except SessionEnded as problem:
+            terminal.rejoin(problem)
 
 
 def _field_picker(topic, definition, path):
@@ -125,12 +148,12 @@ def _table(terminal, options):
 # ----------------------------------------------------------------------------------------------------------------- hz, bw
 
 
-def _each_second(terminal, topic, ros_type, arrived, report):
-    """Tell ``arrived(stamp, data)`` of every message, and let ``report()`` print each second."""
-    graph = terminal.graph
-    terminal.line(f"subscribed to [{topic}]")
-    with graph.listen(topic, ros_type) as listener:
-        due = graph.now() + 1.0
+def _each_second(terminal, topic, ros_type, seen, arrived, report):
+    """Tell ``arrived(stamp, data)`` of every message, and let ``report()`` print each second. ``seen``: what to forget with a session."""
+    def listen(listener):
+        terminal.line(f"subscribed to [{topic}]")
+        seen.clear()
+        due = terminal.graph.now() + 1.0
         while True:
             taken = listener.take(due)
             if taken is not None:
@@ -138,6 +161,8 @@ def _each_second(terminal, topic, ros_type, arrived, report):
             else:
                 report()
                 due += 1.0
+
+    _following(terminal, topic, ros_type, listen)
 
 
 _WINDOW = option("-w --window", "look at so many messages", "WINDOW", _count)
@@ -162,7 +187,7 @@ def hz(terminal, options, given):
         terminal.line(f"average rate: {rate}\n\tmin: {min(steps):.3f}s max: {max(steps):.3f}s std dev: {deviation:.5f}s "
                       f"window: {len(times)}")
 
-    _each_second(terminal, topic, ros_type, lambda stamp, data: stamps.append(stamp), report)
+    _each_second(terminal, topic, ros_type, stamps, lambda stamp, data: stamps.append(stamp), report)
 
 
 @command("rostopic", "bw", "[options] /topic", "prints how many bytes come", _WINDOW)
@@ -185,4 +210,4 @@ def bw(terminal, options, given):
         terminal.line(f"average: {rate / unit:.2f}{name}/s\n\tmean: {mean / unit:.2f}{name} min: {least / unit:.2f}{name} "
                       f"max: {most / unit:.2f}{name} window: {len(sizes)}")
 
-    _each_second(terminal, topic, ros_type, lambda stamp, data: seen.append((stamp, definitions.size(data, definition))), report)
+    _each_second(terminal, topic, ros_type, seen, lambda stamp, data: seen.append((stamp, definitions.size(data, definition))), report)

@@ -5,10 +5,11 @@ Where the parts are:
 * `protocol`     one client's operations, done on the graph; `hub` what the clients share there; `rosapi` what they may ask
 * `parsing`, `encoding`, `outbox`, `raw`  what comes in, what goes out, how much may wait, the bytes of ROS 1
 * `no_answers`   what a caller hears instead of an answer, for both ends
-* `server`       sockets and pages in a thread beside the kernel; `connection` one client there; `http` before it is one
+* `server`       sockets and pages in a thread beside the kernel; `connection` one client there; `door`, `http` before it is one
 * `attachment`   the other way round: a session as the client of a real ROS
 * `refusal`      why the server of a real ROS does not let a session in
-* `guard`        who is let in, and how much is allowed; `sessions` how a program finds the session of its user
+* `guard`        who is let in, and how much is allowed; `sessions` how a program finds the session of its user, and
+                 `processes` whether that is surely dead
 
 Importing this package imports none of them, and starting a session loads nothing of it (law 9).
 """

@@ -11,11 +11,14 @@ import asyncio
 import time
 
 from .guard import Bucket, query_of, same
+from .http import EXTENSION
 from .outbox import Outbox, reason_text
 from .parsing import Fragments, Malformed, parse
 from .protocol import Session
 
-POLICY, TOO_MUCH = 1008, 1013
+POLICY, TOO_MUCH, LATER = 1008, 1013, 1013
+PONG = {"op": "pong"}
+"""What answers an operation "ping", without the plan: a page cannot see the pings of WebSockets, and has to know whether we live."""
 ENDED = 1001, "The session has ended."
 
 
@@ -50,6 +53,8 @@ class Connection:
         self._sending = False
         self._tasks = ()
         self._task = None
+        self._protocol = scope["extensions"].get(EXTENSION)
+        self.trusted = False
 
     # ---------------------------------------------------------------------------------------------------------- letting in
 
@@ -60,10 +65,8 @@ class Connection:
         token = self.server.guard.token_of(self.scope) if refusal is None else None
         if refusal is None and token is not None and not same(token, self.server.token):
             refusal = 403, "This is not the token of this session, or no address of it."
-        if refusal is None and len(self.server.connections) >= self.limits.connections:
-            refusal = 503, f"{self.limits.connections} clients are connected; more are not allowed."
-        if refusal is None and token is None and self.server.strangers >= self.limits.strangers:
-            refusal = 503, "Too many connections have not shown a token yet."
+        if refusal is None and token is not None and self._full():
+            refusal = 503, self._full()
         if refusal is not None:
             await self._refuse(*refusal)
             return
@@ -78,6 +81,8 @@ class Connection:
                 await self._wait_for_token()
             else:
                 self.hidden = query_of(self.scope).get("hidden") == ["1"]
+            self.trusted = True
+            self._protocol.trust()
             await self._serve()
         except Gone:
             pass
@@ -89,6 +94,12 @@ class Connection:
             self.server.connections.discard(self)
             self._leave()
 
+    def _full(self):
+        """Why no further client is let in, or ""."""
+        if sum(other.trusted for other in self.server.connections) < self.limits.connections:
+            return ""
+        return f"{self.limits.connections} clients are connected; more are not allowed."
+
     async def _refuse(self, status, text):
         body = (text + "\n").encode()
         await self._send({"type": "websocket.http.response.start", "status": status,
@@ -96,23 +107,30 @@ class Connection:
         await self._send({"type": "websocket.http.response.body", "body": body})
 
     async def _wait_for_token(self):
-        self.server.strangers += 1
+        self.server.strangers.enter(self)
         try:
-            text = await asyncio.wait_for(self._text(), self.limits.first_message)
-            message = parse(text, self.limits.depth)
-        except TimeoutError:
-            raise Left(POLICY, f"No token came within {self.limits.first_message:g} s. The first message must be "
-                               '{"op": "auth", "token": "..."}.') from None
+            message = parse(await self._text(), self.limits.depth)
         except asyncio.CancelledError:
             self._leave_if_asked()
             raise
         except Malformed:
             message = None
         finally:
-            self.server.strangers -= 1
+            self.server.strangers.leave(self)
         if not self.server.guard.lets_in(message):
             raise Left(POLICY, 'The first message must be {"op": "auth", "token": "..."} with the token of this session.')
+        if self._full():
+            raise Left(LATER, self._full())
         self.hidden = message.get("hidden") is True
+
+    def give_up(self, late):
+        """The token has not come in time (LATE), or others wait, too many of them."""
+        if late:
+            self.end(LATER, f"No token came within {self.limits.first_message:g} s. The first message must be "
+                            '{"op": "auth", "token": "..."}.')
+        else:
+            self._protocol.abandon()
+        return True
 
     # ------------------------------------------------------------------------------------------------------------- reading
 
@@ -146,7 +164,10 @@ class Connection:
         while True:
             text = await self._text()
             found = self._understood(text)
-            if found is not None:
+            if found is not None and found["op"] == "ping":
+                self.outbox.put(PONG)
+                self.stir()
+            elif found is not None:
                 self.waiting += 1
                 self.server.post(lambda found=found: self._do(found))
             pause = bucket.take(time.monotonic())
@@ -224,6 +245,7 @@ class Connection:
 
     async def _close(self, code, reason):
         farewell = {"type": "websocket.close", "code": code, "reason": reason_text(reason)}
+        self._protocol.abandon(self.limits.closing)
         try:
             await asyncio.wait_for(self._send(farewell), self.limits.closing)
         except (TimeoutError, OSError):
@@ -242,6 +264,9 @@ class Connection:
             self.server.hand_out(self._done)
 
     def _leave(self):
+        if not self.trusted:
+            return
+
         def leave():
             if self.session is not None:
                 self.session.close()

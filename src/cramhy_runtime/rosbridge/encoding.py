@@ -53,13 +53,47 @@ def cbor_of(operation):
     return cbor2.dumps(operation)
 
 
+def encoded(operation, compression):
+    """The text or the bytes of an operation, for the compression "none", "png" or "cbor"."""
+    if compression == "cbor":
+        return cbor_of(operation)
+    return png_of(text_of(operation)) if compression == "png" else text_of(operation)
+
+
+_varying: dict[type, tuple] = {}
+
+
+def weight(message):
+    """About how many bytes the texts and arrays of MESSAGE take; 0 when its type has none."""
+    fields = _varying.get(message.__class__)
+    if fields is None:
+        fields = _varying[message.__class__] = tuple(
+            field for field in message.fields if field.is_array or field.base == "string" or not field.primitive)
+    total = 0
+    for field in fields:
+        value = getattr(message, field.attribute)
+        if field.is_array and hasattr(value, "__len__"):
+            total += 8 * len(value)
+            if field.base == "string" or not field.primitive:
+                total += sum(map(_weight, value))
+        else:
+            total += _weight(value)
+    return total
+
+
+def _weight(value):
+    if value.__class__ is str:
+        return len(value)
+    return weight(value) if hasattr(value, "fields") else 0
+
+
 class Parcel:
     """A message of a topic on its way to clients; each form of it is made once."""
 
-    __slots__ = ("topic", "message", "stamp", "_forms")
+    __slots__ = ("topic", "message", "stamp", "weight", "_forms")
 
     def __init__(self, topic, message, stamp=0.0):
-        self.topic, self.message, self.stamp = topic, message, stamp
+        self.topic, self.message, self.stamp, self.weight = topic, message, stamp, weight(message)
         self._forms = {}
 
     def form(self, compression):

@@ -43,9 +43,11 @@ HEADERS = {
 class Limits:
     """How much clients may ask. Times are seconds of the wall, sizes bytes."""
 
-    connections: int = 100
-    strangers: int = 20  # connections that have not shown the token yet
-    first_message: float = 5.0  # until the token must have come
+    connections: int = 100  # of clients that have shown the token
+    silent: int = 400  # connections that have said nothing yet
+    strangers: int = 64  # connections without a token that have not finished a request, and as many WebSockets
+    first_message: float = 1.0  # until a stranger must have said something, have finished its request, have shown the token
+    first_size: int = 1 << 16  # of the message that brings the token
     message: int = 1 << 20  # one frame, or one message made of frames
     reassembled: int = 8 << 20  # what the fragments of one client that wait for others may hold
     fragments: int = 1000  # of one message
@@ -59,9 +61,16 @@ class Limits:
     services: int = 100
     calls: int = 100  # unanswered calls of one client, or unanswered calls to the services of one
     answer: float = 60.0  # until a client must have answered a call of a service that it offers
+    parameters: int = 2000  # values that all clients together may add to the parameters
+    parameter: int = 1 << 20  # of one parameter's value, as JSON
+    parameter_bytes: int = 8 << 20  # of all that clients have set
+    turtles: int = 100  # that clients may spawn in one simulator
+    programs: int = 20  # that one client may have started
+    latched: int = 8 << 20  # of the latched messages of one client
     name: int = 500  # characters of a name, a type or an id
     buffer: int = 16 << 20  # bytes that wait to be sent to one client
-    messages: int = 10_000  # messages that wait to be sent to one client
+    messages: int = 10_000  # messages of a topic that wait for the server's thread, or to be sent to one client
+    heavy: int = 32 << 20  # of the texts and arrays in these messages
     closing: float = 2.0  # that a connection gets to say good-bye
 
 

@@ -38,6 +38,7 @@ class Channel:
         self.backlog = deque()
         self.handed = False
         self.lost = 0
+        self._taken_in = self._given_out = 0  # of bytes; each thread changes its own
         self._wanted = {}
         self._keep = 0
         self._subscription = None
@@ -76,14 +77,16 @@ class Channel:
 
     def receive(self, message):
         """The callback of the subscription: in the plan's way, so it does next to nothing."""
-        backlog = self.backlog
-        backlog.append(self._parcel(message))
-        if len(backlog) > self._keep:
+        backlog, parcel = self.backlog, self._parcel(message)
+        self._taken_in += parcel.weight
+        backlog.append(parcel)
+        heavy = self.side.hub.limits.heavy
+        while len(backlog) > self._keep or self._taken_in - self._given_out > heavy and len(backlog) > 1:
             try:
-                backlog.popleft()
+                self._taken_in -= backlog.popleft().weight
                 self.lost += 1
             except IndexError:
-                pass  # the other thread was quicker
+                break  # the other thread was quicker
         if not self.handed:
             self.handed = True
             self.side.hub.hand_out(self.deliver)
@@ -103,6 +106,7 @@ class Channel:
                 parcel = backlog.popleft()
             except IndexError:
                 return
+            self._given_out += parcel.weight
             for feed in self.feeds:
                 feed.offer(parcel)
 
@@ -159,6 +163,11 @@ class Hub:
         self.graph, self.hand_out, self.limits = graph, hand_out, limits or Limits()
         self.sides = {False: Side(self, NODE, False), True: Side(self, OBSERVER, True)}
         self.sessions = set()
+
+    def answer_all(self):
+        """Every call that a client waits for is answered, since the session ends."""
+        for session in list(self.sessions):
+            session.answer_all()
 
     def close(self):
         """Every client goes."""

@@ -5,6 +5,7 @@ rosbridge has one text for whatever went wrong. Two of them say something that t
 """
 
 WITHOUT_REASON = "The service {} refused, without a reason."
+SESSION_ENDS = "The session ended before the service {} answered."
 SERVER_GONE = "The server of the service {} went away before it answered."
 
 

@@ -11,6 +11,7 @@ import re
 
 # A string ends at its quote or where the text ends: else each quote of a broken text would be tried anew, to its end.
 _DEEPER = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)|[\[{]|[\]}]', re.S)
+PART = 100  # bytes that a fragment takes beside its text
 LONGEST_NUMBER = 400  # digits; a double has 309 before its point
 
 
@@ -109,7 +110,7 @@ class Fragments:
         if parts["total"] != total:
             self._forget(identity)
             raise Malformed(f"The fragments of one message must agree on their total, but there are {parts['total']} and {total}.")
-        self._size += len(data) - len(parts.get(number, ""))
+        self._size += len(data) + PART - (len(parts[number]) + PART if number in parts else 0)
         parts[number] = data
         if self._size > self.limits.reassembled or len(self._waiting) > self.limits.fragments:
             self._waiting.clear()
@@ -122,4 +123,4 @@ class Fragments:
 
     def _forget(self, identity):
         parts = self._waiting.pop(identity)
-        self._size -= sum(len(part) for part in parts.values() if part.__class__ is str)
+        self._size -= sum(len(part) + PART for part in parts.values() if part.__class__ is str)

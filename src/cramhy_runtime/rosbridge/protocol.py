@@ -19,9 +19,9 @@ from __future__ import annotations
 from .. import kernel
 from ..ros import services
 from ..ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json
-from .encoding import COMPRESSIONS
+from .encoding import COMPRESSIONS, text_of, weight
 from .hub import Refused
-from .no_answers import reason
+from .no_answers import SESSION_ENDS, reason
 from .parsing import json_type
 
 LEVELS = {"info": 0, "warning": 1, "error": 2, "none": 3}
@@ -107,6 +107,7 @@ class Session:
         self.level = "error"
         self.interests = {}
         self.advertised = {}
+        self.latched = {}  # topic -> bytes of its last message
         self.offered = {}
         self.asked = {}
         self.calls = {}
@@ -122,7 +123,6 @@ class Session:
         if self.closed:
             return
         op = operation["op"]
-        identity = operation.get("id")
         try:
             self._check_id(operation)
             do = OPERATIONS.get(op)
@@ -130,12 +130,20 @@ class Session:
                 raise Refused(f"There is no operation {shown(op)}. There are {', '.join(OPERATIONS)} and fragment.")
             do(self, operation)
         except Refused as refused:
-            self.status(refused.level, str(refused), identity)
+            self._tell(operation, refused.level, str(refused))
         except MessageJsonError as problem:
-            self.status("error", str(problem), identity)
+            self._tell(operation, "error", str(problem))
         except Exception as problem:  # a defect of ours must neither end the session nor stay unknown
             kernel.unhandled(kernel.current(), problem)
-            self.status("error", f"The operation {shown(op)} failed: {type(problem).__name__}. This is a defect of the server.", identity)
+            self._tell(operation, "error", f"The operation {shown(op)} failed: {type(problem).__name__}. This is a defect of the server.")
+
+    def _tell(self, operation, level, text):
+        """Tell the client why OPERATION was not done: who calls a service waits for its answer, which this is then."""
+        if operation["op"] == "call_service":
+            name = operation.get("service")
+            self._respond(operation, name if isinstance(name, str) else "", text[:2000], False)
+        else:
+            self.status(level, text, operation.get("id"))
 
     def status(self, level, text, identity=None):
         """Tell the client, if it wants to know."""
@@ -161,7 +169,7 @@ class Session:
             self._unsubscribe(topic)
         for topic in list(self.advertised):
             self._unadvertise(topic)
-        for wish in list(self.calls.values()):
+        for wish, _ in self.calls.values():
             wish.over()
         self.calls.clear()
         self.hub.sessions.discard(self)
@@ -202,6 +210,7 @@ class Session:
 
     def _unadvertise(self, topic):
         del self.advertised[topic]
+        self.latched.pop(topic, None)
         self.side.unadvertise(topic, self)
 
     def publish(self, operation):
@@ -212,7 +221,18 @@ class Session:
         else:
             message_type = self.hub.message_type(topic, operation.get("type"))
             publication = self._advertise(topic, message_type, operation.get("id"), boolean(operation, "latch"))
-        publication.send(from_json(publication.type, operation.get("msg", {}), self.hub.graph.now()))
+        message = from_json(publication.type, operation.get("msg", {}), self.hub.graph.now())
+        if publication.latch:
+            self._keep(topic, weight(message))
+        publication.send(message)
+
+    def _keep(self, topic, size):
+        """Count a latched message, which stays until the topic is unadvertised."""
+        others = sum(kept for name, kept in self.latched.items() if name != topic)
+        if others + size > self.limits.latched:
+            raise Refused(f"The latched messages that you publish take {others} bytes, and this one {size}; {self.limits.latched} are "
+                          "allowed. Unadvertise some.")
+        self.latched[topic] = size
 
     # ----------------------------------------------------------------------------------------------------------- subscribing
 
@@ -264,14 +284,7 @@ class Session:
     # --------------------------------------------------------------------------------------------------------------- calling
 
     def call_service(self, operation):
-        """A client calls. It waits for a ``service_response``, so whatever is wrong is told by one."""
-        try:
-            self._call(operation)
-        except (Refused, MessageJsonError) as problem:
-            name = operation.get("service")
-            self._respond(operation, name if isinstance(name, str) else "", str(problem)[:2000], False)
-
-    def _call(self, operation):
+        """A client calls. It waits for a ``service_response``, so whatever is wrong is told by one (`_tell`)."""
         _compression(operation), _fragment_size(operation)  # before anything is done whose answer could not be sent
         name = self.hub.name(operation.get("service"), "service")
         service = self.hub.graph.services.get(name)
@@ -282,12 +295,12 @@ class Session:
         request = request_from_json(service.type.request, operation.get("args"), self.hub.graph.now())
         self._numbers += 1
         number = self._numbers
-        self.calls[number] = wish = Wish()
+        wish = Wish()
+        self.calls[number] = wish, operation
 
         def done(call):
             wish.over()
-            self.calls.pop(number, None)
-            if not self.closed:
+            if self.calls.pop(number, None) is not None and not self.closed:
                 self._answer(operation, operation["service"], call)
 
         services.start_call(service, request, done, caller=self)
@@ -295,15 +308,24 @@ class Session:
     def _answer(self, operation, name, call):
         if call.response is None:
             self._respond(operation, name, reason(call), False)
+            return
+        try:
+            values = to_json(call.response)
+        except MessageJsonError as problem:
+            self._respond(operation, name, str(problem), False)
         else:
-            try:
-                self._respond(operation, name, to_json(call.response), True)
-            except MessageJsonError as problem:
-                self._respond(operation, name, str(problem), False)
+            self._respond(operation, name, values, True)
+
+    def answer_all(self):
+        """The session ends: every call that the client waits for is answered."""
+        waiting, self.calls = self.calls, {}
+        for wish, operation in waiting.values():
+            wish.over()
+            self._respond(operation, operation["service"], SESSION_ENDS.format(operation["service"]), False)
 
     def _respond(self, operation, name, values, result):
         answer = {"op": "service_response", "service": name, "values": values, "result": result}
-        if _is_id(operation.get("id"), self.limits):
+        if operation.get("id") is not None and _can_be_repeated(operation["id"], self.limits):
             answer["id"] = operation["id"]
         compression, size = "none", None
         if result:  # otherwise the operation itself may be what is wrong
@@ -392,6 +414,7 @@ class Session:
         if not isinstance(level, str) or level not in LEVELS:
             raise Refused(f'There is no level {shown(level)}. There are {", ".join(LEVELS)}.')
         self.level = level
+        self.hub.hand_out(lambda: setattr(self.outbox, "level", level))
 
     def heard(self, operation):
         """A status from the client: nothing follows from it. A second ``auth`` likewise."""
@@ -416,6 +439,16 @@ def _is_id(value, limits):
     if value.__class__ is str:
         return len(value) <= limits.name
     return value.__class__ in (int, float) and abs(value) < 2**63
+
+
+def _can_be_repeated(identity, limits):
+    """Whether an answer may have this id, though it may be none that is allowed: who waits for the answer knows it by that."""
+    if _is_id(identity, limits):
+        return True
+    try:
+        return len(text_of(identity)) <= limits.name
+    except ValueError:  # an infinity
+        return False
 
 
 def shown(value):

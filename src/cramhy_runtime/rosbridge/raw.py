@@ -7,6 +7,7 @@ integers. Source: wiki.ros.org/msg, "Serialization".
 from __future__ import annotations
 
 import math
+import reprlib
 import struct
 
 from ..ros.wire import NONFINITE, as_float
@@ -17,7 +18,7 @@ _LENGTH = struct.Struct("<I")
 
 
 def serialize(message):
-    """The bytes of MESSAGE, as the graph delivers it."""
+    """The bytes of MESSAGE, as the graph delivers it. Raises ValueError with the field that ROS 1 cannot write."""
     parts = []
     _write(message, parts.append)
     return b"".join(parts)
@@ -26,17 +27,25 @@ def serialize(message):
 def _write(message, put):
     for field in message.fields:
         value = getattr(message, field.attribute)
-        if field.is_array:
-            value = value or ()
-            if not field.length:
-                put(_LENGTH.pack(len(value)))
-            if field.base in _FORMATS:
-                put(struct.pack(f"<{len(value)}{_FORMATS[field.base]}", *(_number(field.base, each) for each in value)))
-            else:
-                for each in value:
-                    _write_one(field.base, each, put)
-        else:
-            _write_one(field.base, value, put)
+        try:
+            _write_field(field, value, put)
+        except (struct.error, OverflowError, TypeError):  # a ValueError is that of a message in this one
+            raise ValueError(f"{message.ros_type}: the field {field.name} holds {reprlib.repr(value)}, which ROS 1 cannot write as "
+                             f"{field.type}.") from None
+
+
+def _write_field(field, value, put):
+    if not field.is_array:
+        _write_one(field.base, value, put)
+        return
+    value = value or ()
+    if not field.length:
+        put(_LENGTH.pack(len(value)))
+    if field.base in _FORMATS:
+        put(struct.pack(f"<{len(value)}{_FORMATS[field.base]}", *(_number(field.base, each) for each in value)))
+    else:
+        for each in value:
+            _write_one(field.base, each, put)
 
 
 def _write_one(base, value, put):

@@ -11,8 +11,10 @@ import json
 
 from ..ros.message_json import MessageJsonError, service_named, type_named
 from ..ros.messages import message_class_exact, service_type_exact
-from ..ros.services import Refusal
+from ..ros.services import OfCaller, Refusal, Service
 from ..ros.type_texts import complete_text
+from ..ros.wire import ros_text
+from .guard import Limits
 from .parsing import Malformed, check_depth
 
 NODE = "rosapi"
@@ -27,11 +29,13 @@ EXAMPLES = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0", "
 class RosApi:
     """The services of one graph; each method takes a request and gives the values of the response's fields."""
 
-    def __init__(self, graph):
+    def __init__(self, graph, limits=None):
         self.graph = graph
+        self.shelf = Shelf(graph.parameters, limits or Limits())
         self.node = graph.node(NODE, hidden=True)
         for name, kind in SERVICES.items():
-            self.node.serve(f"/{NODE}/{name}", service_type_exact(f"rosapi/{kind}"), self._handler(name, kind))
+            made = OfCaller if name == "set_param" else Service
+            self.node.add_service(made(self.node, f"/{NODE}/{name}", service_type_exact(f"rosapi/{kind}"), self._handler(name, kind)))
 
     def close(self):
         self.node.shutdown()
@@ -40,8 +44,8 @@ class RosApi:
         answer = getattr(self, name)
         response = service_type_exact(f"rosapi/{kind}").response
 
-        def handle(request):
-            return response(*answer(*request.values()))
+        def handle(request, *caller):
+            return response(*answer(*request.values(), *caller))
 
         return handle
 
@@ -132,10 +136,16 @@ class RosApi:
             value = self.graph.parameters.get(global_name(name))
         except KeyError:
             value = _value(default)
-        return (json.dumps(value, ensure_ascii=False),)
+        try:
+            return (ros_text(json.dumps(value, ensure_ascii=False, allow_nan=False)),)
+        except (TypeError, ValueError, RecursionError) as problem:
+            raise Refusal(f"The parameter {global_name(name)} cannot be sent as JSON: {problem}") from None
 
-    def set_param(self, name, value):
-        self.graph.parameters.set(_parameter(name), _value(value))
+    def set_param(self, name, value, caller=None):
+        full, found = _parameter(name), _value(value)
+        if caller is not None:
+            self.shelf.put(full, found, len(value))
+        self.graph.parameters.set(full, found)
         return ()
 
     def has_param(self, name):
@@ -161,6 +171,36 @@ class RosApi:
 
     def get_ros_version(self):
         return ROS_VERSION
+
+
+class Shelf:
+    """How much clients have added to the parameters. A program of this process is not limited, and what it sets does not count."""
+
+    def __init__(self, tree, limits):
+        self.tree, self.limits = tree, limits
+        self._sizes = {}  # name -> values below it, bytes of them as JSON
+
+    def put(self, name, value, size):
+        """Count what a client is about to set; raises `Refusal` when that is too much."""
+        limits = self.limits
+        if len(name) > limits.name:
+            raise Refusal(f"The name of the parameter has {len(name)} characters; {limits.name} are allowed.")
+        if size > limits.parameter:
+            raise Refusal(f"The value of {name} has {size} bytes; {limits.parameter} are allowed.")
+        kept = {other: sizes for other, sizes in self._sizes.items()
+                if other != name and not other.startswith(name + "/") and self.tree.has(other)}
+        number = sum(values for values, _ in kept.values()) + _leaves(value)
+        total = sum(taken for _, taken in kept.values()) + size
+        if number > limits.parameters:
+            raise Refusal(f"Clients have set {number - _leaves(value)} parameters; {limits.parameters} are allowed. Delete some.")
+        if total > limits.parameter_bytes:
+            raise Refusal(f"The parameters that clients have set take {total - size} bytes; {limits.parameter_bytes} are allowed. "
+                          "Delete some.")
+        self._sizes = {**kept, name: (_leaves(value), size)}
+
+
+def _leaves(value):
+    return sum(map(_leaves, value.values())) or 1 if isinstance(value, dict) else 1
 
 
 SERVICES = {

@@ -17,7 +17,9 @@ The server is a task of the kernel's, too: it is closed when that is, with all i
 from __future__ import annotations
 
 import asyncio
+import os
 import socket
+import sys
 import time
 from collections import deque
 from http import HTTPStatus
@@ -28,13 +30,15 @@ from ..kernel.company import Company
 from ..ros import graph
 from . import sessions
 from .connection import ENDED, Connection
+from .door import Door, WaitingRoom
 from .guard import HEADERS, Guard, Limits, new_token
 from .hub import Hub
 from .rosapi import RosApi
 
 HOST = "127.0.0.1"
-BACKLOG = 64  # connections that the system keeps until the server takes them
+BACKLOG = 1024  # connections that the system keeps until the server takes them: one that finds no place tries again a second later
 LONGEST_STOP = 5.0  # s that the thread gets to end
+RENEW = 1.0  # s between two looks whether the session is still announced
 
 
 class ServerError(Exception):
@@ -51,14 +55,14 @@ class Server:
         self.token = new_token()
         self.socket = _listen(port)
         self.port = self.socket.getsockname()[1]
-        self.file = self._announce()  # before anything else is there that would have to be taken back
+        self.announcement = self._announce()  # before anything else is there that would have to be taken back
         self.url = f"http://{HOST}:{self.port}/#{self.token}"
         self.address = f"ws://{HOST}:{self.port}/{self.token}"
         self.guard = Guard(self.token, self.port, origins)
         self.hub = Hub(here, self.hand_out, limits)
-        self.rosapi = RosApi(here)
+        self.rosapi = RosApi(here, limits)
         self.connections = set()
-        self.strangers = 0
+        self.strangers = self.door = None
         self.closed = False
         self._out = deque()
         self._called = False
@@ -69,20 +73,27 @@ class Server:
 
     def _announce(self):
         try:
-            return sessions.announce(self.port, self.token, time.time_ns())
+            return sessions.announce(self.port, self.token)
         except (sessions.Unsafe, OSError) as problem:
             self.socket.close()
             raise ServerError(f"The server cannot be announced to the other programs of this user. {problem}") from None
+
+    @property
+    def file(self):
+        """The path of the file that announces the server."""
+        return self.announcement.path
 
     def close(self):
         """End the server and its clients; what they had on the graph goes. To be called with the baton. Does nothing a second time."""
         if self.closed:
             return
         self.closed = True
-        self.file.unlink(missing_ok=True)
+        self.announcement.close()
+        self.hub.answer_all()
         self.company.share.forgiven = True
         self.company.call(self._stop_soon)
         self.company.join(LONGEST_STOP)
+        self.announcement.close()  # its thread may just have written it again
         self.hub.close()  # only now: what clients were to hear still had to reach them
         self.rosapi.close()
         self.socket.close()
@@ -133,24 +144,49 @@ class Server:
     async def _main(self):
         import uvicorn
 
-        from .http import make_protocol
+        from .http import make_protocol, make_websocket
 
+        loop, limits = asyncio.get_running_loop(), self.limits
+        asking = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.end(late))
+        self.strangers = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.give_up(late))
         config = uvicorn.Config(
-            self.application, interface="asgi3", loop="asyncio", http=make_protocol(self.limits), ws="websockets-sansio", lifespan="off",
-            log_config=None, log_level=100, access_log=False, server_header=False, date_header=False, proxy_headers=False, backlog=BACKLOG,
+            self.application, interface="asgi3", loop="asyncio", http=make_protocol(asking), ws=make_websocket(limits), lifespan="off",
+            log_config=None, log_level=100, access_log=False, server_header=False, date_header=False, proxy_headers=False,
             ws_max_size=self.limits.message, ws_per_message_deflate=False, ws_ping_interval=20.0, ws_ping_timeout=20.0,
             timeout_keep_alive=5, timeout_graceful_shutdown=1, h11_max_incomplete_event_size=16384,
         )  # fmt: skip
-        self._uvicorn = uvicorn.Server(config)
+        self._uvicorn = served = uvicorn.Server(config)
         if self.closed:
             return
-        await self._uvicorn.serve([self.socket])
+
+        def protocol():
+            return config.http_protocol_class(config=config, server_state=served.server_state, app_state=served.lifespan.state, _loop=loop)
+
+        self.door = Door(loop, self.socket, limits, self.token, protocol)
+        loop.call_soon(self.door.open)  # when uvicorn is ready
+        loop.call_later(RENEW, self._renew, loop)
+        await served.serve([])
+
+    def _renew(self, loop, told=False):
+        if self.closed:
+            return
+        try:
+            self.announcement.renew()
+            told = False
+        except sessions.Unsafe as problem:
+            if not told:
+                text = f"; Other programs cannot find this session any more. {problem}"
+                self.kernel.post(lambda: sys.stderr and print(text, file=sys.stderr, flush=True))
+            told = True
+        loop.call_later(RENEW, self._renew, loop, told)
 
     def _stop_soon(self):
         self._stopping = asyncio.ensure_future(self._stop())  # the loop itself keeps no task alive
 
     async def _stop(self):
         """End the connections, each with the reason, and then uvicorn, which would close them with a mere number."""
+        if self.door is not None:
+            self.door.close()
         ending = [connection.end(*ENDED) for connection in list(self.connections)]
         if ending:
             await asyncio.wait(ending, timeout=self.limits.closing)
@@ -189,8 +225,7 @@ async def _respond(scope, send, status, kind, body, headers):
     fields = {"content-type": kind, "content-length": str(len(data)), **HEADERS, **{name.lower(): value for name, value in headers.items()}}
     if status == HTTPStatus.METHOD_NOT_ALLOWED:
         fields["allow"] = "GET, HEAD"
-    if status >= 400:
-        fields["connection"] = "close"
+    fields["connection"] = "close"  # the next request takes its place behind those that others have made meanwhile
     lines = [(name.encode("latin-1"), value.encode("latin-1")) for name, value in fields.items()]
     await send({"type": "http.response.start", "status": status, "headers": lines})
     await send({"type": "http.response.body", "body": b"" if scope["method"] == "HEAD" else data})
@@ -199,7 +234,7 @@ async def _respond(scope, send, status, kind, body, headers):
 def _listen(port):
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
-        if port:
+        if os.name == "posix":  # what is left of connections to a session that was killed keeps nobody from its port; Windows means more
             found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((HOST, port or 0))
         found.listen(BACKLOG)

@@ -16,7 +16,7 @@ from ..lisp.data import DoubleFloat
 from ..ros import graph, rosout, wire
 from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.names import check_graph_name
-from ..ros.services import Refusal
+from ..ros.services import OfCaller, Refusal
 from .canvas import Canvas
 from .history import History
 from .measures import CENTRE, DRAWINGS, EXTENT
@@ -28,7 +28,9 @@ _double = DoubleFloat
 
 
 class Inhabitant:
-    """A turtle with its topics and services."""
+    """A turtle with its topics and services. ``of_client``: whether a client of another process has spawned it."""
+
+    of_client = False
 
     def __init__(self, simulator, turtle):
         node, name = simulator.node, turtle.name
@@ -211,6 +213,16 @@ class Turtlesim(Program):
         full = self.node.resolve(name)
         return any(self.node.resolve(other) == full for other in self.inhabitants)
 
+    def _check_number(self, name, caller):
+        """Refuse a client of another process that asks for too much (`ros.services.start_call`)."""
+        if caller is None:
+            return
+        there = sum(inhabitant.of_client for inhabitant in self.inhabitants.values())
+        if there >= caller.limits.turtles:
+            raise Refusal(f"Clients have spawned {there} turtles; more are not allowed. Kill some.")
+        if len(name) > caller.limits.name:
+            raise Refusal(f"The name of the turtle has {len(name)} characters; {caller.limits.name} are allowed.")
+
     def kill(self, name):
         """Remove a turtle; its trail stays."""
         if name not in self.inhabitants:
@@ -249,8 +261,11 @@ class Turtlesim(Program):
 
             return handler
 
-        def spawn_turtle(request):
-            return spawn.response(name=self.spawn(request.name, *(wire.as_float(value) for value in (request.x, request.y, request.theta))))
+        def spawn_turtle(request, caller):
+            self._check_number(request.name, caller)
+            name = self.spawn(request.name, *(wire.as_float(value) for value in (request.x, request.y, request.theta)))
+            self.inhabitants[name].of_client = caller is not None
+            return spawn.response(name=name)
 
         def kill_turtle(request):
             self.kill(request.name)
@@ -258,7 +273,7 @@ class Turtlesim(Program):
 
         self.node.serve("clear", empty, do(self.clear, empty))
         self.node.serve("reset", empty, do(self.reset, empty))
-        self.node.serve("spawn", spawn, spawn_turtle)
+        self.node.add_service(OfCaller(self.node, self.node.resolve("spawn"), spawn, spawn_turtle))
         self.node.serve("kill", kill, kill_turtle)
 
 

@@ -17,6 +17,7 @@ from ..ros.loggers import Loggers
 
 LABELS = {rosout.DEBUG: "DEBUG", rosout.INFO: " INFO", rosout.WARN: " WARN", rosout.ERROR: "ERROR"}
 MOST_LINES = 10_000
+MOST_TEXT = 2000  # characters of a line: it may hold a name that a client of another process has made up
 _FIRST = ("__ns", "__name")
 
 
@@ -68,6 +69,8 @@ class Program:
         """A log line as roscpp prints it, and a message on ``/rosout``; nothing when the node's logger is less talkative."""
         if not self.loggers.enabled(level):
             return
+        if len(text) > MOST_TEXT:
+            text = text[:MOST_TEXT] + "..."
         line = f"[{LABELS[level]}] [{self.graph.now():.6f}000]: {text}"  # nanoseconds, as far as a double tells them
         if len(self.lines) >= MOST_LINES:
             del self.lines[: MOST_LINES // 2]

@@ -1,11 +1,13 @@
 // A client of the rosbridge protocol (version 2, JSON over a WebSocket) that keeps its session: when the connection is lost it says
-// so, tries again by itself, ever more slowly up to a limit, and subscribes to everything anew. The token goes out as the first
-// message, with the wish to be an observer, whom the lists of the graph do not show. What was asked and not answered when the
-// connection broke is refused, never repeated: a second /reset is not the same as one.
+// so, tries again by itself, ever more slowly up to a limit, and subscribes to everything anew. The token is in the address that it
+// connects to, so that the server lets it in before those who have none; it goes out as the first message, too, with the wish to be an
+// observer, whom the lists of the graph do not show. What was asked and not answered when the connection broke is refused, never
+// repeated: a second /reset is not the same as one.
 
 const FIRST_PAUSE = 400; // ms
 const LONGEST_PAUSE = 5000;
 const PATIENCE = 10_000; // ms that an answer may take
+const SILENCE = 3000; // ms without a word after which the server is asked, and as many until it must have answered
 const POLICY = 1008; // the code with which a server turns somebody away
 
 export const STATES = Object.freeze({ CONNECTING: "connecting", OPEN: "open", LOST: "lost", REFUSED: "refused" });
@@ -21,6 +23,8 @@ export class Connection {
     this.count = 0;
     this.pause = FIRST_PAUSE;
     this.socket = null;
+    this.bare = false; // whether the token goes out with the first message alone
+    this.silence = null;
     this.timer = null;
     this.state = null;
   }
@@ -29,9 +33,12 @@ export class Connection {
     clearTimeout(this.timer);
     this.timer = null;
     this.#enter(STATES.CONNECTING);
-    const socket = (this.socket = this.make(this.url));
-    this.heard = false;
+    const socket = (this.socket = this.make(this.#address()));
+    this.heard = this.entered = false;
+    this.#expect(socket);
     socket.onopen = () => {
+      this.entered = true;
+      this.#expect(socket);
       if (this.token) this.#send({ op: "auth", token: this.token, hidden: true });
       for (const [topic, { type, options }] of this.listeners) this.#send({ op: "subscribe", topic, type, ...options });
       this.advertised.clear();
@@ -39,7 +46,10 @@ export class Connection {
       this.#enter(STATES.OPEN);
       this.opened();
     };
-    socket.onmessage = ({ data }) => this.#receive(data);
+    socket.onmessage = ({ data }) => {
+      this.#expect(socket);
+      this.#receive(data);
+    };
     socket.onclose = ({ code, reason }) => this.#closed(socket, code, reason);
   }
 
@@ -78,6 +88,23 @@ export class Connection {
     return this.state === STATES.OPEN;
   }
 
+  // A server that refuses the token in the address cannot tell a page why. So after an attempt that did not get in, the next one shows the
+  // token with the first message alone, and is told.
+  #address() {
+    return this.token && !this.bare ? `${this.url}?token=${encodeURIComponent(this.token)}&hidden=1` : this.url;
+  }
+
+  // A session that is stopped, or a network that is gone, closes nothing. So when nothing has come for a while the server is asked, whose
+  // answer needs no plan's attention; when none comes, the connection is given up for a new one.
+  #expect(socket) {
+    clearTimeout(this.silence);
+    this.silence = setTimeout(() => {
+      if (socket !== this.socket) return;
+      if (this.open) this.#send({ op: "ping" });
+      this.silence = setTimeout(() => this.#closed(socket, 1006, ""), SILENCE);
+    }, SILENCE);
+  }
+
   #send(message) {
     this.socket.send(JSON.stringify(message));
   }
@@ -105,6 +132,10 @@ export class Connection {
 
   #closed(socket, code, reason) {
     if (socket !== this.socket) return;
+    clearTimeout(this.silence);
+    this.socket = null;
+    socket.close();
+    if (!this.entered) this.bare = !this.bare;
     for (const { reject, timer, service } of this.pending.values()) {
       clearTimeout(timer);
       reject(new Error(`${service}: the connection was lost.`));

@@ -24,7 +24,7 @@ export class StatusView {
     this.pill.dataset.state = state;
     setText(this.pill, NAMES[state]);
     if (state === STATES.LOST) setText(this.banner, LOST);
-    if (state === STATES.REFUSED) setText(this.banner, `The session does not let this page in${detail ? `: ${detail}` : ""}. ${REFUSED}`);
+    if (state === STATES.REFUSED) setText(this.banner, `The session does not let this page in${detail ? `: ${detail.replace(/\.$/, "")}` : ""}. ${REFUSED}`);
     if (state !== STATES.CONNECTING) this.banner.hidden = state === STATES.OPEN;
     document.body.classList.toggle("offline", state !== STATES.OPEN);
   }
