@@ -70,8 +70,8 @@ def test_a_token_comes_from_a_file_or_a_variable(write, monkeypatch):
 
 def test_an_address_with_a_token_among_the_arguments_is_warned_of_and_taken(capsys):
     assert chosen("ws://robot:9090/secret", None) == "ws://robot:9090/secret"
-    assert capsys.readouterr().err == ("; Every user of this machine can see the token in --ros ws://robot:9090/.... Write the address into "
-                                       "a file: --ros @FILE\n")
+    assert capsys.readouterr().err == ("; Every user of this machine can see the token in --ros ws://robot:9090/.... Write the address "
+                                       "into a file: --ros @FILE\n")
     assert chosen("ws://robot:9090", None) == "ws://robot:9090"
     assert capsys.readouterr().err == ""
 
