@@ -10,7 +10,7 @@ It is started as ``python ros1_peer.py [--rospy]``. Without an option it has a s
 
 It reads commands from its standard input, a line of JSON ``[name, argument...]`` each, and writes one line of JSON as the answer to each:
 ``ops``: the operations that came, as [seconds, operation]; ``late S``: answers of ``/rosapi`` take S seconds; ``cut``: every connection is
-reset; ``pose``; ``call NAME ARGUMENTS``: a node of the robot calls a service, ``calls``: what became of these; ``wrong``: the own log.
+reset; ``pose``; ``define TOPIC TYPE``; ``mute SERVICE``: its type is not told; ``call NAME ARGUMENTS``: a node of the robot calls a service, ``calls``: what became of these; ``wrong``: the own log.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class OwnGraph:
         self.listeners = {}
         self.services = {}
         self.parameters = {"/turtlesim/background_b": 255}
-        self.late = 0.0
+        self.late, self.mute = 0.0, None
         self.turtle = turtle = Turtle()
         self.listen("/turtle1/cmd_vel", None, turtle.command)
         for name, kind, handler in (
@@ -135,7 +135,7 @@ class OwnGraph:
 
     def call(self, name, arguments):
         if name.startswith("/rosapi/"):
-            time.sleep(self.late)
+            time.sleep(3600 if arguments.get("service") == self.mute and self.mute else self.late)
         if name not in self.services:
             raise LookupError(f"Service {name} does not exist")
         return self.services[name][1](arguments)
@@ -294,6 +294,12 @@ class Robot:
             client.wire.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
             with contextlib.suppress(OSError):
                 client.wire.socket.shutdown(socket.SHUT_RDWR)
+
+    def command_define(self, topic, kind):
+        self.graph.types[topic] = kind
+
+    def command_mute(self, service):
+        self.graph.mute = service
 
     def command_pose(self):
         return self.graph.pose()

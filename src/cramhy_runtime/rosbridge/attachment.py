@@ -16,6 +16,7 @@ the other side's rosbridge complains of is logged.
 
 from __future__ import annotations
 
+from collections import deque
 from datetime import datetime
 from importlib.util import find_spec
 
@@ -64,7 +65,8 @@ class Link:
         self._not_known = set()  # services whose types no package here defines
         self._asked = set()  # services whose types have been asked for
         self._types = {}  # of topics, as the other side has them
-        self._held, self._last = Held(), {}
+        self._held = Held()
+        self._under_way = {}  # the messages of each topic that the other side has not confirmed, the last one always: (number, operation)
         self._timers, self._joiner = (), None
         self._delivering = False
         self._numbers = 0
@@ -140,13 +142,14 @@ class Link:
         if self.closed:
             return
         self._announced = False
-        self._keep_unacknowledged()
+        doubtful = self._keep_unacknowledged()
         if self.connected:
             self.connected = False
             self.lost_since = datetime.fromtimestamp(self.graph.now()).strftime("%H:%M:%S")
             self.graph.cut_off = self._no_connection()
         if self._begun:
-            self._log(logging.ERROR, f"The connection to {self.shown} is lost{why and ': '}{why}. It is tried again and again.")
+            self._log(logging.ERROR, f"The connection to {self.shown} is lost{why and ': '}{why}. It is tried again and again."
+                                     + (f" {doubtful} of the messages that were under way may be lost." if doubtful else ""))
         self._asked.clear()
         self._wake_joiner()
         self._fail_all(f"the connection to {self.shown} was lost{why and ': '}{why}")
@@ -275,8 +278,8 @@ class Link:
         def known(found):
             other = self._differs(name, message_class, found.get("type"))
             if other is not None:
-                self._log(logging.ERROR, f"{name} has messages of the type {other[0]} at {self.shown}, not {message_class.ros_type}, so none "
-                                         "of them arrives.")
+                self._log(logging.ERROR, f"{name} has messages of the type {other[0]} at {self.shown}, not {message_class.ros_type}, so "
+                                         "none of them arrives.")
 
         self.call("/rosapi/topic_type", {"topic": name}, known, lambda text: None)
 
@@ -392,9 +395,15 @@ class Link:
     def _publish(self, name, operation):
         """Send a message, or keep it while the network carries nothing."""
         if self._announced and self.uplink.open and not self.uplink.quiet and not self._held:
-            self._last[name] = self.uplink.send(operation), operation
+            self._send_message(name, operation)
         else:
             self._held.add(name, operation, kernel.now())
+
+    def _send_message(self, name, operation):
+        sent = self._under_way.setdefault(name, deque())
+        sent.append((self.uplink.send(operation), operation))
+        while len(sent) > 1 and sent[0][0] <= self.uplink.acknowledged:
+            sent.popleft()
 
     def _flush(self):
         """The network carries again: send what waits, without what has become stale."""
@@ -402,15 +411,21 @@ class Link:
             return
         messages, dropped = self._held.take(kernel.now())
         for operation in messages:
-            self._last[operation["topic"]] = self.uplink.send(operation), operation
+            self._send_message(operation["topic"], operation)
         self._tell_dropped(dropped)
 
     def _keep_unacknowledged(self):
-        """The last message of each topic may have been under way when the network went: keep it, it may be the command to stop."""
-        for name, (number, operation) in self._last.items():
+        """The last message of each topic may have been under way when the network went: keep it, it may be the command to stop.
+
+        Returns how many others were under way."""
+        count = 0
+        for name, sent in self._under_way.items():
+            number, operation = sent[-1]
             if number > self.uplink.acknowledged:
                 self._held.add_first(name, operation)
-        self._last.clear()
+                count += sum(each > self.uplink.acknowledged for each, _ in sent) - 1
+        self._under_way.clear()
+        return count
 
     def _tell_dropped(self, dropped):
         if dropped:
@@ -460,8 +475,8 @@ class Link:
             return  # they are withdrawn anyway
         for name in [name for name in self._unanswered if all(call.service.name != name for call in self._serving.values())]:
             self._unanswered.discard(name)
-            self._say({"op": "unadvertise_service", "service": name})
             if name in self._offered and self._announced:
+                self._say({"op": "unadvertise_service", "service": name})
                 self._advertise_service(name, self._offered[name])
 
     # --------------------------------------------------------------------------------------------------- services over there
@@ -535,7 +550,8 @@ def join(url, patience=PATIENCE):
     except roslibpy.core.RosTimeoutError:
         uplink.leave()
         raise ServerError(f"No rosbridge server answers at {shown}. Does it run there (roslaunch rosbridge_server "
-                          "rosbridge_websocket.launch, or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), and can this machine reach it?") from None
+                          "rosbridge_websocket.launch, or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), "
+                          "and can this machine reach it?") from None
     uplink.refusal.waited_for = False
     if uplink.refusal.why:
         uplink.leave()
