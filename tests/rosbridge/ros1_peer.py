@@ -9,8 +9,11 @@ It is started as ``python ros1_peer.py [--rospy]``. Without an option it has a s
 * ``values`` of a ``service_response`` must be an object, else the response is not heard; ``result`` is not looked at.
 
 It reads commands from its standard input, a line of JSON ``[name, argument...]`` each, and writes one line of JSON as the answer to each:
-``ops``: the operations that came, as [seconds, operation]; ``late S``: answers of ``/rosapi`` take S seconds; ``cut``: every connection is
-reset; ``pose``; ``define TOPIC TYPE``; ``mute SERVICE``: its type is not told; ``call NAME ARGUMENTS``: a node of the robot calls a service, ``calls``: what became of these; ``wrong``: the own log.
+
+``ops``: the operations that came, as [seconds, operation]; ``wrong``: the own log
+``late S``: answers of ``/rosapi`` take S seconds; ``mute SERVICE``: its type is not told; ``define TOPIC TYPE``
+``cut``: every connection is reset; ``clients``: how many there are
+``call NAME ARGUMENTS``: a node of the robot calls a service; ``calls``: what became of these; ``services``; ``pose``
 """
 
 from __future__ import annotations

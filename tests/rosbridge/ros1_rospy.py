@@ -15,12 +15,13 @@ import time
 from pathlib import Path
 
 DEFINITIONS = Path(__file__).parents[2] / "src" / "cramhy_runtime" / "ros" / "definitions"
+GENERATORS = Path("/usr/lib/genpy")  # where Debian has them
 
 
 def make_package(name, include=()):
     """Make the Python package of the ROS package NAME, and have it found."""
     place = Path(tempfile.mkdtemp(prefix="ros1-messages-"))
-    for kind, generator in (("msg", "genmsg_py.py"), ("srv", "gensrv_py.py")):
+    for kind, generator in (("msg", GENERATORS / "genmsg_py.py"), ("srv", GENERATORS / "gensrv_py.py")):
         out, folder = place / name / kind, DEFINITIONS / name / kind
         files = sorted(map(str, folder.glob(f"*.{kind}")))
         if files:
@@ -28,8 +29,8 @@ def make_package(name, include=()):
             flags = [f"-I{each}:{DEFINITIONS / each / 'msg'}" for each in (name, *include)]
             environment = {**os.environ, "PYTHONPATH": ""}
             for file in files:
-                subprocess.run([generator, "-p", name, *flags, "-o", str(out), file], check=True, env=environment)
-            subprocess.run([generator, "--initpy", "-p", name, "-o", str(out)], check=True, env=environment)
+                subprocess.run([sys.executable, generator, "-p", name, *flags, "-o", str(out), file], check=True, env=environment)
+            subprocess.run([sys.executable, generator, "--initpy", "-p", name, "-o", str(out)], check=True, env=environment)
     (place / name / "__init__.py").touch()
     sys.path.insert(0, str(place))
 
