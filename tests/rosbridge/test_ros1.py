@@ -388,6 +388,14 @@ def test_the_stop_command_of_a_plan_that_ends_in_a_stall_waits_for_the_network(r
     assert [each for _, each in robot.heard("publish") if each["msg"]["linear"]["x"] == 9.0]
 
 
+def test_the_last_message_of_an_orderly_end_comes_once(robot, join):
+    evaluate, link = join()
+    evaluate(f'(defparameter *cmd* (roslisp:advertise "{CMD}" "geometry_msgs/Twist"))')
+    evaluate("(dotimes (i 10) (roslisp:publish-msg *cmd* (:x :linear) (float i)))")
+    link.close()
+    assert [each["msg"]["linear"]["x"] for _, each in robot.heard("publish")] == [float(number) for number in range(10)]
+
+
 def test_a_last_message_that_nobody_confirms_is_told(robot, proxy, join, capsys):
     evaluate, link = join()
     evaluate(f'(defparameter *cmd* (roslisp:advertise "{CMD}" "geometry_msgs/Twist"))')

@@ -97,8 +97,8 @@ def test_the_course_drives_a_turtle_of_rospy(robot, session):
         arrive(robot, lambda: evaluate("(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) "
                                        "(navigate '(5 5 0))))"), 5, 5)
         problem = failure(evaluate, '(advertise "/turtle1/cmd_vel" "std_msgs/String")')
-        assert problem.report() == (f"The topic {CMD} has messages of the type geometry_msgs/Twist at {link.shown}, not std_msgs/String, so no "
-                                    "message would arrive.")
+        assert problem.report() == (f"The topic {CMD} has messages of the type geometry_msgs/Twist at {link.shown}, not std_msgs/String, "
+                                    "so no message would arrive.")
 
 
 def test_rosservice_calls_a_service_of_the_plan_and_is_told_when_the_session_leaves(ros, robot, session):
@@ -111,7 +111,8 @@ def test_rosservice_calls_a_service_of_the_plan_and_is_told_when_the_session_lea
     until(lambda: "/sum" in robot.services(), "the service")
 
     def call(value):
-        return subprocess.Popen(["rosservice", "call", "/sum", value], env=ros[0], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        return subprocess.Popen(["rosservice", "call", "/sum", value], env=ros[0], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                text=True)
 
     refused = call("false")
     until(lambda: refused.poll() is not None, "the end of rosservice")

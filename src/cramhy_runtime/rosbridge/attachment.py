@@ -124,10 +124,13 @@ class Link:
 
     def _say_farewell(self):
         """Send what is left, and wait until it has arrived."""
-        self._keep_unacknowledged()
-        topics = self._held.topics()
+        in_order = self._announced and self.uplink.open  # what was sent before comes before what is sent now
+        doubtful = [name for name, sent in self._under_way.items() if sent[-1][0] > self.uplink.acknowledged]
+        if not in_order:
+            self._keep_unacknowledged()
+        topics = sorted({*self._held.topics(), *doubtful})
         messages, dropped = self._held.take(kernel.now())
-        again = [] if self._announced and self.uplink.open else [self._advertisement(topic) for topic in topics if topic in self._outgoing]
+        again = [] if in_order else [self._advertisement(topic) for topic in topics if topic in self._outgoing]
         ends = [{"op": "unadvertise_service", "service": name} for name in self._offered]
         ends += [{"op": "unsubscribe", "topic": name} for name in self._incoming]
         ends += [{"op": "unadvertise", "topic": name} for name in self._outgoing]

@@ -29,6 +29,7 @@ LONGEST_DELAY = 1.0  # s between two attempts
 FAREWELL = 1.0  # s that the other side gets to say that it has heard everything
 LAST_CALL = "/rosapi/get_time"
 SILENCE = f"nothing has come from there for {STALL:g} s"
+DEAFNESS = f"what is sent has not arrived there for {LONGEST:g} s"
 
 
 class Uplink:
@@ -175,8 +176,9 @@ class Uplink:
         self._overdue += 1
         if self._silent * TICK >= HOLD - TICK / 2:
             self.quiet = True
-        if self._silent * TICK >= STALL - TICK / 2 or self._overdue * TICK >= LONGEST:
-            self._why = SILENCE
+        silent, deaf = self._silent * TICK >= STALL - TICK / 2, self._overdue * TICK >= LONGEST
+        if silent or deaf:
+            self._why = SILENCE if silent else DEAFNESS
             protocol.transport.abortConnection()
 
     def lives(self):
