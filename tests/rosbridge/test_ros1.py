@@ -178,6 +178,28 @@ def test_services_whose_types_nobody_tells_are_named_and_do_not_keep_the_session
     evaluate("""(roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 1 :y 2 :theta 0)""")
 
 
+def test_a_robot_that_does_not_answer_while_the_session_joins_is_told_as_that(robot, proxy, join):
+    from cramhy_runtime.rosbridge.server import ServerError
+
+    robot.late(3600)
+    kernel.start(clock="wall")
+    outcome = []
+
+    def stall():
+        until(lambda: robot.heard("call_service"), "the first question")
+        proxy.stall()
+
+    kernel.spawn(stall)
+    try:
+        rosbridge.attach(f"ws://127.0.0.1:{proxy.port}")
+    except ServerError as problem:
+        outcome.append(str(problem))
+    kernel.stop()
+    there = f"ws://127.0.0.1:{proxy.port}"
+    assert outcome == [f"{there} cannot be joined, since /rosapi/topics cannot be asked there: the connection to {there} was lost: nothing has "
+                       "come from there for 2 s. Does the node rosapi run there, and does the network carry?"]
+
+
 def test_while_the_connection_is_lost_a_missing_service_says_so(robot, proxy, join):
     evaluate, link = join()
     proxy.stall()

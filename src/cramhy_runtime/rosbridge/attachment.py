@@ -89,6 +89,8 @@ class Link:
         self._timers = [self.kernel.call_every(LOOK, self.look), self.kernel.call_every(ASK, self._ask_for_services)]
         self.graph.on_change.append(self._changed)
         self._begun = True
+        if not self._announced:
+            self._opened()  # it was lost meanwhile, and may be back
 
     def _wait_for_types(self):
         self._joiner = kernel.current()
@@ -246,8 +248,9 @@ class Link:
             self._waiting.pop(number, None)  # an answer that comes later wakes nobody
         found, problem = outcome[0] if outcome else (None, f"no answer came within {PATIENCE:g} s")
         if problem is not None:
-            if self.uplink.refusal.why and not self._begun:
-                raise ServerError(self.uplink.refusal.why)
+            if not self._begun:
+                raise ServerError(self.uplink.refusal.why or f"{self.shown} cannot be joined, since {name} cannot be asked there: {problem}. "
+                                  "Does the node rosapi run there, and does the network carry?")
             return conditions.error(SimpleError("~a", f"{name} cannot be asked at {self.shown}: {problem}"))
         return found
 
