@@ -244,6 +244,19 @@ def test_a_failure_of_a_service_of_the_plan_reaches_its_caller_and_the_service_s
     assert until(lambda: robot.calls()[1], "the answer") == [True, {"sum": 42}]
 
 
+def test_callers_of_a_connection_that_was_lost_are_told_and_a_late_answer_reaches_nobody_else(robot, proxy, join):
+    evaluate, link = join()
+    offered(robot, evaluate)
+    robot.call("/sum", {"a": 1, "b": 1})  # it is served for ever
+    until(lambda: link.offering.calls, "the call")
+    proxy.cut()
+    until(lambda: not link.connected, "the loss")
+    until(lambda: link.connected, "the return")
+    assert until(lambda: robot.calls()[0], "the failure")[0] is False
+    until(lambda: "/sum" in robot.services(), "the service")
+    assert link.offering.calls == {}
+
+
 @pytest.mark.parametrize("end", ["close", "stop", "shutdown"])
 def test_services_and_topics_are_withdrawn_at_an_orderly_end_and_callers_are_told(robot, join, end):
     evaluate, link = join()
@@ -252,7 +265,7 @@ def test_services_and_topics_are_withdrawn_at_an_orderly_end_and_callers_are_tol
                 (roslisp:subscribe "/turtle1/pose" "turtlesim/Pose" (lambda (m) m))''')
     for _ in range(2):
         robot.call("/sum", {"a": 1, "b": 1})  # the first is being served for ever, the second one waits
-    until(lambda: len(link._serving) == 2, "the calls")
+    until(lambda: len(link.offering.calls) == 2, "the calls")
     if end == "close":
         link.close()
     elif end == "stop":
@@ -366,7 +379,7 @@ def test_a_hiccup_of_the_network_costs_no_message(robot, proxy, join):
         for number in range(5):
             evaluate(f'(roslisp:publish-msg *chat* :data "{number}")')
         proxy.resume()
-        until(lambda: link.connected and not link._held, "the flow")
+        until(lambda: link.connected and not link.outflow.held, "the flow")
         until(lambda: [each for _, each in robot.heard("publish")][before:][-1:] != [], "the messages")
         until(lambda: robot.heard("publish")[-1][1]["msg"]["data"] == "4", "the last message")
         sent = [each["msg"]["data"] for _, each in robot.heard("publish")][before:]

@@ -119,7 +119,7 @@ def test_rosservice_calls_a_service_of_the_plan_and_is_told_when_the_session_lea
     assert "ERROR: service [/sum]" in refused.communicate()[0]
     until(lambda: "/sum" in robot.services() and len(robot.heard("advertise_service")) == 2, "the service again")
     waiting = call("true")
-    until(lambda: link._serving, "the call")
+    until(lambda: link.offering.calls, "the call")
     kernel.stop()
     text, _ = waiting.communicate(timeout=30)
     assert "ERROR" in text

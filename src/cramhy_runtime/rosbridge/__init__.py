@@ -8,7 +8,7 @@ Where the parts are:
 * `server`       sockets and pages in a thread beside the kernel; `connection` one client there; `http` before it is one
 * `attachment`   the other way round: a session as the client of a real ROS
 * `uplink`       its connection, `refusal` why it does not come about, `addresses` its name, `held` what waits while it is lost
-* `far_side`     services and parameters of a real ROS
+* `far_side`     services and parameters of a real ROS; `offering` those of the plan there
 * `guard`        who is let in, and how much is allowed; `sessions` how a program finds the session of its user
 
 Importing this package imports none of them, and starting a session loads nothing of it (law 9).

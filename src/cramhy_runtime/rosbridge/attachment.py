@@ -16,22 +16,20 @@ the other side's rosbridge complains of is logged.
 
 from __future__ import annotations
 
-from collections import deque
 from datetime import datetime
 from importlib.util import find_spec
 
 from .. import kernel
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, SimpleError
-from ..ros import graph, services
+from ..ros import graph
 from ..ros.message_json import MessageJsonError, from_json, service_named, to_json, type_named
 from ..ros.roslisp import logging
-from ..ros.roslisp.services import LispService
 from ..ros.type_texts import same_on_the_wire
 from . import addresses
 from .far_side import TOPIC, FarParameters, FarService, NearParameters, as_ros2
-from .held import STALE, Held
-from .no_answers import reason
+from .held import Outflow
+from .offering import Offering
 from .server import ServerError
 from .uplink import Uplink
 
@@ -43,8 +41,6 @@ PATIENCE = 10.0  # s until the other side must have answered what we ask ourselv
 WITHDRAWING = 1.5  # s that the withdrawal of a service may take there: ROS 1 waits one second for its callers
 LONGEST_FAREWELL = 5.0  # s
 RETURNING = 3.0  # s that the end waits for a lost connection when there are messages to deliver
-WITHOUT_REFUSALS = ("AutobahnPython", "TornadoServer")
-"""The servers of ROS 1's rosbridge: they hear no failure of a client's service, whose caller waits on until it is withdrawn."""
 
 
 class Link:
@@ -57,16 +53,13 @@ class Link:
         self.node = here.node(NODE)
         self.connected, self.closed, self.ros2 = True, False, False
         self.lost_since = None
-        self._begun, self._announced = False, True
-        self._incoming, self._outgoing, self._offered = {}, {}, {}
+        self._begun, self.announced = False, True
+        self._incoming, self._outgoing = {}, {}
         self._waiting = {}  # the calls there, by number
-        self._serving = {}  # the calls from there, by their id
-        self._unanswered = set()  # services whose failed callers wait until they are withdrawn
         self._not_known = set()  # services whose types no package here defines
         self._asked = set()  # services whose types have been asked for
         self._types = {}  # of topics, as the other side has them
-        self._held = Held()
-        self._under_way = {}  # the messages of each topic that the other side has not confirmed, the last one always: (number, operation)
+        self.outflow, self.offering = Outflow(uplink, self._log), Offering(self)
         self._timers, self._joiner = (), None
         self._delivering = False
         self._numbers = 0
@@ -75,7 +68,7 @@ class Link:
         here.type_elsewhere, here.cut_off = self.type_there, None
         self.kernel.count_outside(1)
         self.kernel.at_stop(self.close)
-        uplink.on_open, uplink.on_lost, uplink.on_flow, uplink.on_operation = self._opened, self._lost, self._flush, self._hear
+        uplink.on_open, uplink.on_lost, uplink.on_flow, uplink.on_operation = self._opened, self._lost, self._flows, self._hear
 
     # ------------------------------------------------------------------------------------------------------ beginning and end
 
@@ -89,7 +82,7 @@ class Link:
         self._timers = [self.kernel.call_every(LOOK, self.look), self.kernel.call_every(ASK, self._ask_for_services)]
         self.graph.on_change.append(self._changed)
         self._begun = True
-        if not self._announced:
+        if not self.announced:
             self._opened()  # it was lost meanwhile, and may be back
 
     def _wait_for_types(self):
@@ -119,26 +112,20 @@ class Link:
         self.kernel.count_outside(-1)
         self.kernel.not_at_stop(self.close)
         self._fail_all("the connection was closed")
-        for call in list(self._serving.values()):
-            call.finish(lost=True)
+        self.offering.fail_calls()
         self._say_farewell()
         self.node.shutdown()
 
     def _say_farewell(self):
         """Send what is left, and wait until it has arrived."""
-        in_order = self._announced and self.uplink.open  # what was sent before comes before what is sent now
-        doubtful = [name for name, sent in self._under_way.items() if sent[-1][0] > self.uplink.acknowledged]
-        if not in_order:
-            self._keep_unacknowledged()
-        topics = sorted({*self._held.topics(), *doubtful})
-        messages, dropped = self._held.take(kernel.now())
+        in_order = self.announced and self.uplink.open  # what was sent before comes before what is sent now
+        topics, messages, dropped = self.outflow.end(in_order)
         again = [] if in_order else [self._advertisement(topic) for topic in topics if topic in self._outgoing]
-        ends = [{"op": "unadvertise_service", "service": name} for name in self._offered]
-        ends += [{"op": "unsubscribe", "topic": name} for name in self._incoming]
-        ends += [{"op": "unadvertise", "topic": name} for name in self._outgoing]
-        patience = min(RETURNING + WITHDRAWING * len(self._offered), LONGEST_FAREWELL)
+        ends = [*self.offering.withdrawals(), *({"op": "unsubscribe", "topic": name} for name in self._incoming),
+                *({"op": "unadvertise", "topic": name} for name in self._outgoing)]
+        patience = min(RETURNING + WITHDRAWING * len(self.offering.services), LONGEST_FAREWELL)
         heard = self.uplink.leave([*again, *messages, *ends], patience, RETURNING if messages else 0.0)
-        self._tell_dropped(dropped)
+        self.outflow.tell(dropped)
         if not heard and topics:
             self._log(logging.ERROR, f"{self.shown} has not confirmed the last messages on {', '.join(topics)} before the session left. "
                                      "If one of them was to stop the robot, stop it there.")
@@ -146,8 +133,8 @@ class Link:
     def _lost(self, why):
         if self.closed:
             return
-        self._announced = False
-        doubtful = self._keep_unacknowledged()
+        self.announced = False
+        doubtful = self.outflow.lost()
         if self.connected:
             self.connected = False
             self.lost_since = datetime.fromtimestamp(self.graph.now()).strftime("%H:%M:%S")
@@ -175,18 +162,20 @@ class Link:
         """The connection is new: what we are to the other side is told it again."""
         if self.closed or not self._begun or not self.uplink.open:
             return
-        self._serving.clear()  # their callers belong to the connection that was lost
         for name in self._outgoing:
             self.uplink.send(self._advertisement(name))
             self._compare(name, self._outgoing[name])
         for name, message_type in self._incoming.items():
             self.uplink.send(self._subscription(name, message_type))
             self._compare(name, message_type)
-        for name, service in self._offered.items():
-            self._advertise_service(name, service)
-        self._announced = True
-        self._flush()
+        self.offering.announce_again()
+        self.announced = True
+        self._flows()
         self._ask_for_services()
+
+    def _flows(self):
+        if self.announced and not self.closed:
+            self.outflow.flush()
 
     def _is_back(self):
         if not self.connected and not self._asked:
@@ -257,7 +246,7 @@ class Link:
     # ----------------------------------------------------------------------------------------------------------------- types
 
     def type_there(self, name, message_class):
-        """The type of the topic NAME there when messages of MESSAGE_CLASS are none of it, and the address there; else ``None``. Waits."""
+        """The type of the topic NAME there and the address, when messages of MESSAGE_CLASS do not fit; else ``None``. Waits."""
         if name in LOCAL or not self.uplink.open:
             return None
         try:
@@ -296,7 +285,7 @@ class Link:
         data = to_json(message)
         return as_ros2(type(message), data) if self.ros2 else data
 
-    def _spelled(self, ros_type, kind):
+    def spelled(self, ros_type, kind):
         package, _, name = ros_type.partition("/")
         return f"{package}/{kind}/{name}" if self.ros2 else ros_type
 
@@ -326,23 +315,15 @@ class Link:
                 for publication in spoken:
                     for subscription in [each for each in publication.connections if each in heard]:
                         publication.disconnect(subscription)  # it comes back over the bridge
-        offered = {name: service for name, service in self.graph.services.items() if isinstance(service, LispService)}
-        for name in [name for name, service in self._offered.items() if offered.get(name) is not service]:
-            del self._offered[name]
-            self._say({"op": "unadvertise_service", "service": name})
-        for name, service in offered.items():
-            if name not in self._offered:
-                self._offered[name] = service
-                if self._announced:
-                    self._advertise_service(name, service)
+        self.offering.look()
 
-    def _say(self, operation):
+    def say(self, operation):
         """Send an operation that needs not be said again when the connection is new."""
-        if self._announced:
+        if self.announced:
             self.uplink.send(operation)
 
     def _type_of(self, name, message_type):
-        return self._spelled(self._types.get(name, message_type.ros_type), "msg")
+        return self.spelled(self._types.get(name, message_type.ros_type), "msg")
 
     def _latches(self, name):
         return any(publication.latch for publication in self.graph.topics[name].publications) if name in self.graph.topics else False
@@ -357,27 +338,28 @@ class Link:
 
     def _speak(self, name, message_type):
         self._outgoing[name] = message_type
-        self._say(self._advertisement(name))
+        self.say(self._advertisement(name))
 
         def forward(message):
             if not self._delivering:
-                self._publish(name, {"op": "publish", "topic": name, "msg": self.outward(message), "latch": self._latches(name)})
+                operation = {"op": "publish", "topic": name, "msg": self.outward(message), "latch": self._latches(name)}
+                self.outflow.publish(operation, self.announced)
 
         self.node.subscribe(name, message_type, forward)
 
     def _speak_no_more(self, name):
         del self._outgoing[name]
-        self._say({"op": "unadvertise", "id": f"advertise:{name}", "topic": name})
+        self.say({"op": "unadvertise", "id": f"advertise:{name}", "topic": name})
         self.node.unsubscribe(name)
 
     def _listen(self, name, message_type):
         self.node.advertise(name, message_type)
         self._incoming[name] = message_type
-        self._say(self._subscription(name, message_type))
+        self.say(self._subscription(name, message_type))
 
     def _listen_no_more(self, name):
         del self._incoming[name]
-        self._say({"op": "unsubscribe", "id": f"subscribe:{name}", "topic": name})
+        self.say({"op": "unsubscribe", "id": f"subscribe:{name}", "topic": name})
         self.node.unadvertise(name)
 
     def _arrive(self, operation):
@@ -396,99 +378,10 @@ class Link:
         finally:
             self._delivering = False
 
-    # ------------------------------------------------------------------------------------------- when the network is not there
-
-    def _publish(self, name, operation):
-        """Send a message, or keep it while the network carries nothing."""
-        if self._announced and self.uplink.open and not self.uplink.quiet and not self._held:
-            self._send_message(name, operation)
-        else:
-            self._held.add(name, operation, kernel.now())
-
-    def _send_message(self, name, operation):
-        sent = self._under_way.setdefault(name, deque())
-        sent.append((self.uplink.send(operation), operation))
-        while len(sent) > 1 and sent[0][0] <= self.uplink.acknowledged:
-            sent.popleft()
-
-    def _flush(self):
-        """The network carries again: send what waits, without what has become stale."""
-        if self.closed or not self._announced or not self._held:
-            return
-        messages, dropped = self._held.take(kernel.now())
-        for operation in messages:
-            self._send_message(operation["topic"], operation)
-        self._tell_dropped(dropped)
-
-    def _keep_unacknowledged(self):
-        """The last message of each topic may have been under way when the network went: keep it, it may be the command to stop.
-
-        Returns how many others were under way."""
-        count = 0
-        for name, sent in self._under_way.items():
-            number, operation = sent[-1]
-            if number > self.uplink.acknowledged:
-                self._held.add_first(name, operation)
-                count += sum(each > self.uplink.acknowledged for each, _ in sent) - 1
-        self._under_way.clear()
-        return count
-
-    def _tell_dropped(self, dropped):
-        if dropped:
-            count, topics = sum(dropped.values()), ", ".join(f"{number} on {name}" for name, number in sorted(dropped.items()))
-            many = count > 1
-            self._log(logging.WARN, f"{count} message{'s' if many else ''} that would have come to {self.shown} more than {STALE:g} s late "
-                                    f"{'were' if many else 'was'} dropped ({topics}). The last one of each topic was delivered.")
-
-    # ------------------------------------------------------------------------------------------------- services of the plan
-
-    def _advertise_service(self, name, service):
-        self.uplink.send({"op": "advertise_service", "service": name, "type": self._spelled(service.type.name, "srv")})
-
-    def _serve(self, request):
-        """Somebody there calls a service of the plan."""
-        name, identity = request.get("service"), request.get("id")
-        service = self._offered.get(name)
-
-        def answer(values, result):
-            self._serving.pop(identity, None)
-            if self.uplink.open:
-                reply = {"op": "service_response", "service": name, "values": values, "result": result}
-                self.uplink.send(reply | ({"id": identity} if identity is not None else {}))
-                if not result and not self.ros2 and self.uplink.server.startswith(WITHOUT_REFUSALS):
-                    self._unanswered.add(name)
-            self._renew()
-
-        def done(call):
-            if call.response is None:
-                answer({} if self.ros2 else reason(call), False)
-            else:
-                answer(self.outward(call.response), True)
-
-        if service is None:
-            return answer({} if self.ros2 else f"The service {name} is not offered any more.", False)
-        try:
-            message = from_json(service.type.request, dict(request.get("args") or {}))
-        except MessageJsonError as problem:
-            return answer({} if self.ros2 else str(problem), False)
-        call = services.start_call(service, message, done)
-        if not call.done:
-            self._serving[identity] = call
-
-    def _renew(self):
-        """Withdraw the services whose callers have to be told of a failure that way, and offer them again; not while they have others."""
-        if self.closed:
-            return  # they are withdrawn anyway
-        for name in [name for name in self._unanswered if all(call.service.name != name for call in self._serving.values())]:
-            self._unanswered.discard(name)
-            if name in self._offered and self._announced:
-                self._say({"op": "unadvertise_service", "service": name})
-                self._advertise_service(name, self._offered[name])
-
     # --------------------------------------------------------------------------------------------------- services over there
 
     def _ask_for_services(self):
-        if self.uplink.open and self._announced:
+        if self.uplink.open and self.announced:
             self.call("/rosapi/services", {}, lambda found: self._services_are(found.get("services", ())), lambda text: None)
 
     def _services_are(self, names):
@@ -526,7 +419,8 @@ class Link:
         if self._joiner is not None:
             kernel.unpark(self._joiner)
 
-    HANDLERS = {"publish": _arrive, "service_response": _answered, "call_service": _serve, "status": _status}
+    HANDLERS = {"publish": _arrive, "service_response": _answered, "status": _status,
+                "call_service": lambda self, operation: self.offering.serve(operation)}
 
 
 def _as_ros1(kind):
