@@ -91,7 +91,9 @@ class RospyGraph:
     def service_type(self, name):
         import rosservice
 
-        return "rosapi/" + name.rpartition("/")[2].title().replace("_", "") if name in self.rosapi else rosservice.get_service_type(name) or ""
+        if name in self.rosapi:
+            return "rosapi/" + name.rpartition("/")[2].title().replace("_", "")
+        return rosservice.get_service_type(name) or ""
 
     def pose(self):
         import roslib.message

@@ -238,8 +238,8 @@ class Link:
         found, problem = outcome[0] if outcome else (None, f"no answer came within {PATIENCE:g} s")
         if problem is not None:
             if not self._begun:
-                raise ServerError(self.uplink.refusal.why or f"{self.shown} cannot be joined, since {name} cannot be asked there: {problem}. "
-                                  "Does the node rosapi run there, and does the network carry?")
+                raise ServerError(self.uplink.refusal.why or f"{self.shown} cannot be joined, since {name} cannot be asked there: "
+                                  f"{problem}. Does the node rosapi run there, and does the network carry?")
             return conditions.error(SimpleError("~a", f"{name} cannot be asked at {self.shown}: {problem}"))
         return found
 

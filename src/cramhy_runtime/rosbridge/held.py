@@ -115,6 +115,7 @@ class Outflow:
         """Tell the user what was dropped."""
         if dropped:
             count, topics = sum(dropped.values()), ", ".join(f"{number} on {name}" for name, number in sorted(dropped.items()))
-            many = count > 1
-            self._log(logging.WARN, f"{count} message{'s' if many else ''} that would have come to {self.uplink.shown} more than "
-                                    f"{STALE:g} s late {'were' if many else 'was'} dropped ({topics}). The last one of each topic was delivered.")
+            those = "messages that would have come" if count > 1 else "message that would have come"
+            verb = "were" if count > 1 else "was"
+            self._log(logging.WARN, f"{count} {those} to {self.uplink.shown} more than {STALE:g} s late {verb} dropped ({topics}). The last "
+                                    "one of each topic was delivered.")

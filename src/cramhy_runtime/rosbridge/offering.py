@@ -1,8 +1,8 @@
 """The services of the plan, offered to the robot's ROS, where its nodes call them.
 
-A call ends with an answer: at the end calls that wait are answered with a failure, and the services are withdrawn. The rosbridge of ROS 1 hears no failure of a client's service, and forgets neither the service nor its callers when the client is
-gone. Its callers wait until the service is withdrawn. So there a service is withdrawn for a moment after a failure, and before it is offered
-again through a new connection.
+A call ends with an answer: at the end calls that wait are answered with a failure, and the services are withdrawn. The rosbridge of ROS 1
+hears no failure of a client's service, and forgets neither the service nor its callers when the client is gone. Its callers wait until the
+service is withdrawn. So there a service is withdrawn for a moment after a failure, and before it is offered again through a new connection.
 """
 
 from __future__ import annotations
