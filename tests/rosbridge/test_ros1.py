@@ -196,8 +196,8 @@ def test_a_robot_that_does_not_answer_while_the_session_joins_is_told_as_that(ro
         outcome.append(str(problem))
     kernel.stop()
     there = f"ws://127.0.0.1:{proxy.port}"
-    assert outcome == [f"{there} cannot be joined, since /rosapi/topics cannot be asked there: the connection to {there} was lost: nothing has "
-                       "come from there for 2 s. Does the node rosapi run there, and does the network carry?"]
+    assert outcome == [f"{there} cannot be joined, since /rosapi/topics cannot be asked there: the connection to {there} was lost: nothing "
+                       "has come from there for 2 s. Does the node rosapi run there, and does the network carry?"]
 
 
 def test_while_the_connection_is_lost_a_missing_service_says_so(robot, proxy, join):

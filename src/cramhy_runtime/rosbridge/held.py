@@ -117,5 +117,5 @@ class Outflow:
             count, topics = sum(dropped.values()), ", ".join(f"{number} on {name}" for name, number in sorted(dropped.items()))
             those = "messages that would have come" if count > 1 else "message that would have come"
             verb = "were" if count > 1 else "was"
-            self._log(logging.WARN, f"{count} {those} to {self.uplink.shown} more than {STALE:g} s late {verb} dropped ({topics}). The last "
-                                    "one of each topic was delivered.")
+            self._log(logging.WARN, f"{count} {those} to {self.uplink.shown} more than {STALE:g} s late {verb} dropped ({topics}). The "
+                                    "last one of each topic was delivered.")
