@@ -118,16 +118,16 @@ def test_a_replay_needs_two_extras(monkeypatch):
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    (["repl", "--ros", "robot:9090"], "--ros robot:9090: that is no address of a rosbridge server; one looks like ws://robot:9090."),
+    (["repl", "--ros", "robot:9090"], "--ros robot:9090: that is not an address of a rosbridge server; one looks like ws://robot:9090."),
     (["repl", "--ros", ""], "--ros is given an empty word. Give it what it needs, or leave it out."),
     (["run", "x", "--record", ""], "--record is given an empty word. Give it what it needs, or leave it out."),
     (["run", "x", "--picture", ""], "--picture is given an empty word. Give it what it needs, or leave it out."),
-    (["repl", "--ros", "ws://a:99999"], "--ros ws://a:99999: that is no address of a rosbridge server; one looks like ws://robot:9090."),
-    (["repl", "--ros", "ws://a:b"], "--ros ws://a:b: that is no address of a rosbridge server; one looks like ws://robot:9090."),
-    (["repl", "--ros", "ws://[a"], "--ros ws://[a: that is no address of a rosbridge server; one looks like ws://robot:9090."),
+    (["repl", "--ros", "ws://a:99999"], "--ros ws://a:99999: that is not an address of a rosbridge server; one looks like ws://robot:9090."),
+    (["repl", "--ros", "ws://a:b"], "--ros ws://a:b: that is not an address of a rosbridge server; one looks like ws://robot:9090."),
+    (["repl", "--ros", "ws://[a"], "--ros ws://[a: that is not an address of a rosbridge server; one looks like ws://robot:9090."),
     (["repl", "--ros", "ws://a:9090/#x"],
-     "--ros ws://a:9090/#x: that is no address of a rosbridge server; one looks like ws://robot:9090."),
-    (["repl", "--ros", "ws://"], "--ros ws://: that is no address of a rosbridge server; one looks like ws://robot:9090."),
+     "--ros ws://a:9090/...: that is not an address of a rosbridge server; one looks like ws://robot:9090."),
+    (["repl", "--ros", "ws://"], "--ros ws://: that is not an address of a rosbridge server; one looks like ws://robot:9090."),
     (["run", "x", "--picture", "x.jpg"],
      "--picture x.jpg: a picture is written as .png or .svg; .gif and .replay.svg show the whole way."),
     (["repl", "--record", "/no/such/folder/x.mcap"], "--record /no/such/folder/x.mcap: there is no folder /no/such/folder."),

@@ -8,6 +8,7 @@ imports what it needs when it runs, so that the quick ones are quick.
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from contextlib import ExitStack
 
@@ -92,8 +93,8 @@ def roslisp_repl():
 
 def _checked(options):
     """Whether all that the options ask for can be had; what cannot is told."""
-    if not (options.serve or options.view or options.port or options.origin
-            or any(getattr(options, name, None) is not None for name in ("record", "ros", "picture"))):
+    if not (options.serve or options.view or options.port or options.origin or os.environ.get("CRAMHY_ROS")
+            or any(getattr(options, name, None) is not None for name in ("record", "ros", "ros_token", "picture"))):
         return True
     from . import openings
 

@@ -12,9 +12,10 @@ import sys
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from urllib.parse import urlsplit
 
 from cramhy_runtime import chronicle, rosbridge, storage, view
+
+from . import robot_address
 
 NEEDS = {
     "serve": ("web", ("uvicorn", "websockets")),
@@ -45,9 +46,11 @@ def check(options):
     for option in ("record", "ros", "picture"):
         if getattr(options, option, None) == "":  # as from a shell's variable that is not set
             raise NotPossible(f"--{option} is given an empty word. Give it what it needs, or leave it out.")
-    if getattr(options, "ros", None):
-        if not _is_address(options.ros):
-            raise NotPossible(f"--ros {options.ros}: that is no address of a rosbridge server; one looks like ws://robot:9090.")
+    asked_for = "--ros" if options.ros else robot_address.ADDRESS
+    try:
+        options.ros = robot_address.chosen(options.ros, options.ros_token)
+    except robot_address.Unusable as problem:
+        raise NotPossible(str(problem)) from None
     if getattr(options, "picture", None):
         from cramhy_runtime.turtlesim import pictures
 
@@ -64,16 +67,7 @@ def check(options):
         raise NotPossible("--origin says whose pages may connect to --serve and --view; give one of them, too.")
     for what in ("serve", "view", "record", "ros"):
         if getattr(options, what):
-            require(what, f"--{what}")
-
-
-def _is_address(text):
-    """Whether a rosbridge server could be at ``text``: ``ws://HOST:PORT``."""
-    try:
-        parts = urlsplit(text)
-        return parts.scheme in ("ws", "wss") and bool(parts.hostname) and parts.port != 0 and not parts.fragment
-    except ValueError:  # a port beyond 65535, brackets that never close
-        return False
+            require(what, asked_for if what == "ros" else f"--{what}")
 
 
 def open_session(options, closings):

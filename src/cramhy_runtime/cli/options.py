@@ -44,7 +44,10 @@ def _opening_options():
     options.add_argument("--origin", action="append", default=[], metavar="URL",
                          help="a page of another server that may connect, such as https://app.foxglove.dev")
     options.add_argument("--record", default=None, metavar="FILE.mcap", help="write all messages and events of the plan into a file")
-    options.add_argument("--ros", default=None, metavar="ws://HOST:PORT", help="join a real ROS through its rosbridge server")
+    options.add_argument("--ros", default=None, metavar="ws://HOST:PORT",
+                         help="join a real ROS through its rosbridge server; @FILE: its address stands in FILE (the variable CRAMHY_ROS)")
+    options.add_argument("--ros-token", default=None, metavar="FILE",
+                         help="the file with the token that this server wants (the variable CRAMHY_ROS_TOKEN holds the token itself)")
     return options
 
 

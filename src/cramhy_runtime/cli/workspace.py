@@ -74,12 +74,12 @@ def folder_of(package):
 
 def packages():
     """The folders of all packages by name."""
-    from cramhy_runtime.lisp.systems import systems
+    from cramhy_runtime.lisp.systems import search_folders
     from cramhy_runtime.ros import definition_files
 
     found = {package: folder_of(package) for package in definition_files.known_packages()}
-    for folder in systems.search_folders():
-        for candidate in [folder, *folder.iterdir()]:
+    for folder in search_folders.search_folders():
+        for candidate in [folder, *(Path(entry.path) for entry in search_folders.entries(folder))]:
             if os.path.isfile(candidate / "package.xml"):  # Path.is_file would not bear a folder that is not ours to read
                 found.setdefault(candidate.name, candidate)
     return {name: folder for name, folder in sorted(found.items()) if folder is not None}
@@ -95,7 +95,7 @@ def roscd(arguments):
             return 0
         here = Path.cwd()
         for folder in [here, *here.parents]:
-            if (folder / "devel").is_dir():
+            if os.path.isdir(folder / "devel"):
                 print(folder / "devel")
                 return 0
         return _fail("roscd: no workspace here: there is no folder 'devel' (run catkin_make in the workspace first).")

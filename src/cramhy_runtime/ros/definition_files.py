@@ -11,7 +11,7 @@ import os
 import re
 from pathlib import Path
 
-from ..lisp.systems.search_folders import SKIPPED, search_folders
+from ..lisp.systems.search_folders import SKIPPED, entries, is_folder, search_folders
 from . import definition_text
 from .definition_text import ACTION_PARTS, DefinitionError, action_messages
 
@@ -50,7 +50,7 @@ def package_folder(package):
 
 def known_packages():
     """The names of all packages with definitions."""
-    named = [entry.name for folder in [OURS, *_directories] if folder.is_dir() for entry in folder.iterdir() if _has_definitions(entry)]
+    named = [entry.name for folder in [OURS, *_directories] for entry in entries(folder) if _has_definitions(Path(entry.path))]
     return sorted({*named, *(name for name, _ in _packages_on_path())})
 
 
@@ -68,8 +68,9 @@ def message_names(folder):
 
 
 def has_kind(folder, kind):
-    """Whether the package in ``folder`` has messages (``"msg"``) or services (``"srv"``); an action is messages."""
-    return (folder / kind).is_dir() or kind == "msg" and (folder / "action").is_dir()
+    """Whether the package in ``folder`` has messages (``"msg"``) or services (``"srv"``); an action is messages. A package that was there
+    a moment ago may have no ``folder``, ``None``."""
+    return folder is not None and (os.path.isdir(folder / kind) or kind == "msg" and os.path.isdir(folder / "action"))
 
 
 def _has_definitions(folder):
@@ -83,21 +84,21 @@ def _packages_on_path():
 
 
 def _packages_below(folder, depth):
-    try:
-        entries = {entry.name: entry for entry in os.scandir(folder) if not entry.name.startswith((".", "__"))}
-    except OSError:
-        return
-    manifest = entries.get("package.xml")
-    if any(kind in entries and entries[kind].is_dir() for kind in KINDS):
+    found = {entry.name: entry for entry in entries(folder) if not entry.name.startswith((".", "__"))}
+    manifest = found.get("package.xml")
+    if any(kind in found and is_folder(found[kind]) for kind in KINDS):
         yield _name_of(Path(folder), manifest), Path(folder)
     elif manifest is None and depth:
-        for name in sorted(entries):
-            if entries[name].is_dir() and name not in SKIPPED:
-                yield from _packages_below(entries[name].path, depth - 1)
+        for name, entry in found.items():
+            if is_folder(entry) and name not in SKIPPED:
+                yield from _packages_below(entry.path, depth - 1)
 
 
 def _name_of(folder, manifest):
-    found = _PACKAGE_NAME.search(Path(manifest.path).read_text(errors="replace")) if manifest is not None else None
+    try:
+        found = _PACKAGE_NAME.search(Path(manifest.path).read_text(errors="replace")) if manifest is not None else None
+    except OSError:  # the manifest is somebody else's, and the folder's name is what is left
+        found = None
     return found[1] if found else folder.name
 
 
@@ -143,7 +144,10 @@ def _text_of(path):
         raise DefinitionError(
             f"{path}: {path.stem} is not a name for a type.", "Rename the file: letters, digits and underscores, the first one a letter."
         )
-    return path.read_text(encoding="utf-8", errors="replace")  # what is no UTF-8 stands in comments
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")  # what is not UTF-8 stands in comments
+    except OSError as problem:
+        raise DefinitionError(f"{path} cannot be read: {problem.strerror}.", "Make it readable for this user, or remove it.") from None
 
 
 def _check_types(package, folder, found):

@@ -13,6 +13,10 @@ with the topics and services that nobody else has.
 Who wants to know of what comes and goes appends a function to `Graph.on_change`; it is called as ``function(kind, name, there)``
 with the kind ``"node"``, ``"topic"`` or ``"service"``, for visible ones only, by whoever made the change, and must not wait.
 
+A session that is joined to a robot (room ``rosbridge``) sets two more: `Graph.type_elsewhere`, a function of a topic's name and a message
+class that gives the type that the topic has there and where that is, if it is another one, and waits for it; and `Graph.cut_off`, the
+text why nothing of the robot is there at the moment, or ``None``.
+
 There is one active graph per kernel, as there is one roscore per user. Laws: what a tick does is one step for all tasks (law
 4); all waiting goes through the kernel (law 5); a node that ends takes its topics, services and waiting callers along (law 1).
 """
@@ -45,6 +49,8 @@ class Graph:
         self.lisp_node = None
         self.debug_levels = {}
         self.before_first_node = []
+        self.type_elsewhere = None
+        self.cut_off = None
         self._ports = 0
 
     def now(self):

@@ -7,7 +7,8 @@ Where the parts are:
 * `no_answers`   what a caller hears instead of an answer, for both ends
 * `server`       sockets and pages in a thread beside the kernel; `connection` one client there; `door`, `http` before it is one
 * `attachment`   the other way round: a session as the client of a real ROS
-* `refusal`      why the server of a real ROS does not let a session in
+* `uplink`       its connection, `refusal` why it does not come about, `addresses` its name, `held` what waits while it is lost
+* `far_side`     services and parameters of a real ROS; `offering` those of the plan there
 * `guard`        who is let in, and how much is allowed; `sessions` how a program finds the session of its user, and
                  `processes` whether that is surely dead
 

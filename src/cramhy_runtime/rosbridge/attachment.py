@@ -3,150 +3,103 @@
 The far graph is mirrored by a node ``/rosbridge_client`` of ours, so that nothing else in the house needs to know:
 
 * What a node here publishes is published there; what it subscribes to is subscribed to there. A topic that is used on both sides
-  here goes over the bridge too, so that every message arrives once.
-* Services there are offered here, under their names; services that the plan registers are offered there.
+  here goes over the bridge too, so that every message arrives once. A topic that has another type there is an error in Lisp.
+* Services there are offered here, under their names; services that the plan registers are offered there, and withdrawn at the end.
 * Parameters are those of ROS 1's server. ROS 2 has none that belong to all, so there they stay in this session, and the first that is
   set says so.
 
-Types are spelled as the other side spells them, ``geometry_msgs/msg/Twist`` in ROS 2, and times likewise. While the connection is lost no
-service is there, calls that wait fail, with the reason, and both loss and return are logged; roslibpy connects anew. All of it is in
-wall time: a robot does not wait for a virtual clock. What roslibpy's thread brings is posted to the kernel. What the other side's rosbridge
-complains of is logged.
+Types are spelled as the other side spells them, ``geometry_msgs/msg/Twist`` in ROS 2, and times likewise. A network that carries nothing
+any more (`uplink`) counts as a lost connection. While it is lost no service is there, calls that wait fail, with the reason, what is
+published waits (`held`), and both loss and return are logged. All of it is in wall time: a robot does not wait for a virtual clock. What
+the other side's rosbridge complains of is logged.
 """
 
 from __future__ import annotations
 
-import json
+from datetime import datetime
 from importlib.util import find_spec
 
 from .. import kernel
 from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
-from ..ros import graph, services
-from ..ros.message_json import MessageJsonError, from_json, service_named, to_json
-from ..ros.messages import message_class_exact
-from ..ros.parameter_tree import ParameterTree
+from ..lisp.condition_types import Condition, SimpleError
+from ..ros import graph
+from ..ros.message_json import MessageJsonError, from_json, service_named, to_json, type_named
 from ..ros.roslisp import logging
-from ..ros.roslisp.services import LispService
-from .no_answers import reason, taken_apart
-from .refusal import connect, leave
+from ..ros.type_texts import same_on_the_wire
+from . import addresses
+from .far_side import TOPIC, FarParameters, FarService, NearParameters, as_ros2
+from .held import Outflow
+from .offering import Offering
 from .server import ServerError
+from .uplink import Uplink
 
 NODE = "rosbridge_client"
 LOCAL = {"/rosout", "/rosout_agg"}
 LOOK = 0.05  # s between two looks at what the plan publishes and subscribes to
 ASK = 1.0  # s between two questions what services are there
 PATIENCE = 10.0  # s until the other side must have answered what we ask ourselves
-LONGEST_DELAY = 2  # s between two attempts to connect anew
-TOPIC = ("ROSBRIDGE",)
-
-
-class FarService(services.Service):
-    """A service of the other side, offered here."""
-
-    def __init__(self, link, name, service_type):
-        super().__init__(link.node, name, service_type, None)
-        self.link = link
-
-    def submit(self, call):
-        self.pending.add(call)
-        self.link.call(self.name, self.link.outward(call.request), self._answer(call), self._no_answer(call))
-
-    def _answer(self, call):
-        def answer(values):
-            try:
-                call.finish(from_json(self.type.response, values))
-            except MessageJsonError as problem:
-                call.finish(failure=f"the answer of {self.name} cannot be understood here: {problem}")
-
-        return answer
-
-    def _no_answer(self, call):
-        def no_answer(text):
-            failure, lost = taken_apart(text, self.name)
-            call.finish(failure=failure, lost=lost)
-
-        return no_answer
-
-
-class FarParameters:
-    """The parameters of the other side, with the interface of `ros.parameter_tree.ParameterTree`. Each question waits for its answer."""
-
-    def __init__(self, link):
-        self._ask = link.ask
-
-    def get(self, name):
-        """The value, or `KeyError`."""
-        if not self.has(name):
-            raise KeyError(name)
-        return json.loads(self._ask("/rosapi/get_param", name=name)["value"])
-
-    def has(self, name):
-        return self._ask("/rosapi/has_param", name=name)["exists"]
-
-    def set(self, name, value):
-        self._ask("/rosapi/set_param", name=name, value=json.dumps(value))
-
-    def delete(self, name):
-        """Remove the value, or `KeyError`."""
-        if not self.has(name):
-            raise KeyError(name)
-        self._ask("/rosapi/delete_param", name=name)
-
-    def names(self):
-        return sorted(self._ask("/rosapi/get_param_names")["names"])
-
-
-class NearParameters(ParameterTree):
-    """The parameters of this session, where the other side is ROS 2: the user is told once that they are nobody else's."""
-
-    def __init__(self, before, url):
-        self.root, self._url, self._told = before.root, url, False
-
-    def set(self, name, value):
-        super().set(name, value)
-        if not self._told:
-            self._told = True
-            logging.log_text(logging.WARN, TOPIC, f"The parameter {name} is set in this session only: at {self._url} is ROS 2, where each "
-                                                  "parameter belongs to one node. Set it there with: ros2 param set NODE NAME VALUE")
+WITHDRAWING = 1.5  # s that the withdrawal of a service may take there: ROS 1 waits one second for its callers
+LONGEST_FAREWELL = 5.0  # s
+RETURNING = 3.0  # s that the end waits for a lost connection when there are messages to deliver
 
 
 class Link:
-    """The connection; made by `join`. ``connected``; ``ros2``: whether the other side is ROS 2."""
+    """The connection; made by `join`. ``connected``; ``ros2``: whether the other side is ROS 2; ``lost_since``: a time of day, or ``None``.
+    """
 
-    def __init__(self, here, url, ros, refusal):
-        self.graph, self.url, self.ros, self._refusal = here, url, ros, refusal
-        self._begun = False
-        self.kernel = here.kernel
+    def __init__(self, here, uplink):
+        self.graph, self.uplink, self.kernel = here, uplink, here.kernel
+        self.shown, self.ros = uplink.shown, uplink.ros
         self.node = here.node(NODE)
         self.connected, self.closed, self.ros2 = True, False, False
-        self._incoming, self._outgoing, self._offered = {}, {}, {}
-        self._waiting = {}
+        self.lost_since = None
+        self._begun, self.announced = False, True
+        self._incoming, self._outgoing = {}, {}
+        self._waiting = {}  # the calls there, by number
         self._not_known = set()  # services whose types no package here defines
-        self._timers = ()
+        self._asked = set()  # services whose types have been asked for
+        self._types = {}  # of topics, as the other side has them
+        self.outflow, self.offering = Outflow(uplink, self._log), Offering(self)
+        self._timers, self._joiner = (), None
         self._delivering = False
         self._numbers = 0
         self._parameters = here.parameters
         here.before_first_node.clear()  # our turtle is not started: the robot is there
+        here.type_elsewhere, here.cut_off = self.type_there, None
         self.kernel.count_outside(1)
         self.kernel.at_stop(self.close)
-        ros.on("close", lambda *_: self.kernel.post(self._lost))
-        refusal.complained = lambda text: self.kernel.post(lambda: self._hear(text))
+        uplink.on_open, uplink.on_lost, uplink.on_flow, uplink.on_operation = self._opened, self._lost, self._flows, self._hear
 
     # ------------------------------------------------------------------------------------------------------ beginning and end
 
     def begin(self):
-        """Look what is there, and mirror it from now on."""
+        """Look what is there, and mirror it from now on. The services that are there are known when it returns."""
         types = self.ask("/rosapi/topics")["types"]
         self.ros2 = any(kind.count("/") == 2 for kind in types)
-        self.graph.parameters = NearParameters(self._parameters, self.url) if self.ros2 else FarParameters(self)
+        self.graph.parameters = NearParameters(self._parameters, self.shown) if self.ros2 else FarParameters(self)
         self._services_are(self.ask("/rosapi/services")["services"])
+        self._wait_for_types()
         self._timers = [self.kernel.call_every(LOOK, self.look), self.kernel.call_every(ASK, self._ask_for_services)]
         self.graph.on_change.append(self._changed)
         self._begun = True
+        if not self.announced:
+            self._opened()  # it was lost meanwhile, and may be back
+
+    def _wait_for_types(self):
+        self._joiner = kernel.current()
+        until = kernel.now() + PATIENCE
+        while self._asked and self.uplink.open and kernel.now() < until:
+            kernel.park(f"the types of {len(self._asked)} services at {self.shown}", until)
+        self._joiner = None
+        if self._asked:
+            self._log(logging.WARN, f"{self.shown} has not told the types of these services within {PATIENCE:g} s: "
+                                    f"{', '.join(sorted(self._asked))}. They can be called as soon as it does.")
 
     def close(self):
-        """End the connection. To be called with the baton; a second time it does nothing."""
+        """End the connection. To be called with the baton; a second time it does nothing.
+
+        What was published last is delivered before, calls from there that wait are answered with a failure, and our services are withdrawn.
+        """
         if self.closed:
             return
         self.closed = True
@@ -155,33 +108,102 @@ class Link:
         if self._changed in self.graph.on_change:
             self.graph.on_change.remove(self._changed)
         self.graph.parameters = self._parameters
+        self.graph.type_elsewhere = self.graph.cut_off = None
         self.kernel.count_outside(-1)
         self.kernel.not_at_stop(self.close)
         self._fail_all("the connection was closed")
+        self.offering.fail_calls()
+        self._say_farewell()
         self.node.shutdown()
-        leave(self.ros)
 
-    def _lost(self):
-        if self.connected and not self.closed:
+    def _say_farewell(self):
+        """Send what is left, and wait until it has arrived."""
+        in_order = self.announced and self.uplink.open  # what was sent before comes before what is sent now
+        topics, messages, dropped = self.outflow.end(in_order)
+        again = [] if in_order else [self._advertisement(topic) for topic in topics if topic in self._outgoing]
+        ends = [*self.offering.withdrawals(), *({"op": "unsubscribe", "topic": name} for name in self._incoming),
+                *({"op": "unadvertise", "topic": name} for name in self._outgoing)]
+        patience = min(RETURNING + WITHDRAWING * len(self.offering.services), LONGEST_FAREWELL)
+        heard = self.uplink.leave([*again, *messages, *ends], patience, RETURNING if messages else 0.0)
+        self.outflow.tell(dropped)
+        if not heard and topics:
+            self._log(logging.ERROR, f"{self.shown} has not confirmed the last messages on {', '.join(topics)} before the session left. "
+                                     "If one of them was to stop the robot, stop it there.")
+
+    def _lost(self, why):
+        if self.closed:
+            return
+        self.announced = False
+        doubtful = self.outflow.lost()
+        if self.connected:
             self.connected = False
-            if self._begun:
-                logging.log_text(logging.ERROR, TOPIC, f"The connection to {self.url} is lost. It is tried again and again.")
-            self._fail_all(f"the connection to {self.url} was lost")
-            self._services_are([])
+            self.lost_since = datetime.fromtimestamp(self.graph.now()).strftime("%H:%M:%S")
+            self.graph.cut_off = self._no_connection()
+        if self._begun:
+            self._log(logging.ERROR, f"The connection to {self.shown} is lost{why and ': '}{why}. It is tried again and again."
+                                     + (f" {doubtful} of the messages that were under way may be lost." if doubtful else ""))
+        self._asked.clear()
+        self._wake_joiner()
+        self._fail_all(f"the connection to {self.shown} was lost{why and ': '}{why}")
+        self._services_are([])
+
+    def _log(self, level, text):
+        logging.log_text(level, TOPIC, text)
+
+    def _no_connection(self):
+        return f"the connection to {self.shown} is lost since {self.lost_since}, and is tried again"
 
     def _fail_all(self, text):
         waiting, self._waiting = self._waiting, {}
-        for fail in waiting.values():
-            fail(text)
+        for _, failed in waiting.values():
+            failed(text)
+
+    def _opened(self):
+        """The connection is new: what we are to the other side is told it again."""
+        if self.closed or not self._begun or not self.uplink.open:
+            return
+        for name in self._outgoing:
+            self.uplink.send(self._advertisement(name))
+            self._compare(name, self._outgoing[name])
+        for name, message_type in self._incoming.items():
+            self.uplink.send(self._subscription(name, message_type))
+            self._compare(name, message_type)
+        self.offering.announce_again()
+        self.announced = True
+        self._flows()
+        self._ask_for_services()
+
+    def _flows(self):
+        if self.announced and not self.closed:
+            self.outflow.flush()
 
     def _is_back(self):
-        if not self.connected:
-            self.connected = True
-            logging.log_text(logging.WARN, TOPIC, f"The connection to {self.url} is there again.")
+        if not self.connected and not self._asked:
+            self.connected, self.lost_since, self.graph.cut_off = True, None, None
+            self._log(logging.WARN, f"The connection to {self.shown} is there again.")
 
-    def _hear(self, text):
-        if not self.closed:
-            logging.log_text(logging.WARN, TOPIC, f"{self.url} complains: {text}")
+    # --------------------------------------------------------------------------------------------------------------- hearing
+
+    def _hear(self, operation):
+        """An operation has come."""
+        if self.closed:
+            return
+        handler = self.HANDLERS.get(operation.get("op"))
+        if handler is not None:
+            handler(self, operation)
+
+    def _answered(self, operation):
+        done, failed = self._waiting.pop(operation.get("id"), (None, None))
+        if done is None:
+            return
+        values = operation.get("values")
+        if operation.get("result") is False:
+            failed(str(values))
+        else:
+            done(values if isinstance(values, dict) else {})
+
+    def _status(self, operation):
+        self._log(logging.WARN, f"{self.shown} complains: {operation.get('msg', '')}")
 
     # --------------------------------------------------------------------------------------------------------------- calling
 
@@ -189,27 +211,13 @@ class Link:
         """Call a service there: DONE gets the values of the answer, FAILED a text. With the baton, and so are these called.
 
         Returns the number under which the answer is waited for in ``_waiting``; ``None`` when it is not."""
-        import roslibpy
-
-        if not self.ros.is_connected:
-            failed(f"there is no connection to {self.url}")
+        if not self.uplink.open:
+            failed(self._no_connection() if self.lost_since else f"there is no connection to {self.shown}")
             return None
         self._numbers += 1
-        number = self._numbers
-        self._waiting[number] = failed
-
-        def over(function):
-            def arrive(value):
-                def act():
-                    if self._waiting.pop(number, None) is not None:
-                        function(value)
-
-                self.kernel.post(act)
-
-            return arrive
-
-        roslibpy.Service(self.ros, name, "").call(
-            roslibpy.ServiceRequest(values), over(lambda found: done(dict(found))), over(lambda problem: failed(str(problem))))
+        number = f"call_service:{name}:{self._numbers}"
+        self._waiting[number] = done, failed
+        self.uplink.send({"op": "call_service", "id": number, "service": name, "args": values})
         return number
 
     def ask(self, name, /, **values):
@@ -224,15 +232,51 @@ class Link:
         until = kernel.now() + PATIENCE
         try:
             while not outcome and kernel.now() < until:
-                kernel.park(f"the answer of {name} at {self.url}", until)
+                kernel.park(f"the answer of {name} at {self.shown}", until)
         finally:
             self._waiting.pop(number, None)  # an answer that comes later wakes nobody
         found, problem = outcome[0] if outcome else (None, f"no answer came within {PATIENCE:g} s")
         if problem is not None:
-            if self._refusal.why and not self._begun:
-                raise ServerError(self._refusal.why)
-            return conditions.error(SimpleError("~a", f"{name} cannot be asked at {self.url}: {problem}"))
+            if not self._begun:
+                raise ServerError(self.uplink.refusal.why or f"{self.shown} cannot be joined, since {name} cannot be asked there: "
+                                  f"{problem}. Does the node rosapi run there, and does the network carry?")
+            return conditions.error(SimpleError("~a", f"{name} cannot be asked at {self.shown}: {problem}"))
         return found
+
+    # ----------------------------------------------------------------------------------------------------------------- types
+
+    def type_there(self, name, message_class):
+        """The type of the topic NAME there and the address, when messages of MESSAGE_CLASS do not fit; else ``None``. Waits."""
+        if name in LOCAL or not self.uplink.open:
+            return None
+        try:
+            found = self.ask("/rosapi/topic_type", topic=name).get("type")
+        except Condition:
+            return None  # the connection was lost meanwhile: the topic is compared when it is back
+        return self._differs(name, message_class, found)
+
+    def _differs(self, name, message_class, found):
+        kind = _as_ros1(found or "")
+        if kind in ("", "*", message_class.ros_type):  # "*": somebody listens to whatever comes
+            self._types.pop(name, None)
+            return None
+        try:
+            if same_on_the_wire(type_named(kind), message_class):
+                self._types[name] = kind
+                return None
+        except MessageJsonError:
+            pass
+        return kind, self.shown
+
+    def _compare(self, name, message_class):
+        """Ask for the type of a topic that is used already; a difference is logged."""
+        def known(found):
+            other = self._differs(name, message_class, found.get("type"))
+            if other is not None:
+                self._log(logging.ERROR, f"{name} has messages of the type {other[0]} at {self.shown}, not {message_class.ros_type}, so "
+                                         "none of them arrives.")
+
+        self.call("/rosapi/topic_type", {"topic": name}, known, lambda text: None)
 
     # ------------------------------------------------------------------------------------------------------------- mirroring
 
@@ -241,7 +285,7 @@ class Link:
         data = to_json(message)
         return as_ros2(type(message), data) if self.ros2 else data
 
-    def _spelled(self, ros_type, kind):
+    def spelled(self, ros_type, kind):
         package, _, name = ros_type.partition("/")
         return f"{package}/{kind}/{name}" if self.ros2 else ros_type
 
@@ -259,144 +303,130 @@ class Link:
             own = self.node.publications.get(name), *self.node.subscriptions.get(name, ())
             spoken = [each for each in topic.publications if each not in own]
             heard = [each for each in topic.subscriptions if each not in own]
-            if not spoken and not heard:
-                self._stop_topic(name)
-                continue
             if spoken and name not in self._outgoing:
                 self._speak(name, topic.type)
+            elif not spoken and name in self._outgoing:
+                self._speak_no_more(name)
             if heard and name not in self._incoming:
                 self._listen(name, topic.type)
+            elif not heard and name in self._incoming:
+                self._listen_no_more(name)
             if spoken and heard:
                 for publication in spoken:
                     for subscription in [each for each in publication.connections if each in heard]:
                         publication.disconnect(subscription)  # it comes back over the bridge
-        offered = {name: service for name, service in self.graph.services.items() if isinstance(service, LispService)}
-        for name in list(self._offered):
-            if name not in offered:
-                self._offered.pop(name).unadvertise()
-        for name, service in offered.items():
-            if name not in self._offered:
-                self._offer(name, service)
+        self.offering.look()
 
-    def _far_topic(self, name, message_type):
-        import roslibpy
+    def say(self, operation):
+        """Send an operation that needs not be said again when the connection is new."""
+        if self.announced:
+            self.uplink.send(operation)
 
-        return roslibpy.Topic(self.ros, name, self._spelled(message_type.ros_type, "msg"))
+    def _type_of(self, name, message_type):
+        return self.spelled(self._types.get(name, message_type.ros_type), "msg")
+
+    def _latches(self, name):
+        return any(publication.latch for publication in self.graph.topics[name].publications) if name in self.graph.topics else False
+
+    def _advertisement(self, name):
+        return {"op": "advertise", "id": f"advertise:{name}", "topic": name, "type": self._type_of(name, self._outgoing[name]),
+                "latch": self._latches(name), "queue_size": 100}
+
+    def _subscription(self, name, message_type):
+        return {"op": "subscribe", "id": f"subscribe:{name}", "topic": name, "type": self._type_of(name, message_type),
+                "compression": "none", "throttle_rate": 0, "queue_length": 0}
 
     def _speak(self, name, message_type):
-        far = self._outgoing[name] = self._far_topic(name, message_type)
-        far.advertise()
+        self._outgoing[name] = message_type
+        self.say(self._advertisement(name))
 
         def forward(message):
-            if not self._delivering and self.ros.is_connected:
-                far.publish(self.outward(message))
+            if not self._delivering:
+                operation = {"op": "publish", "topic": name, "msg": self.outward(message), "latch": self._latches(name)}
+                self.outflow.publish(operation, self.announced)
 
         self.node.subscribe(name, message_type, forward)
 
+    def _speak_no_more(self, name):
+        del self._outgoing[name]
+        self.say({"op": "unadvertise", "id": f"advertise:{name}", "topic": name})
+        self.node.unsubscribe(name)
+
     def _listen(self, name, message_type):
-        far = self._incoming[name] = self._far_topic(name, message_type)
-        publication = self.node.advertise(name, message_type)
+        self.node.advertise(name, message_type)
+        self._incoming[name] = message_type
+        self.say(self._subscription(name, message_type))
 
-        def arrive(data):
-            try:
-                message = from_json(message_type, dict(data))
-            except MessageJsonError as problem:
-                return logging.log_text(logging.ERROR, TOPIC, f"A message on {name} from {self.url} is dropped: {problem}")
-            self._delivering = True
-            try:
-                publication.send(message)
-            finally:
-                self._delivering = False
+    def _listen_no_more(self, name):
+        del self._incoming[name]
+        self.say({"op": "unsubscribe", "id": f"subscribe:{name}", "topic": name})
+        self.node.unadvertise(name)
 
-        far.subscribe(lambda data: self.kernel.post(lambda: arrive(data)))
-
-    def _stop_topic(self, name):
-        if name in self._outgoing:
-            self._outgoing.pop(name).unadvertise()
-            self.node.unsubscribe(name)
-        if name in self._incoming:
-            self._incoming.pop(name).unsubscribe()
-            self.node.unadvertise(name)
-
-    def _offer(self, name, service):
-        import roslibpy
-
-        far = self._offered[name] = roslibpy.Service(self.ros, name, self._spelled(service.type.name, "srv"))
-        # roslibpy would want the answer at once, in its thread; the plan takes its time.
-        far._service_response_handler = lambda request: self.kernel.post(lambda: self._serve(service, request))
-        far.advertise(lambda request, response: True)
-
-    def _serve(self, service, request):
-        import roslibpy
-
-        def answer(values, result):
-            found = {"op": "service_response", "service": service.name, "values": values, "result": result}
-            if "id" in request:
-                found["id"] = request["id"]
-            if self.ros.is_connected:
-                self.ros.send_on_ready(roslibpy.Message(found))
-
-        def done(call):
-            if call.response is None:
-                answer({} if self.ros2 else reason(call), False)
-            else:
-                answer(self.outward(call.response), True)
-
+    def _arrive(self, operation):
+        """A message of a topic has come."""
+        name = operation.get("topic")
+        message_type, publication = self._incoming.get(name), self.node.publications.get(name)
+        if message_type is None or publication is None:
+            return
         try:
-            message = from_json(service.type.request, dict(request.get("args") or {}))
+            message = from_json(message_type, operation.get("msg"))
         except MessageJsonError as problem:
-            return answer({} if self.ros2 else str(problem), False)
-        services.start_call(service, message, done)
+            return self._log(logging.ERROR, f"A message on {name} from {self.shown} is dropped: {problem}")
+        self._delivering = True
+        try:
+            publication.send(message)
+        finally:
+            self._delivering = False
 
     # --------------------------------------------------------------------------------------------------- services over there
 
     def _ask_for_services(self):
-        if not self.ros.is_connected:
-            return self._lost()
-        self.call("/rosapi/services", {}, lambda found: self._services_are(found["services"]), lambda text: None)
+        if self.uplink.open and self.announced:
+            self.call("/rosapi/services", {}, lambda found: self._services_are(found.get("services", ())), lambda text: None)
 
     def _services_are(self, names):
         there = set(names)
-        if names:
-            self._is_back()
         for name in [name for name, service in self.node.services.items() if isinstance(service, FarService) and name not in there]:
             self.node.withdraw(name)
         self._not_known &= there
         for name in names:
-            if name not in self.graph.services and name not in self._not_known:
-                self.call("/rosapi/service_type", {"service": name}, self._type_is(name), lambda text: None)
+            if name not in self.graph.services and name not in self._not_known and name not in self._asked:
+                self._asked.add(name)
+                self.call("/rosapi/service_type", {"service": name}, self._type_is(name), lambda text, name=name: self._told(name))
+        if names:
+            self._is_back()
 
     def _type_is(self, name):
         def known(found):
-            if name in self.graph.services or self.closed:
-                return
-            try:
-                kind = service_named(found["type"])
-            except MessageJsonError:
-                self._not_known.add(name)  # of a package whose definitions are not here: nobody here could call it
-                return
-            self.node.add_service(FarService(self, name, kind))
+            if name not in self.graph.services and not self.closed:
+                try:
+                    self.node.add_service(FarService(self, name, service_named(found.get("type", ""))))
+                except MessageJsonError:
+                    self._not_known.add(name)  # of a package whose definitions are not here: nobody here could call it
+            self._told(name)
 
         return known
 
+    def _told(self, name):
+        """The type of a service is known, or will not be."""
+        self._asked.discard(name)
+        if not self._asked:
+            self._wake_joiner()
+            if self.uplink.open:
+                self._is_back()
 
-def as_ros2(cls, data):
-    """DATA of a message as ROS 2 has it: times are ``sec`` and ``nanosec``, headers have no ``seq``."""
-    result = {}
-    for field in cls.fields:
-        value = data[field.name]
-        if cls.ros_type == "std_msgs/Header" and field.name == "seq":
-            continue
-        if field.base in ("time", "duration"):
-            convert = lambda each: {"sec": each["secs"], "nanosec": each["nsecs"]}
-        elif field.primitive:
-            result[field.name] = value
-            continue
-        else:
-            part = message_class_exact(field.base)
-            convert = lambda each: as_ros2(part, each)
-        result[field.name] = [convert(each) for each in value] if field.is_array else convert(value)
-    return result
+    def _wake_joiner(self):
+        if self._joiner is not None:
+            kernel.unpark(self._joiner)
+
+    HANDLERS = {"publish": _arrive, "service_response": _answered, "status": _status,
+                "call_service": lambda self, operation: self.offering.serve(operation)}
+
+
+def _as_ros1(kind):
+    """``geometry_msgs/msg/Twist`` is ``geometry_msgs/Twist``."""
+    parts = kind.split("/")
+    return f"{parts[0]}/{parts[2]}" if len(parts) == 3 else kind
 
 
 def join(url, patience=PATIENCE):
@@ -406,28 +436,27 @@ def join(url, patience=PATIENCE):
     """
     if find_spec("roslibpy") is None:
         raise ServerError("To join a real ROS needs roslibpy, which is not installed: pip install 'cramhy[ros]'")
-    here = graph.active()
+    here, shown = graph.active(), addresses.shown(url)
     if here.kernel.clock.virtual:
-        raise ServerError(f"A session in virtual time cannot join {url}: the robot there lives in wall time. Start it with --time wall.")
+        raise ServerError(f"A session in virtual time cannot join {shown}: the robot there lives in wall time. Start it with --time wall.")
     if here.visible_nodes():
-        raise ServerError(f"Nodes run here already ({', '.join(here.visible_nodes())}), so this session cannot join {url} any more. "
+        raise ServerError(f"Nodes run here already ({', '.join(here.visible_nodes())}), so this session cannot join {shown} any more. "
                           "Do it before the first start-ros-node.")
     import roslibpy
 
-    ros, refusal = connect(url)
-    ros.factory.set_max_delay(LONGEST_DELAY)
-
+    uplink = Uplink(url, here.kernel)
     try:
-        kernel.run_blocking(ros.run, patience)
+        kernel.run_blocking(uplink.run, patience)
     except roslibpy.core.RosTimeoutError:
-        leave(ros)
-        raise ServerError(f"No rosbridge server answers at {url}. Does it run there (roslaunch rosbridge_server rosbridge_websocket.launch,"
-                          " or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), and can this machine reach it?") from None
-    refusal.waited_for = False
-    if refusal.why:
-        leave(ros)
-        raise ServerError(refusal.why)
-    link = Link(here, url, ros, refusal)
+        uplink.leave()
+        raise ServerError(f"No rosbridge server answers at {shown}. Does it run there (roslaunch rosbridge_server "
+                          "rosbridge_websocket.launch, or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), "
+                          "and can this machine reach it?") from None
+    uplink.refusal.waited_for = False
+    if uplink.refusal.why:
+        uplink.leave()
+        raise ServerError(uplink.refusal.why)
+    link = Link(here, uplink)
     try:
         link.begin()
     except BaseException:

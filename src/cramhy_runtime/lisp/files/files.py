@@ -234,7 +234,7 @@ def _folders(folder, parts):
                 yield from _folders(entry.path, parts)
     elif part is WILD or isinstance(part, Pattern):
         for entry in _entries(folder):
-            if entry.is_dir() and component_matches(entry.name, part):
+            if component_matches(entry.name, part) and os.path.isdir(entry.path):  # entry.is_dir() would not bear a folder of others
                 yield from _folders(entry.path, rest)
     elif part is HOME or isinstance(part, tuple):
         yield from _folders(os.path.expanduser("~" if part is HOME else f"~{part[1]}"), rest)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib.machinery
 import importlib.util
+import os
 import sys
 import types
 from pathlib import Path
@@ -102,7 +103,7 @@ class SystemFinder:
         for folder in sys.path if path is None else path:
             for spelling in (short, short.replace("_", "-")):
                 file = Path(folder or ".", f"{spelling}.lisp")
-                if file.is_file():
+                if os.path.isfile(file):
                     return importlib.util.spec_from_file_location(name, file, loader=FileLoader(str(file)))
         system = name.replace("_", "-")
         if path is not None or "." in name or systems.find_asd(system) is None:

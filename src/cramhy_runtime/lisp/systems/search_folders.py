@@ -1,4 +1,9 @@
-"""Where packages and systems are looked for; with no Lisp, so that the ROS tools start quickly."""
+"""Where packages and systems are looked for; with no Lisp, so that the ROS tools start quickly.
+
+A search walks through folders that need not be the user's: a shared ``/opt``, another user's home, a link into either. What the user may
+not look at holds nothing for the search, so `entries`, `is_folder` and `is_file` answer as if it were not there. `pathlib` and
+`os.DirEntry` raise the error of the system instead.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +21,33 @@ def search_folders():
     folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
     folders += [Path(entry) for entry in extra_folders]
     here = Path.cwd()
-    folders += [here, *(parent / "src" for parent in [here, *here.parents][:6] if (parent / "src").is_dir())]
+    folders += [here, *(parent / "src" for parent in [here, *here.parents][:6] if os.path.isdir(parent / "src"))]
     if here.name == "src":
         folders.append(here)
     root = Path(__file__).parents[4]
     folders += [root / "tutorials", Path(__file__).parents[2] / "tutorials"]
     return [folder for folder in dict.fromkeys(folders) if os.path.isdir(folder) and os.access(folder, os.R_OK | os.X_OK)]
+
+
+def entries(folder):
+    """What stands in ``folder``, as `os.DirEntry`, sorted by name; nothing where it cannot be listed."""
+    try:
+        return sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except OSError:
+        return []
+
+
+def is_folder(entry):
+    """Whether an `os.DirEntry` is a folder, or a link to one, that the user may look at."""
+    try:
+        return entry.is_dir()
+    except OSError:  # a link into a folder that one may not enter, a circle of links, a file system that is gone
+        return False
+
+
+def is_file(entry):
+    """Whether an `os.DirEntry` is a file, or a link to one, that the user may look at."""
+    try:
+        return entry.is_file()
+    except OSError:
+        return False

@@ -20,7 +20,7 @@ from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
 from ..packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader
-from .search_folders import SKIPPED, search_folders
+from .search_folders import SKIPPED, entries, is_file, is_folder, search_folders
 from .system_definitions import Module, SourceFile, System, define_system, systems
 
 
@@ -86,15 +86,12 @@ def libraries():
 
 
 def _asd_files(folder, depth=4):
-    try:
-        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
-    except OSError:
-        return
-    for entry in entries:
-        if entry.name.endswith(".asd") and entry.is_file():
+    found = entries(folder)
+    for entry in found:
+        if entry.name.endswith(".asd") and is_file(entry):
             yield Path(entry.path)
-    for entry in entries:
-        if depth and entry.is_dir() and not entry.name.startswith((".", "__")) and entry.name not in SKIPPED:
+    for entry in found:
+        if depth and is_folder(entry) and not entry.name.startswith((".", "__")) and entry.name not in SKIPPED:
             yield from _asd_files(entry.path, depth - 1)
 
 
@@ -106,7 +103,7 @@ def find_asd(name):
     if wanted in libraries():
         return LIBRARIES / libraries()[wanted]
     for folder in central_registry():
-        if (folder / wanted).is_file():
+        if os.path.isfile(folder / wanted):
             return folder / wanted
     for folder in search_folders():
         for path in _asd_files(folder):
@@ -118,8 +115,8 @@ def find_asd(name):
 def find_package_folder(name):
     """The folder of the ROS package ``name``: it is called so, or its ``package.xml`` says so; ``None`` if there is none."""
     for folder in search_folders():
-        for candidate in [folder, *sorted(entry for entry in folder.iterdir() if entry.is_dir())]:
-            if candidate.name == name and ((candidate / "package.xml").exists() or any(candidate.glob("*.asd"))):
+        for candidate in [folder, *(Path(entry.path) for entry in entries(folder) if is_folder(entry))]:
+            if candidate.name == name and (os.path.exists(candidate / "package.xml") or any(candidate.glob("*.asd"))):
                 return candidate
     return None
 

@@ -67,6 +67,9 @@ def close_names(name, names, otherwise):
     return f"Did you mean {' or '.join(close)}?" if close else otherwise
 
 
-def rpc_error(call, code, message, result=""):
-    """Signal the master's refusal of ``call``, with the restart ``Ignore and continue``."""
-    return conditions.cerror("Ignore and continue", RosRpcError(call, master_uri(), code, message, result))
+def rpc_error(call, code, message, result="", hint=None):
+    """Signal the master's refusal of ``call``, with the restart ``Ignore and continue``. hint: what to try, when it is not the usual."""
+    problem = RosRpcError(call, master_uri(), code, message, result)
+    if hint is not None:
+        problem.hint = hint
+    return conditions.cerror("Ignore and continue", problem)

@@ -135,7 +135,9 @@ def lookup(here, name):
     """
     services = here.graph.services
     if name not in services:
-        rpc_error(f"lookupService {name}", -1, "no provider")
+        cut_off = here.graph.cut_off
+        rpc_error(f"lookupService {name}", -1, f"no provider: {cut_off}" if cut_off else "no provider",
+                  hint=f'(wait-for-service "{name}") waits until the service is there again.' if cut_off else None)
     return services.get(name)
 
 
@@ -274,7 +276,7 @@ def call_persistent_service(service, *request):
                 return answer.response
             problem = answer.failure or "The server closed the connection."
         else:
-            problem = "The connection is closed."
+            problem = f"The connection is closed: {here.graph.cut_off}." if here.graph.cut_off else "The connection is closed."
         failure = ServiceCallError(message=problem)
         conditions.restart_case(
             [

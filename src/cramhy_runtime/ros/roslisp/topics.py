@@ -123,9 +123,23 @@ def advertise(topic, topic_type, *, latch=None):
     topic = _topic_name(topic)
     here = node.require_node()
     cls = topic_class(topic_type)
+    if not _agrees_elsewhere(here, here.resolve(topic), cls, "advertise"):
+        return None
     publication = here.advertise(topic, cls, latch is not None and latch is not False)
     _warn_of_listeners_to_another_type(publication)
     return publication
+
+
+def _agrees_elsewhere(here, name, cls, operator):
+    """Whether the robot that the session is joined to, if it is, has messages of ``cls`` on the topic too; an error when it has not."""
+    other = here.graph.type_elsewhere(name, cls) if here.graph.type_elsewhere is not None else None
+    if other is None:
+        return True
+    kind, place = other
+    call = f'({operator} "{name}" "{kind}")' if operator == "advertise" else f'({operator} "{name}" "{kind}" callback)'
+    ros_error("The topic ~a has messages of the type ~a at ~a, not ~a, so no message would arrive.", name, kind, place, cls.ros_type,
+              hint=f"Try {call}, or another topic. rostopic list, typed at the prompt, shows those of this session.")
+    return False
 
 
 def _warn_of_listeners_to_another_type(publication):
@@ -208,6 +222,8 @@ def subscribe(topic, topic_type, callback, *, max_queue_length=None):
             name,
             subscription.type.ros_type,
         )
+    if subscription is None and not _agrees_elsewhere(here, name, cls, "subscribe"):
+        return None
     problem = _publishers_of_another_type(here, name, cls)
     if problem is not None:
         conditions.warn("~a", f"Received error {problem} when attempting to setup subscription to {name} of type {cls.ros_type}, "
