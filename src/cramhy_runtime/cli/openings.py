@@ -14,6 +14,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from cramhy_runtime import chronicle, rosbridge, view
+from cramhy_runtime.extras import install_command
 
 NEEDS = {
     "serve": ("web", ("uvicorn", "websockets")),
@@ -36,7 +37,7 @@ def require(what, asked):
     if missing:
         verb = "is" if len(missing) == 1 else "are"
         raise NotPossible(f"{asked} needs {', '.join(modules)}, and {', '.join(missing)} {verb} not installed. Type: "
-                          f"pip install 'cramhy[{extra}]'")
+                          f"{install_command(extra)}")
 
 
 def check(options):

@@ -24,6 +24,7 @@ from http import HTTPStatus
 from importlib import metadata
 
 from .. import kernel
+from ..extras import install_command
 from ..kernel.company import Company
 from ..ros import graph
 from . import sessions
@@ -221,8 +222,8 @@ def need_extra():
         except metadata.PackageNotFoundError:
             missing.append(name)
     if missing:
-        raise ServerError(f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed: "
-                          "pip install 'cramhy[web]'")
+        raise ServerError(f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed. "
+                          f"Type: {install_command('web')}")
     # Here and not in the server's thread, which would have to save up for them while a plan computes.
     import uvicorn.lifespan.off  # noqa: F401
     import uvicorn.protocols.http.h11_impl  # noqa: F401
