@@ -8,13 +8,13 @@ installed; from a pipe, lines are read and nothing is echoed but prompts and ans
 
 from __future__ import annotations
 
-import select
 import sys
 
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl import current_task
 from cramhy_runtime.lisp import conditions
 from cramhy_runtime.lisp.streams import streams
+from cramhy_runtime.lisp.streams.console_ready import readable
 from cramhy_runtime.lisp.tools.advice import explanation
 from cramhy_runtime.lisp.conditions import Condition
 from cramhy_runtime.lisp.packages import COMMON_LISP, printed, sym, symbol_name, symbol_package
@@ -74,12 +74,12 @@ class Input:
         sys.stdout.flush()
         streams.CONSOLE_OUTPUT.column = 0
         while self.interactive:
-            ready, _, _ = select.select([sys.stdin], [], [], 0.1)
+            ready = readable(sys.stdin, 0.1)
             if interrupted():
                 return None
             if self.turn != mine:  # Ctrl-C broke this call off, but its thread waits on: the line is for the next call
                 return None
-            if ready:
+            if ready or ready is None:  # None: reading has to wait, and cannot be broken off
                 break
         line = sys.stdin.readline()
         return line.rstrip("\n") if line else None

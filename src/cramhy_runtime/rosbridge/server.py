@@ -25,7 +25,7 @@ from importlib import metadata
 
 from .. import kernel
 from ..extras import install_command
-from ..kernel.company import Company
+from ..kernel.company import Company, thread_time
 from ..ros import graph
 from . import sessions
 from .connection import ENDED, Connection
@@ -117,11 +117,11 @@ class Server:
         def run():
             if self.closed:
                 return
-            began = time.thread_time()
+            began = thread_time()
             try:
                 function()
             finally:
-                self.company.share.charge(time.thread_time() - began)
+                self.company.share.charge(thread_time() - began)
 
         self.kernel.post(run)
 

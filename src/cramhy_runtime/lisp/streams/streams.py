@@ -7,7 +7,6 @@ up at every write, because pytest and REPLs replace ``sys.stdout``. Source: ANSI
 
 from __future__ import annotations
 
-import select
 import sys
 import weakref
 
@@ -28,6 +27,7 @@ from .basic_streams import (
     complain_closed,
     misused,
 )
+from .console_ready import readable
 
 __all__ = ["FileOutput", "InputStream", "OutputStream", "Stream", "StringInputStream", "StringOutputStream", "StringStream"]
 
@@ -113,7 +113,7 @@ class ConsoleInput(InputStream):
         return kernel.run_blocking(sys.stdin.readline)
 
     def listen(self):
-        return super().listen() or self.is_interactive and bool(select.select([sys.stdin], [], [], 0)[0])
+        return super().listen() or self.is_interactive and bool(readable(sys.stdin, 0))
 
     def close(self, abort=False):
         """The console stays open: the prompt needs it."""
