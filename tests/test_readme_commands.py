@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -167,3 +169,17 @@ def test_the_table_of_commands_is_complete():
     table = text[text.index("| command | does |"):text.index("## A second terminal")]
     assert len(named) == 10
     assert [name for name in named if not re.search(rf"[`\s]{name}\b", table)] == []
+
+
+@pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
+@pytest.mark.parametrize(("first", "command", "printed"), [
+    ("(in-package :cram-user)", ["hy"], "\nNIL "),
+    ("(import cramhy_runtime.cpl *)", ["cramhy_runtime.cli", "run"], "both\n"),
+])
+def test_the_hy_files_of_readme_run(tmp_path, first, command, printed):
+    """The blocks that begin with ``(require cramhy *)``, each given to the command that README names."""
+    blocks = re.findall(r"```\n(\(require cramhy \*\)\n.*?)```", (ROOT / "README.md").read_text(), re.S)
+    (block,) = [block for block in blocks if first in block]
+    (tmp_path / "file.hy").write_text(block)
+    done = subprocess.run([sys.executable, "-m", *command, "file.hy"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, printed, "")
