@@ -18,8 +18,9 @@ OF_OS = """chown confstr ctermid fchdir fchmod fchown fork forkpty fpathconf fst
     openpty pathconf posix_fadvise posix_fallocate posix_spawn posix_spawnp pread preadv pwrite pwritev readv register_at_fork
     sched_get_priority_max sched_get_priority_min sched_getaffinity sched_getparam sched_getscheduler sched_param
     sched_rr_get_interval sched_setaffinity sched_setparam sched_setscheduler sched_yield sendfile setegid seteuid setgid
-    setgroups setpgid setpriority setregid setresgid setresuid setreuid setsid setuid statvfs sync sysconf tcgetpgrp tcsetpgrp
+    setgroups setpgid setpriority setregid setresgid setresuid setreuid setsid setuid statvfs sync tcgetpgrp tcsetpgrp
     ttyname uname wait wait3 wait4 waitid writev O_CLOEXEC O_DIRECTORY O_NOCTTY O_NOFOLLOW O_NONBLOCK O_SYNC""".split()
+"""Without ``sysconf``, which the asyncio of a POSIX build of Python 3.12 and later asks for itself."""
 OF_SIGNAL = """SIGALRM SIGBUS SIGCHLD SIGCONT SIGHUP SIGIO SIGKILL SIGPIPE SIGPROF SIGQUIT SIGSTOP SIGSYS SIGTRAP SIGTSTP SIGTTIN SIGTTOU
     SIGURG SIGUSR1 SIGUSR2 SIGVTALRM SIGWINCH ITIMER_PROF ITIMER_REAL ITIMER_VIRTUAL alarm getitimer pause pthread_kill pthread_sigmask
     setitimer siginterrupt sigpending sigtimedwait sigwait sigwaitinfo""".split()
