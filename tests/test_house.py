@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "cramhy_runtime"
-FLOORS = [["kernel", "storage"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"],
+FLOORS = [["extras"], ["kernel", "storage"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"],
           ["designators", "turtlesim", "episodes", "actionlib", "rosbridge"],
           ["occasions", "tf"], ["process_modules"], ["projection"], ["chronicle", "ros_tools"], ["view", "repl", "testing"],
           ["cli", "image", "pytest_plugin", "__init__"]]

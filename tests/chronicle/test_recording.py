@@ -15,6 +15,7 @@ from image_as_it_was import image_as_it_was
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import chronicler, recorder
 from cramhy_runtime.chronicle.recordings import RecordingError
+from cramhy_runtime.extras import install_command
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.message_json import to_json
 from cramhy_runtime.ros.messages import message_class_exact
@@ -291,7 +292,7 @@ def test_without_mcap_it_is_told_how_to_get_it(session, tmp_path, monkeypatch):
     for asked, what in ((chronicle.record, "Recording"), (chronicle.read, "Reading a recording")):
         with pytest.raises(RecordingError) as problem:
             asked(tmp_path / "x.mcap")
-        assert str(problem.value) == f"{what} needs the Python package mcap, which is not installed. Type: pip install 'cramhy[record]'"
+        assert str(problem.value) == f"{what} needs the Python package mcap, which is not installed. Type: {install_command('record')}"
 
 
 def test_the_lecture_is_recorded_whole(tmp_path):

@@ -7,6 +7,7 @@ import threading
 import pytest
 
 from cramhy_runtime import kernel
+from cramhy_runtime.extras import install_command
 from cramhy_runtime.kernel.backends import threads
 
 
@@ -231,5 +232,5 @@ except ImportError as missing:
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert done.stdout == (
         'The back end "greenlet" needs the package greenlet, which is not installed. '
-        'Install it (pip install "cramhy[fast]") or use the back end "threads".\n'
+        f'Use the back end "threads", or type: {install_command("fast")}\n'
     )

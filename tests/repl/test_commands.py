@@ -1,11 +1,9 @@
-"""``cramhy run``, ``cramhy eval`` and ``cramhy ros-shims`` as programs: their answers, messages and exit statuses."""
+"""``cramhy run`` and ``cramhy eval`` as programs: their answers, messages and exit statuses."""
 
 from __future__ import annotations
 
 import json
 import os
-import shutil
-import subprocess
 import sys
 
 import pytest
@@ -155,45 +153,6 @@ class TestEval:
     def test_options_that_cannot_be_followed(self, cramhy, options, message):
         done = cramhy("eval", *options, input='{"form": "1"}')
         assert (done.returncode, done.stdout) == (1, "") and done.stderr.startswith(message)
-
-
-class TestShims:
-    def test_the_functions_are_shell(self, cramhy, tmp_path):
-        done = cramhy("ros-shims")
-        assert done.returncode == 0 and "roscd() {" in done.stdout and "rosservice() {" in done.stdout
-        for shell in ("bash", "dash"):
-            if shutil.which(shell):
-                assert subprocess.run([shell, "-n"], input=done.stdout, text=True, capture_output=True).stderr == ""
-
-    def test_they_are_installed_into_a_folder(self, cramhy, tmp_path, private):
-        assert cramhy("ros-shims", "--install", str(tmp_path / "bin")).returncode == 0
-        roscore = tmp_path / "bin" / "roscore"
-        assert os.access(roscore, os.X_OK)
-        from .conftest import environment
-
-        done = subprocess.run([roscore], capture_output=True, text=True, env=environment())
-        assert (done.returncode, done.stdout) == (0, "No master is needed: the ROS graph lives in the process of roslisp_repl.\n"
-                                                  "No session serves here yet. Start one with: roslisp_repl --serve, or rosrun turtlesim "
-                                                  "turtlesim_node\n")
-        assert cramhy("ros-shims", "--install", str(tmp_path / "bin")).returncode == 0  # over our own, once more
-
-    def test_a_folder_that_cannot_be_had_is_named(self, cramhy, tmp_path):
-        (tmp_path / "file").write_text("")
-        done = cramhy("ros-shims", "--install", "file")
-        assert (done.returncode, done.stderr) == (
-            1, "cramhy: the programs cannot be written into file: file: File exists. Choose another name.\n")
-        done = cramhy("ros", "catkin_create_pkg", "file")
-        assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists. Choose another name.\n")
-
-    def test_a_real_ros_on_the_path_is_left_alone(self, cramhy, tmp_path, monkeypatch):
-        real = tmp_path / "real"
-        real.mkdir()
-        (real / "roscore").write_text("#!/bin/sh\necho real\n")
-        (real / "roscore").chmod(0o755)
-        monkeypatch.setenv("PATH", f"{real}{os.pathsep}{os.environ['PATH']}")
-        done = cramhy("ros-shims")
-        assert "a ROS is installed here" in done.stderr and "roscore" in done.stderr
-        assert "roscore()" not in done.stdout and "catkin_make()" in done.stdout
 
 
 @pytest.mark.parametrize(("form", "shown"), [("(print 1)", "\n1 \n"), ('(format t "a~%")', "a\n"), ("(+ 1 2)", "")])

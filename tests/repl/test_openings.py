@@ -8,6 +8,7 @@ from contextlib import ExitStack
 import pytest
 
 from cramhy_runtime.cli import openings, options
+from cramhy_runtime.extras import install_command
 
 
 def parsed(*words):
@@ -95,12 +96,13 @@ def test_the_address_for_other_programs_is_told(rooms, capsys):
 
 @pytest.mark.parametrize(("words", "missing", "message"), [
     (["repl", "--serve"], {"uvicorn"},
-     "--serve needs uvicorn, websockets, and uvicorn is not installed. Type: pip install 'cramhy[web]'"),
+     "--serve needs uvicorn, websockets, and uvicorn is not installed. Type: " + install_command("web")),
     (["repl", "--view"], {"uvicorn", "websockets"},
-     "--view needs uvicorn, websockets, and uvicorn, websockets are not installed. Type: pip install 'cramhy[web]'"),
-    (["repl", "--record", "x.mcap"], {"mcap"}, "--record needs mcap, and mcap is not installed. Type: pip install 'cramhy[record]'"),
+     "--view needs uvicorn, websockets, and uvicorn, websockets are not installed. Type: " + install_command("web")),
+    (["repl", "--record", "x.mcap"], {"mcap"}, "--record needs mcap, and mcap is not installed. Type: "
+     + install_command("record")),
     (["repl", "--ros", "ws://robot:9090"], {"roslibpy"},
-     "--ros needs roslibpy, and roslibpy is not installed. Type: pip install 'cramhy[ros]'"),
+     "--ros needs roslibpy, and roslibpy is not installed. Type: " + install_command("ros")),
 ])
 def test_an_extra_that_is_missing_is_named(rooms, monkeypatch, words, missing, message):
     monkeypatch.setattr(openings, "find_spec", lambda module: None if module in missing else module)
@@ -114,7 +116,7 @@ def test_a_replay_needs_two_extras(monkeypatch):
     with pytest.raises(openings.NotPossible) as caught:
         openings.require("replay", "cramhy replay")
     assert str(caught.value) == ("cramhy replay needs uvicorn, websockets, mcap, and mcap is not installed. Type: "
-                                 "pip install 'cramhy[web,record]'")
+                                 + install_command("web,record"))
 
 
 @pytest.mark.parametrize(("words", "message"), [

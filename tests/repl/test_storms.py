@@ -34,8 +34,10 @@ SETUP = """
 """
 FORMS = [
     "(plan (lambda () (loop)))", "(plan (lambda () (sleep 1000000)))", "(plan (lambda () (loop (sleep 0.01))))",
-    "(plan (lambda () (unwind-protect (loop) (loop for i below 20000))))", "(plan (lambda () (car 1)))", "(+ 1 2)", "(car 1)", "(list 1", ")",
-    "(compile nil '(lambda (x) (loop for i below 10 collect (* i x))))", "(load \"setup.lisp\")", "(describe 'plan)", "(dotimes (i 30) (print i))",
+    "(plan (lambda () (unwind-protect (loop) (loop for i below 20000))))", "(plan (lambda () (car 1)))", "(+ 1 2)",
+    "(car 1)", "(list 1", ")",
+    "(compile nil '(lambda (x) (loop for i below 10 collect (* i x))))", "(load \"setup.lisp\")", "(describe 'plan)",
+    "(dotimes (i 30) (print i))",
     "(ros-load:load-system \"cram_my_beginner_tutorial\" :cram-my-beginner-tutorial)", "(break)", ":abort", "0",
 ]  # fmt: skip
 COMBINATIONS = [(clock, backend, editor, way) for clock in ("virtual", "wall") for backend in ("threads", "greenlet")

@@ -9,6 +9,7 @@ from dataclasses import replace
 import pytest
 
 from cramhy_runtime import kernel
+from cramhy_runtime.extras import install_command
 from cramhy_runtime.ros_tools import running, there
 from cramhy_runtime.ros_tools.reach import NoSession, Refused, SessionEnded
 
@@ -280,7 +281,7 @@ def test_without_the_extra(far_shell, monkeypatch):
     monkeypatch.setitem(sys.modules, "websockets.sync.client", None)
     far_shell("rostopic list")
     assert far_shell.said == ("", "ERROR: Unable to communicate with master!\nA session serves here, but reaching it takes the Python "
-                              "package websockets. Type: pip install 'cramhy[web]'\n", 1)
+                              f"package websockets. Type: {install_command('web')}\n", 1)
 
 
 @pytest.mark.parametrize("token", ["a wrong token", "wrong", "", "a/b?c&d#e"])

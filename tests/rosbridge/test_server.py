@@ -9,6 +9,7 @@ import pytest
 
 from bridge_clients import Wire
 from cramhy_runtime import kernel, rosbridge
+from cramhy_runtime.extras import install_command
 from cramhy_runtime.ros import graph
 
 
@@ -231,4 +232,4 @@ def test_what_is_not_installed_is_named(monkeypatch):
     monkeypatch.setattr(metadata, "version", version)
     with pytest.raises(ServerError) as caught:
         rosbridge.start()
-    assert str(caught.value) == "The server needs uvicorn, websockets, which are not installed: pip install 'cramhy[web]'"
+    assert str(caught.value) == f"The server needs uvicorn, websockets, which are not installed. Type: {install_command('web')}"

@@ -194,16 +194,8 @@ def test_shims_are_all_installed_or_none(session, tmp_path, monkeypatch, capsys)
             assert not (tmp_path / "bin").exists()
             assert told.err.startswith(f"cramhy: the programs cannot be written into {target}: {tmp_path}") and re.search(REASON, told.err)
         else:
-            assert {path.name for path in target.iterdir()} == set(shims.TOOLS)
+            assert {path.name for path in target.iterdir()} == {"cramhy", "roslisp_repl", *shims.TOOLS}
             assert all(os.access(path, os.X_OK) for path in target.iterdir())
-
-
-def test_a_program_of_somebody_else_stays(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(shutil, "which", lambda tool: None)
-    (tmp_path / "rosrun").write_text("#!/bin/sh\nmine\n")
-    assert shims.run(str(tmp_path)) == 0
-    assert (tmp_path / "rosrun").read_text() == "#!/bin/sh\nmine\n"
-    assert capsys.readouterr().err == f"cramhy: rosrun in {tmp_path} were not made by cramhy, so they stay as they are.\n"
 
 
 def test_a_package_is_made_whole_or_not_at_all(tmp_path, monkeypatch, capsys):

@@ -1,13 +1,21 @@
-"""A Chromium without a window, and pages in it. Without Chromium or Playwright the tests of the page are skipped, with the reason."""
+"""A Chromium without a window, pages in it, and sessions that they show.
+
+Without Chromium or Playwright the tests of the page are skipped, with the reason.
+"""
 
 from __future__ import annotations
 
 import os
+import queue
 import shutil
+import subprocess
+import sys
+import threading
 
 import pytest
 
 LIMIT = 60_000  # ms; for a machine that is busy with other things
+PATIENCE = 120  # s; the first session of a checkout compiles the language
 SLOW = int(os.environ.get("CRAMHY_SLOW_FRAMES", "0"))  # ms by which each frame comes late: finds tests that read what is drawn later
 SLOWED = f"""{{
   const real = window.requestAnimationFrame.bind(window);
@@ -76,3 +84,56 @@ def visit(browser):
             assert opened.evaluate("window.violations") == []
         context.close()
     assert [each for each in complaints if not any(words in each for words in foreseen)] == []
+
+
+class Repl:
+    """A REPL that lines are typed into. ``url``: of its page."""
+
+    def __init__(self, folder, *options):
+        environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--view", *options], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        self.printed = queue.Queue()
+        self.text = ""
+        threading.Thread(target=self._read, daemon=True).start()
+        self.url = next(line for line in self.process.stderr if "http://" in line).split()[-1]
+
+    def _read(self):
+        while text := os.read(self.process.stdout.fileno(), 1 << 16):
+            self.printed.put(text.decode())
+        self.printed.put(None)
+
+    def type(self, text):
+        self.process.stdin.write(text + "\n")
+        self.process.stdin.flush()
+
+    def wait_for(self, text):
+        """Wait until the REPL has printed it."""
+        while text not in self.text:
+            self.text += self.printed.get(timeout=PATIENCE) or f"\nIt has ended, and never printed {text}"
+            assert "It has ended" not in self.text, self.text
+
+    def close(self):
+        self.process.stdin.close()
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:  # a plan that a failed test has left paused
+            self.process.kill()
+            self.process.wait()
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+
+@pytest.fixture
+def repl(tmp_path):
+    pytest.importorskip("uvicorn", reason="pip install 'cramhy[web]'")
+    made = []
+
+    def start(*options):
+        made.append(Repl(tmp_path, *options))
+        return made[-1]
+
+    yield start
+    for one in made:
+        one.close()

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import queue
 import signal
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import pytest
 from test_page import READING, rows, wait_for_pixel, wait_for_reading, wait_for_text
 from test_page_time import seek
 
-PATIENCE = 120  # s; the first session of a checkout compiles the language
 COURSE = """(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)
 (in-package :tut)
 (start-ros-node "turtle1")
@@ -30,59 +26,6 @@ PAR = """\
             (let ((?r (if (evenp i) 255 0)))
               (desig:a motion (type setting-pen) (r ?r) (g 40) (b 0) (width 8))))
           (sleep 0.5))))))"""
-
-
-class Repl:
-    """A REPL that lines are typed into. ``url``: of its page."""
-
-    def __init__(self, folder, *options):
-        environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "DISPLAY": "", "WAYLAND_DISPLAY": ""}
-        environment.pop("PYTHONDONTWRITEBYTECODE", None)
-        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--view", *options], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
-        self.printed = queue.Queue()
-        self.text = ""
-        threading.Thread(target=self._read, daemon=True).start()
-        self.url = next(line for line in self.process.stderr if "http://" in line).split()[-1]
-
-    def _read(self):
-        while text := os.read(self.process.stdout.fileno(), 1 << 16):
-            self.printed.put(text.decode())
-        self.printed.put(None)
-
-    def type(self, text):
-        self.process.stdin.write(text + "\n")
-        self.process.stdin.flush()
-
-    def wait_for(self, text):
-        """Wait until the REPL has printed it."""
-        while text not in self.text:
-            self.text += self.printed.get(timeout=PATIENCE) or f"\nIt has ended, and never printed {text}"
-            assert "It has ended" not in self.text, self.text
-
-    def close(self):
-        self.process.stdin.close()
-        try:
-            self.process.wait(10)
-        except subprocess.TimeoutExpired:  # a plan that a failed test has left paused
-            self.process.kill()
-            self.process.wait()
-        self.process.stdout.close()
-        self.process.stderr.close()
-
-
-@pytest.fixture
-def repl(tmp_path):
-    pytest.importorskip("uvicorn", reason="pip install 'cramhy[web]'")
-    made = []
-
-    def start(*options):
-        made.append(Repl(tmp_path, *options))
-        return made[-1]
-
-    yield start
-    for one in made:
-        one.close()
 
 
 def plan_time(page, doing):

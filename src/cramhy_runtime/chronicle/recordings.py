@@ -12,6 +12,8 @@ import json
 import os
 from decimal import Decimal, InvalidOperation
 
+from ..extras import install_command
+
 LARGEST_CHUNK = 1 << 28
 """Bytes of a chunk once it is unpacked; a larger one is no honest chunk."""
 
@@ -27,7 +29,7 @@ def needs_mcap(what):
         import mcap.stream_reader
         import mcap.writer
     except ImportError:
-        raise RecordingError(f"{what} needs the Python package mcap, which is not installed. Type: pip install 'cramhy[record]'") from None
+        raise RecordingError(f"{what} needs the Python package mcap, which is not installed. Type: {install_command('record')}") from None
     return mcap
 
 

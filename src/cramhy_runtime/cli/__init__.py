@@ -1,4 +1,4 @@
-"""The command line: ``cramhy repl | run | eval | test | turtlesim | teleop | view | replay | ros-shims`` and ``roslisp_repl``.
+"""The command line: ``cramhy repl | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros`` and ``roslisp_repl``.
 
 `options` says which words there are, `openings` what a session opens to the outside, `apart` has the commands that are no session of
 Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out. Each command
@@ -65,10 +65,14 @@ def _main(arguments):
     from cramhy_runtime.kernel.errors import Abandoned, Terminated
 
     try:
-        if arguments[:1] == ["ros"] and len(arguments) > 1:  # the words belong to the tool, whatever they look like
+        if arguments and arguments[0].startswith(("ros", "catkin")):
             from . import shims
 
-            return shims.tool(arguments[1], arguments[2:])
+            if arguments[0] == "ros" and len(arguments) > 1 and not arguments[1].startswith("-"):
+                return shims.tool(arguments[1], arguments[2:])  # the words belong to the tool, whatever they look like
+            if complaint := shims.meant(arguments):
+                sys.stderr.write(complaint)
+                return 2
         from .options import parser
 
         options = parser().parse_args(arguments)
@@ -214,4 +218,4 @@ def _replay(options):
 def _ros_shims(options):
     from . import shims
 
-    return shims.run(options.install)
+    return shims.run(options.install, options.shell)

@@ -7,10 +7,11 @@ ends the program, and when it is stopped and goes on, the terminal is left as it
 from __future__ import annotations
 
 import os
-import select
 import signal
 import sys
 from contextlib import contextmanager
+
+from cramhy_runtime.lisp.streams.console_ready import readable
 
 PACE = 0.1  # s between two looks whether the session is still there
 
@@ -34,7 +35,7 @@ def teleop(words=()):
         print(BANNER, end="", flush=True)
         with keys_one_by_one():
             while True:
-                ready, _, _ = select.select([0], [], [], PACE)
+                ready = readable(0, PACE) in (True, None)  # None: the system cannot tell, and reading waits
                 typed = os.read(0, 1024) if ready else b""
                 if ready and not typed:
                     return 0
@@ -67,11 +68,15 @@ class Stopped(Exception):
 
 @contextmanager
 def keys_one_by_one():
-    """Within it the terminal hands over each key at once, and shows none; where standard input is no terminal, nothing changes."""
-    if not os.isatty(0):
+    """Within it the terminal hands over each key at once, and shows none; where standard input is no terminal, or the system has
+    no ``termios``, nothing changes."""
+    try:
+        import termios
+    except ImportError:  # not on this system, whose terminal hands over whole lines
+        termios = None
+    if termios is None or not os.isatty(0):
         yield
         return
-    import termios
 
     before = termios.tcgetattr(0)
 
@@ -83,7 +88,8 @@ def keys_one_by_one():
     def end(*_):
         raise Stopped
 
-    handlers = {signal.SIGTERM: end, signal.SIGHUP: end, signal.SIGCONT: begin}
+    handlers = {getattr(signal, name): handler for name, handler in (("SIGTERM", end), ("SIGHUP", end), ("SIGCONT", begin))
+                if hasattr(signal, name)}
     saved = {number: signal.signal(number, handler) for number, handler in handlers.items()}
     begin()
     try:

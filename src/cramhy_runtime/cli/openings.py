@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from cramhy_runtime import chronicle, rosbridge, storage, view
+from cramhy_runtime.extras import install_command
 
 from . import robot_address
 
@@ -38,7 +39,7 @@ def require(what, asked):
     if missing:
         verb = "is" if len(missing) == 1 else "are"
         raise NotPossible(f"{asked} needs {', '.join(modules)}, and {', '.join(missing)} {verb} not installed. Type: "
-                          f"pip install 'cramhy[{extra}]'")
+                          f"{install_command(extra)}")
 
 
 def check(options):

@@ -1,12 +1,15 @@
 """The ROS commands of the slides, for machines without ROS.
 
-``cramhy ros-shims`` prints shell functions (``eval "$(cramhy ros-shims)"``), ``cramhy ros-shims --install FOLDER`` writes them as
-programs; both call ``cramhy ros TOOL ...``, which is carried out here. A real ROS on the PATH is left alone.
+``cramhy ros-shims`` prints shell functions: ``eval "$(.venv/bin/cramhy ros-shims)"`` in bash, zsh, dash and other shells that read POSIX's
+language, ``.venv/bin/cramhy ros-shims --shell fish | source`` in fish. ``cramhy ros-shims --install FOLDER`` writes them as programs. All
+of them call ``cramhy ros TOOL ...``, which is carried out here, by the absolute path of this Python, so that they work where nothing of
+cramhy's is on the PATH. A real ROS on the PATH is left alone.
 """
 
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -20,47 +23,110 @@ _HOMES = {
     "roslaunch": "launch",
 }
 TOOLS = (*(name for name in _HOMES if name != "roscd"), *running.TOOLS)
+_OF_A_REAL_SHELL = ("roscd", "rosls")
+"""What a real ROS defines as functions of the shell, which no other process sees; where it has ``rospack``, it has these."""
 _MARK = "made by cramhy ros-shims"
+_OURS = (_MARK, "cramhy_runtime")  # in the first lines of a program: a shim, or a script that pip has made
 
 
-def run(folder=None):
-    """Print the shell functions, or install programs in ``folder``."""
+def run(folder=None, shell="sh"):
+    """Print the functions for a shell ("sh", "fish"), or install programs in ``folder``; the exit status."""
     import shutil
 
-    real = [tool for tool in TOOLS if (found := shutil.which(tool)) and not _is_ours(found)]
-    tools = [tool for tool in TOOLS if tool not in real]
+    names = ["roslisp_repl", *TOOLS, "roscd"]
+    real = [name for name in names if (found := shutil.which(name)) and not _is_ours(found)]
+    if "rospack" in real:
+        real += [name for name in _OF_A_REAL_SHELL if name not in real]
     if real:
-        print(f"cramhy: a ROS is installed here, so {', '.join(real)} stay as they are.", file=sys.stderr)
+        verb = "stay as they are" if len(real) > 1 else "stays as it is"
+        print(f"cramhy: a ROS is installed here, so {', '.join(real)} {verb}. "
+              f"Those of cramhy are called like this: cramhy ros {real[-1]}", file=sys.stderr)
+    names = ["cramhy", *(name for name in names if name not in real)]
     if folder is None:
-        for tool in tools:
-            print(f'{tool}() {{ cramhy ros {tool} "$@"; }}')
-        print('roslisp_repl() { command roslisp_repl --serve "$@"; }')
-        if shutil.which("roscd") is None:
-            print('roscd() { local to; to="$(cramhy ros roscd "$@")" && cd "$to"; }')
+        print("".join(_FUNCTIONS[shell](name) for name in names), end="")
         return 0
-    target = Path(folder)
-    others = [tool for tool in tools if os.path.lexists(target / tool) and not _is_ours(target / tool)]
-    tools = [tool for tool in tools if tool not in others]
-    if others:
-        print(f"cramhy: {', '.join(others)} in {target} were not made by cramhy, so they stay as they are.", file=sys.stderr)
+    return _install(Path(folder), [name for name in names if name != "roscd"])
+
+
+def words_of(name):
+    """The words of the program that the command ``name`` stands for: this Python by its absolute path, and what it shall run.
+
+    ``-P`` keeps the current folder out of the search for modules, as in the script that pip makes.
+    """
+    words = [os.path.abspath(sys.executable), "-P", "-m", "cramhy_runtime.cli"]
+    return words + {"cramhy": [], "roslisp_repl": ["repl", "--serve"]}.get(name, ["ros", name])
+
+
+def _posix(name):
+    program = shlex.join(words_of(name))
+    if name == "roscd":
+        return f'roscd() {{ local to; to="$({program} "$@")" && cd "$to"; }}\n'
+    return f'{name}() {{ {program} "$@"; }}\n'
+
+
+def _fish(name):
+    program = " ".join("'" + word.replace("\\", "\\\\").replace("'", "\\'") + "'" for word in words_of(name))
+    if name == "roscd":
+        return f"function roscd; set -l to ({program} $argv); and cd $to; end\n"
+    return f"function {name}; {program} $argv; end\n"
+
+
+_FUNCTIONS = {"sh": _posix, "fish": _fish}
+
+
+def _install(target, names):
+    """Write the commands ``names`` as programs into the folder ``target``; the exit status. What others have put there stays."""
+    strange = [name for name in names if os.path.lexists(target / name) and not _is_ours(target / name)]
+    if strange:
+        print(f"cramhy: {', '.join(str(target / name) for name in strange)} {'is' if len(strange) == 1 else 'are'} there already, and not "
+              "from cramhy. Nothing was written. Choose another folder.", file=sys.stderr)
+        return 1
+    # pip's scripts do the same, and stay
+    names = [name for name in names if not os.path.lexists(target / name) or _MARK in _beginning(target / name)]
     try:
         with storage.Tree() as made:
             made.folder(target)
-            for tool in tools:
-                made.write(target / tool, f'#!/bin/sh\n# {_MARK}\nexec "{sys.executable}" -m cramhy_runtime.cli ros {tool} "$@"\n', 0o777)
+            for name in names:
+                made.write(target / name, f'#!/bin/sh\n# {_MARK}\nexec {shlex.join(words_of(name))} "$@"\n', 0o777)
     except OSError as problem:
         print(f"cramhy: the programs cannot be written into {target}: {problem.filename}: {storage.why(problem)}", file=sys.stderr)
         return 1
-    print(f"Wrote {', '.join(tools)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
-          'eval "$(cramhy ros-shims)"')
+    print(f"Wrote {', '.join(names)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
+          f'eval "$({shlex.join(words_of("cramhy"))} ros-shims)"')
     return 0
 
 
 def _is_ours(path):
+    return any(mark in _beginning(path) for mark in _OURS)
+
+
+def _beginning(path):
     try:
-        return _MARK in Path(path).read_text(errors="ignore")[:200]
+        with open(path, errors="ignore") as file:
+            return file.read(2000)
     except OSError:
-        return False
+        return ""
+
+
+def meant(words):
+    """What to say of a command line that begins with a ROS command instead of ``ros``, or ``None``. words: those after ``cramhy``."""
+    if not words or words[0] not in (*TOOLS, "roscd", "roslisp_repl"):
+        return None
+    mine = own_name()
+    meant = ["repl", *words[1:]] if words[0] == "roslisp_repl" else ["ros", *words]
+    return (f"cramhy: {words[0]} is a command of ROS. Type: {mine} {shlex.join(meant)}\n"
+            f'Or make it a command of this shell first: eval "$({mine} ros-shims)"\n')
+
+
+def own_name():
+    """How the user called cramhy, for a command to type: by its bare name where that finds it."""
+    import shutil
+
+    called = sys.argv[0]
+    if os.path.basename(called) != "cramhy":  # a shell function, python -m
+        return "cramhy"
+    found = shutil.which("cramhy")
+    return "cramhy" if found and os.path.realpath(found) == os.path.realpath(called) else shlex.quote(called)
 
 
 def tool(name, arguments):

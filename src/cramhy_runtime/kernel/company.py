@@ -15,6 +15,8 @@ import threading
 import time
 from collections import deque
 
+thread_time = getattr(time, "thread_time", time.process_time)  # a system without it has one thread
+
 SHARE = 0.03  # of the processor, while the kernel computes
 IDLE = 0.4  # of the wall: a kernel that waits less than that computes
 SAVINGS = 0.01  # s of the processor that may be spent at once
@@ -30,7 +32,7 @@ class Share:
     comes out the same on a machine that has other things to do.
     """
 
-    def __init__(self, idle, share=SHARE, wall=time.monotonic, own=time.thread_time, everybody=time.process_time):
+    def __init__(self, idle, share=SHARE, wall=time.monotonic, own=thread_time, everybody=time.process_time):
         self.share = share
         self._clocks = wall, own, everybody, idle
         self._charged = deque()

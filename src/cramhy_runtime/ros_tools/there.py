@@ -14,6 +14,7 @@ from collections import deque
 from contextlib import contextmanager
 from urllib.parse import urlencode
 
+from ..extras import install_command
 from ..rosbridge.no_answers import SESSION_ENDS, taken_apart
 from .reach import Graph, Listener, NodeFacts, NoSession, Refused, SessionEnded, reached
 
@@ -48,7 +49,7 @@ class ThereGraph(Graph):
             from websockets.sync.client import connect
         except ImportError:
             raise NoSession("A session serves here, but reaching it takes the Python package websockets. Type: "
-                            "pip install 'cramhy[web]'") from None
+                            + install_command("web")) from None
         self.closed_by_other = ConnectionClosed
         self.address, self.pid = f"{host}:{port}", pid
         try:

@@ -20,6 +20,7 @@ from datetime import datetime
 from importlib.util import find_spec
 
 from .. import kernel
+from ..extras import install_command
 from ..lisp import conditions
 from ..lisp.condition_types import Condition, SimpleError
 from ..ros import graph
@@ -435,7 +436,7 @@ def join(url, patience=PATIENCE):
     patience: seconds until the server must have answered. Raises `ServerError`. To be called by a task that may wait.
     """
     if find_spec("roslibpy") is None:
-        raise ServerError("To join a real ROS needs roslibpy, which is not installed: pip install 'cramhy[ros]'")
+        raise ServerError(f"To join a real ROS needs roslibpy, which is not installed. Type: {install_command('ros')}")
     here, shown = graph.active(), addresses.shown(url)
     if here.kernel.clock.virtual:
         raise ServerError(f"A session in virtual time cannot join {shown}: the robot there lives in wall time. Start it with --time wall.")

@@ -17,6 +17,7 @@ since nobody can say how much plan time that takes. Source: the rosbridge protoc
 from __future__ import annotations
 
 from .. import kernel
+from ..extras import install_command
 from ..ros import services
 from ..ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json
 from .encoding import COMPRESSIONS, text_of, weight
@@ -483,4 +484,5 @@ def need_cbor():
     from importlib.util import find_spec
 
     if find_spec("cbor2") is None:
-        raise Refused("The server cannot write CBOR, because the Python package cbor2 is not installed there: pip install 'cramhy[web]'.")
+        raise Refused("The server cannot write CBOR, because the Python package cbor2 is not installed there. Type there: "
+                      + install_command("web"))

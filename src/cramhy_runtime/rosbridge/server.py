@@ -20,13 +20,13 @@ import asyncio
 import os
 import socket
 import sys
-import time
 from collections import deque
 from http import HTTPStatus
 from importlib import metadata
 
 from .. import kernel
-from ..kernel.company import Company
+from ..extras import install_command
+from ..kernel.company import Company, thread_time
 from ..ros import graph
 from . import sessions
 from .connection import ENDED, Connection
@@ -127,11 +127,11 @@ class Server:
         def run():
             if self.closed:
                 return
-            began = time.thread_time()
+            began = thread_time()
             try:
                 function()
             finally:
-                self.company.share.charge(time.thread_time() - began)
+                self.company.share.charge(thread_time() - began)
 
         self.kernel.post(run)
 
@@ -256,8 +256,8 @@ def need_extra():
         except metadata.PackageNotFoundError:
             missing.append(name)
     if missing:
-        raise ServerError(f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed: "
-                          "pip install 'cramhy[web]'")
+        raise ServerError(f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed. "
+                          f"Type: {install_command('web')}")
     # Here and not in the server's thread, which would have to save up for them while a plan computes.
     import uvicorn.lifespan.off  # noqa: F401
     import uvicorn.protocols.http.h11_impl  # noqa: F401

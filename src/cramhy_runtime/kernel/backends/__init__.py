@@ -29,9 +29,11 @@ def make_backend(backend):
         try:
             from .greenlet import GreenletBackend
         except ImportError as missing:
+            from ...extras import install_command
+
             raise ImportError(
                 'The back end "greenlet" needs the package greenlet, which is not installed. '
-                'Install it (pip install "cramhy[fast]") or use the back end "threads".'
+                f'Use the back end "threads", or type: {install_command("fast")}'
             ) from missing
         return GreenletBackend()
     if isinstance(backend, str):

@@ -22,6 +22,7 @@ from .nearness import nearness
 
 KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
 
+_native_id = getattr(_thread, "get_native_id", _thread.get_ident)  # only `nearness` asks, where there is such a thing
 _idle = deque()
 _near = None  # see `nearness`; asked for when the first kernel starts
 if hasattr(os, "register_at_fork"):
@@ -73,7 +74,7 @@ def _carry_on(carrier):
     trace = threading.gettrace()
     if trace is not None:
         sys.settrace(trace)  # debuggers and coverage ask `threading` for this; we don't come by there
-    carrier.tid = _thread.get_native_id()
+    carrier.tid = _native_id()
     lock = carrier.lock
     lock.acquire()
     while True:
@@ -116,7 +117,7 @@ class ThreadBackend:
             _near = nearness()
         self._root = carrier = ThreadCarrier()
         carrier.ident = _thread.get_ident()
-        carrier.tid = _thread.get_native_id()
+        carrier.tid = _native_id()
         return carrier
 
     def carrier(self, job):

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import gc
 import os
-import resource
 import sys
 
 from ..conditions import error, type_error
@@ -15,6 +14,7 @@ from ..data import NO_VALUES, Character, LispString, list_from
 from ..packages import is_symbol, string_designator, sym
 from ..streams.file_streams import open_
 from ..streams.streams import CONSOLE_OUTPUT, STANDARD_INPUT, STANDARD_OUTPUT, BroadcastStream, EchoStream, standard_output
+from .process_usage import peak_memory
 
 LISP_NAMES = """lisp-implementation-type lisp-implementation-version machine-type machine-instance machine-version software-type
 software-version short-site-name long-site-name room ed dribble provide"""
@@ -43,26 +43,35 @@ def lisp_implementation_version():
     return cramhy_runtime.__version__
 
 
+def _system(field):
+    """What the system says of itself: a field of ``os.uname``; where that is missing, what `platform` finds out instead."""
+    if hasattr(os, "uname"):
+        return getattr(os.uname(), field)
+    import platform  # only here: it takes a hundredth of the time that a session takes to start
+
+    return getattr(platform.uname(), {"sysname": "system", "nodename": "node"}.get(field, field))
+
+
 def machine_type():
-    return os.uname().machine.upper().replace("_", "-") or None
+    return _system("machine").upper().replace("_", "-") or None
 
 
 def machine_instance():
-    return os.uname().nodename or None
+    return _system("nodename") or None
 
 
 def machine_version():
-    import platform  # only here: it takes a hundredth of the time that a session takes to start
+    import platform
 
     return platform.processor() or None
 
 
 def software_type():
-    return os.uname().sysname or None
+    return _system("sysname") or None
 
 
 def software_version():
-    return os.uname().release or None
+    return _system("release") or None
 
 
 def short_site_name():
@@ -75,10 +84,10 @@ long_site_name = short_site_name
 
 def room(detail=sym(":DEFAULT")):
     """``room``: print how much memory the process uses, and with t how many objects Python's collector knows; no values."""
-    used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    used = peak_memory()
     output = standard_output()
     output.fresh_line()
-    output.write(f"Dynamic space usage is:   {used:,} bytes at most so far.\n")
+    output.write("Dynamic space usage is:   " + ("not told by this system.\n" if used is None else f"{used:,} bytes at most so far.\n"))
     if detail is not None:
         output.write(f"Garbage collection is currently {'enabled' if gc.isenabled() else 'disabled'}.\n")
     if detail is True:

@@ -7,7 +7,6 @@ that of the machine in wall time and UTC in virtual time. A time zone of Lisp co
 from __future__ import annotations
 
 import datetime
-import resource
 import time
 from fractions import Fraction
 
@@ -16,6 +15,7 @@ from cramhy_runtime import kernel
 from ..conditions import type_error
 from ..data import MultipleValues
 from ..files.files import UNIVERSAL_EPOCH
+from .process_usage import processor_time
 
 LISP_NAMES = """get-universal-time get-decoded-time decode-universal-time encode-universal-time get-internal-real-time
 get-internal-run-time sleep"""
@@ -37,7 +37,7 @@ def get_internal_real_time():
 
 
 def get_internal_run_time():
-    return int(resource.getrusage(resource.RUSAGE_SELF).ru_utime * CONSTANTS["INTERNAL-TIME-UNITS-PER-SECOND"])
+    return int(processor_time().user * CONSTANTS["INTERNAL-TIME-UNITS-PER-SECOND"])
 
 
 def _zone(zone):

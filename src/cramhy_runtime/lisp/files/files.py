@@ -101,12 +101,12 @@ def truename(designator):
 
 def file_author(designator):
     """``file-author``: the name of the user who owns the file, nil where the system does not know one."""
-    import pwd
-
     _, status = _existing(designator, "AUTHOR")
     try:
+        import pwd
+
         return pwd.getpwuid(status.st_uid).pw_name
-    except KeyError:
+    except (ImportError, KeyError):  # no names of users at all, or none for this number
         return None
 
 

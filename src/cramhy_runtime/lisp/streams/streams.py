@@ -27,6 +27,7 @@ from .basic_streams import (
     complain_closed,
     misused,
 )
+from .console_ready import readable
 
 __all__ = ["FileOutput", "InputStream", "OutputStream", "Stream", "StringInputStream", "StringOutputStream", "StringStream"]
 
@@ -125,7 +126,9 @@ class ConsoleInput(InputStream):
     def listen(self):
         if super().listen():
             return True
-        return self.is_interactive and isinstance(sys.stdin, standard_input.StandardInput) and sys.stdin.ready()
+        if isinstance(sys.stdin, standard_input.StandardInput):
+            return self.is_interactive and sys.stdin.ready()
+        return self.is_interactive and bool(readable(sys.stdin, 0))
 
     def close(self, abort=False):
         """The console stays open: the prompt needs it."""

@@ -120,7 +120,7 @@ def within_limit(thunk):
 @contextmanager
 def _alarm(fired):
     """Interrupt the main task after `limit` seconds; ``fired`` is then no longer empty."""
-    if limit is None or not hasattr(signal, "setitimer"):
+    if limit is None or not (hasattr(signal, "setitimer") and hasattr(signal, "SIGALRM")):
         yield
         return
     try:

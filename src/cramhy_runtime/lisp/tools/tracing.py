@@ -9,7 +9,6 @@ code calls the functions of Common Lisp directly, so of these only calls by ``fu
 from __future__ import annotations
 
 import functools
-import resource
 import time as python_time
 
 from cramhy_runtime import kernel
@@ -18,6 +17,7 @@ from ..conditions import CompileError, break_, error, warn
 from ..data import Cons, Keyword, Symbol, UndefinedFunction, all_values, list_from, one, truth
 from ..dynamic import binding
 from ..evaluation.evaluator import evaluate
+from ..evaluation.process_usage import processor_time
 from ..objects.generic import GenericFunction
 from ..packages import find_package_or_error, sym
 from ..printer.print_names import symbol_with_prefix
@@ -184,12 +184,12 @@ def time(thunk):
 
     Real time is the wall's and run time the processor's. In virtual time a line more says how long the plan took.
     """
-    began, used, planned = python_time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF), kernel.now()
+    began, used, planned = python_time.perf_counter(), processor_time(), kernel.now()
     try:
         return thunk()
     finally:
-        real, now = python_time.perf_counter() - began, resource.getrusage(resource.RUSAGE_SELF)
-        user, system = now.ru_utime - used.ru_utime, now.ru_stime - used.ru_stime
+        real, now = python_time.perf_counter() - began, processor_time()
+        user, system = now.user - used.user, now.system - used.system
         share = min(100.0, 100 * (user + system) / real) if real else 100.0
         lines = ["Evaluation took:", f"  {real:.3f} seconds of real time",
                  f"  {user + system:.6f} seconds of total run time ({user:.6f} user, {system:.6f} system)", f"  {share:.2f}% CPU"]

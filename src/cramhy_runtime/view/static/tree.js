@@ -46,7 +46,7 @@ export class TreeView {
     for (const key of this.rows.keys()) if (!keys.has(key)) this.rows.delete(key);
     if (!keys.has(this.current)) this.current = rows[0]?.key ?? null;
     arrange(this.tree, rows.length ? rows.map((row) => this.#row(row).node) : [this.empty]);
-    if (focused && !this.tree.contains(document.activeElement)) this.rows.get(this.current)?.node.focus();
+    if (focused && !this.tree.contains(document.activeElement)) this.rows.get(this.current)?.node.focus({ preventScroll: true });
     let running = 0;
     for (const task of state.tasks.values()) running += alive(task);
     setText(this.count, state.tasks.size ? `${running} alive, ${state.tasks.size - running} ended` : "");

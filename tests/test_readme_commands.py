@@ -1,0 +1,185 @@
+"""The commands of README and of the pages beside it are commands that there are: programs, targets of make, and options that are known.
+
+They are not all carried out here. What stands in a block of the shell, in a table or between backquotes is taken apart as a shell does it,
+and given to the parser that would read it.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from cramhy_runtime.cli import options, shims
+from cramhy_runtime.ros_tools import hosting
+from cramhy_runtime.ros_tools.words import CommandError
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "tutorials").glob("*.md"))]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+EXTRAS = set(PROJECT["optional-dependencies"])
+PROGRAMS = {*PROJECT["scripts"], "hy", "python", "pip"}
+"""What stands in ``.venv/bin`` after ``make tutorial``."""
+FUNCTIONS = {"cramhy", "roslisp_repl", "roscd", *shims.TOOLS}
+"""What ``eval "$(.venv/bin/cramhy ros-shims)"`` defines."""
+PROGRAMS_OF_TURTLESIM = {*hosting.PROGRAMS, "turtle_teleop_key"}
+STARTS = ("make", "cramhy", "roslisp_repl", "eval", "pip", "python3", "hy", "python", ".venv/bin/", "mine/bin/", *sorted(FUNCTIONS))
+
+
+def commands_of(page):
+    """The commands of a page, each as (number of its line, text)."""
+    language = None
+    for number, line in enumerate(page.read_text().splitlines(), 1):
+        if line.startswith("```"):
+            language = line[3:].strip() if language is None else None
+        elif language in ("", "sh", "console"):
+            text = line.removeprefix("$ ")
+            if is_command(text):
+                yield number, text
+        elif language is None:
+            for text in re.findall(r"(?<!`)`([^`]+)`(?!`)", line):
+                if is_command(text) and " " in text:
+                    yield number, text
+
+
+def is_command(text):
+    first = re.split(r"[\s(]", text, maxsplit=1)[0]
+    return first in STARTS or first.startswith((".venv/bin/", "mine/bin/"))
+
+
+COMMANDS = [pytest.param(text, id=f"{page.name}:{number}") for page in PAGES for number, text in commands_of(page)]
+
+
+def words_of(text):
+    """The words of a command line, without its comment; lines that a page breaks off with … are what comes before it."""
+    return shlex.split(text.replace("…", "").replace(r"\|", "|"), comments=True)
+
+
+@pytest.mark.parametrize("text", COMMANDS)
+def test_a_command_is_one_that_there_is(text):
+    nested = re.fullmatch(r'eval "\$\((.*)\)"', text.strip())
+    if nested:
+        text = nested.group(1)
+        assert text.startswith(".venv/bin/"), "nothing of cramhy's is on the PATH before this"
+    for part in re.split(r" \| (?=source$|\w+$)", text):
+        if part != "source":
+            check(words_of(part))
+
+
+def check(words):
+    """Fail unless a shell in the clone's folder, with the functions, can run these words."""
+    program, *rest = words
+    folder, _, name = program.rpartition("/")
+    assert folder in ("", ".venv/bin", "mine/bin")
+    if folder:
+        assert name in PROGRAMS
+    else:
+        assert name in {"make", "python3", *FUNCTIONS}, f"{name} is not on the PATH: it is .venv/bin/{name}"
+    if name == "make":
+        check_make(rest)
+    elif name == "cramhy":
+        check_cramhy(rest)
+    elif name == "roslisp_repl":
+        check_cramhy(["repl", *rest])
+    elif name == "pip":
+        check_pip(rest)
+    elif name in ("python", "hy") and rest and not rest[0].startswith("-") and rest[0] != "FILE.hy":
+        assert (ROOT / rest[0]).is_file()
+    elif name in FUNCTIONS:
+        check_ros(name, rest)
+
+
+def check_make(targets):
+    known = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.M)
+    assert targets and set(targets) <= set(known)
+
+
+def check_cramhy(words):
+    if words[:1] == ["ros"]:
+        return check_ros(words[1], words[2:])
+    if not words or words == ["COMMAND"]:
+        return None
+    known = next(action.choices for action in options.parser()._actions if action.dest == "command")
+    assert words[0] in known
+    if not set(words) & {"[...]", "..."}:
+        placed = [word.replace("HOST", "robot").replace("PORT", "9090").replace("SECONDS", "5") for word in words]
+        placed = [("5" if word == "N" else word.split("|")[0]) for word in placed]
+        if words in (["run"], ["test"], ["replay"], ["repl", "--ros"]):  # only named
+            return None
+        options.parser().parse_args(placed)
+    return None
+
+
+def check_pip(words):
+    """An extra is installed from the clone: ``-e '.[web]'``."""
+    assert words[0] == "install" and words[1] == "-e"
+    (wanted,) = re.fullmatch(r"\.\[([\w,]+)\]", words[2]).groups()
+    assert set(wanted.split(",")) <= EXTRAS
+
+
+def check_ros(name, words):
+    from cramhy_runtime.ros_tools import running
+    from cramhy_runtime.ros_tools.words import found
+
+    if name == "COMMAND":
+        return
+    assert name in {*shims.TOOLS, "roscd"}
+    if name in running.TOOLS and words:
+        for home in running._HOMES[name]:
+            __import__(f"cramhy_runtime.ros_tools.{home}")
+        found([name, *words])
+    if name == "rosrun":
+        assert words[0] == "turtlesim" and words[1] in PROGRAMS_OF_TURTLESIM
+
+
+def test_readme_has_commands_of_every_kind():
+    kinds = {words_of(param.values[0])[0] for param in COMMANDS if param.id.startswith("README") and not param.values[0].startswith("eval")}
+    assert {"make", "cramhy", "roslisp_repl", "rosrun", "rostopic", "rosservice", "roslaunch", "mine/bin/pip", ".venv/bin/hy"} <= kinds
+
+
+@pytest.mark.parametrize("text", [
+    "cramhy run --nothing FILE", "cramhy nothing", "cramhy repl --nothing", "make nothing", "pip install 'cramhy[web]'", "hy x.hy",
+    ".venv/bin/pip install -e '.[nothing]'", "rosrun turtlesim nothing", "rostopic nothing", ".venv/bin/nothing",
+    'eval "$(cramhy ros-shims)"'])
+def test_what_is_wrong_is_found(text):
+    with pytest.raises((AssertionError, SystemExit, CommandError)):
+        test_a_command_is_one_that_there_is(text)
+
+
+def test_options_that_are_named_are_known():
+    """``--word`` between backquotes, without a command before it: of cramhy, or of its pytest plugin."""
+    parser = options.parser()
+    commands = next(action.choices for action in parser._actions if action.dest == "command")
+    known = {string for command in commands.values() for action in command._actions for string in action.option_strings}
+    quoted = re.findall(r"`(--[^`]+)`", (ROOT / "README.md").read_text())
+    named = {option for text in quoted for option in re.findall(r"--[a-z-]+", text)}
+    assert {"--time", "--serve", "--ros"} <= named
+    assert named - known == {"--lisp-limit"}
+
+
+def test_the_table_of_commands_is_complete():
+    """README names every command that ``cramhy --help`` names."""
+    named = next(action.choices for action in options.parser()._actions if action.dest == "command")
+    text = (ROOT / "README.md").read_text()
+    table = text[text.index("| command | does |"):text.index("## A second terminal")]
+    assert len(named) == 10
+    assert [name for name in named if not re.search(rf"[`\s]{name}\b", table)] == []
+
+
+@pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
+@pytest.mark.parametrize(("first", "command", "printed"), [
+    ("(in-package :cram-user)", ["hy"], "\nNIL "),
+    ("(import cramhy_runtime.cpl *)", ["cramhy_runtime.cli", "run"], "both\n"),
+])
+def test_the_hy_files_of_readme_run(tmp_path, first, command, printed):
+    """The blocks that begin with ``(require cramhy *)``, each given to the command that README names."""
+    blocks = re.findall(r"```\n(\(require cramhy \*\)\n.*?)```", (ROOT / "README.md").read_text(), re.S)
+    (block,) = [block for block in blocks if first in block]
+    (tmp_path / "file.hy").write_text(block)
+    done = subprocess.run([sys.executable, "-m", *command, "file.hy"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, printed, "")
