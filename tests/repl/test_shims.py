@@ -210,9 +210,9 @@ def test_a_folder_that_cannot_be_had_is_named(cramhy, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     done = cramhy("ros-shims", "--install", "file")
     assert (done.returncode, done.stderr) == (
-        1, "cramhy: the programs cannot be written into file: file: File exists. Choose another folder.\n")
+        1, "cramhy: the programs cannot be written into file: file: File exists. Choose another name.\n")
     done = cramhy("ros", "catkin_create_pkg", "file")
-    assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists\n")
+    assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists. Choose another name.\n")
 
 
 # -------------------------------------------------------------------------------------------------- beside a real ROS

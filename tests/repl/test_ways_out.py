@@ -67,7 +67,8 @@ class Process:
         self.log = folder / "log"
         self.process = subprocess.Popen(
             [sys.executable, "-m", "cramhy_runtime.cli", *arguments, "--package", "cram-user"], cwd=folder,
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]}, **options)
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]}, **options)
 
     def __enter__(self):
         return self

@@ -178,7 +178,7 @@ for path in sys.argv[1:]:
 
 @root
 def test_what_may_not_be_written_stays_as_it_is(tmp_path):
-    for folder in (tmp_path, *list(tmp_path.parents)[:2]):
+    for folder in (tmp_path, *list(tmp_path.parents)[:3]):
         folder.chmod(0o755)
     mine = tmp_path / "nobodys"
     mine.mkdir()

@@ -7,7 +7,7 @@ looks. It takes the place of `sys.stdin` (`install`), so that the prompt, READ-L
 On a terminal it can keep Ctrl-C in its place among the typed lines (`at_prompt`). Otherwise the terminal makes a signal of the key, which
 overtakes what was typed before, and throws that away. So at the prompt the key ends a line, as Enter does, and the line says so.
 
-It needs `select` on standard input, so on Windows Python's own stays.
+It needs `select` on files, so where there are only sockets to select from, as on Windows, Python's own stays.
 """
 
 import codecs
@@ -45,6 +45,7 @@ class StandardInput(io.TextIOBase):
         self._bell, self._ring = os.pipe()
         for end in (self._bell, self._ring):
             os.set_blocking(end, False)
+        select.select([self._fd, self._bell], [], [], 0)  # an error where only sockets can be waited for
         self._keys = False  # whether Ctrl-C comes as a character
 
     def reconfigure(self, encoding="utf-8", errors="replace"):
@@ -240,12 +241,11 @@ def _is_terminal(fd):
 
 def install():
     """Let `sys.stdin` be a `StandardInput`, where that is possible; returns it, or what stays there."""
-    if isinstance(sys.stdin, StandardInput) or os.name != "posix":
-        return sys.stdin
-    try:
-        sys.stdin = StandardInput(sys.stdin)
-    except (AttributeError, OSError, ValueError):  # there is none, or none of the system's
-        pass
+    if not isinstance(sys.stdin, StandardInput):
+        try:
+            sys.stdin = StandardInput(sys.stdin)
+        except (AttributeError, OSError, ValueError):  # there is none, or none of the system's
+            pass
     return sys.stdin
 
 
