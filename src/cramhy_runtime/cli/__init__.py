@@ -11,6 +11,8 @@ import gc
 import sys
 from contextlib import ExitStack
 
+from .surroundings import in_any_surroundings, working_folder
+
 
 def session(options, default_time="wall", closings=None):
     """The `Session` that the options describe, opened to the outside as they say, with systems loaded and the package set.
@@ -22,6 +24,9 @@ def session(options, default_time="wall", closings=None):
     from cramhy_runtime.repl.session import Session
 
     backtrace.show(options.backtrace)
+    if (problem := working_folder()) is not None:
+        print(f"cramhy: {problem}", file=sys.stderr)
+        sys.exit(2)
     made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
                    turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)))
     gc.enable()
@@ -47,6 +52,7 @@ def evaluate_forms(made, forms):
         made.evaluate_text(form, "<--eval>")
 
 
+@in_any_surroundings
 def main(arguments=None):
     """Run the command; the exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
@@ -61,9 +67,6 @@ def main(arguments=None):
         if options.command in ("repl", "eval", "run", "test"):
             gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
-    except BrokenPipeError:
-        sys.stderr.close()
-        return 1
     except KeyboardInterrupt:
         return 130
     finally:
