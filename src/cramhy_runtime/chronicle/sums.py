@@ -13,10 +13,13 @@ from ..turtlesim.measures import EXTENT
 
 
 class Things:
-    """The sum of messages that hold things with an ``id``, and the ids of those that are ``removed``."""
+    """The sum of messages that hold things with an ``id``, and the ids of those that are ``removed``.
 
-    def __init__(self, ros_type, field):
-        self.type, self.field = message_class_exact(ros_type), field
+    whole: it is a `State`'s, which is only ever asked for everything. Then no ids are kept of what is gone: in hours they are many.
+    """
+
+    def __init__(self, ros_type, field, whole=False):
+        self.type, self.field, self.whole = message_class_exact(ros_type), field, whole
         self.clear()
 
     def clear(self):
@@ -37,18 +40,18 @@ class Things:
         for gone in message.removed:
             things.pop(gone, None)
             self.removed.append(gone)
-        if self.complete:
+        if self.complete or self.whole:
             self.removed = []
 
     def message(self, complete=None):
         """The sum as one message; ``complete``: that it is everything there is."""
-        everything = True if self.complete or complete else None
+        everything = True if self.complete or self.whole or complete else None
         removed = [] if everything else list(self.removed)
         return self.type(stamp=self.stamp, complete=everything, removed=removed, **{self.field: list(self.things.values())})
 
     def copy(self):
         """What it is now, for `message` later."""
-        other = type(self)()
+        other = type(self)(whole=self.whole)
         other.stamp, other.complete, other.things, other.removed = self.stamp, self.complete, dict(self.things), []
         return other
 
@@ -57,13 +60,13 @@ class Things:
 
 
 class TaskTrees(Things):
-    def __init__(self):
-        super().__init__("cramhy_msgs/TaskTree", "tasks")
+    def __init__(self, whole=False):
+        super().__init__("cramhy_msgs/TaskTree", "tasks", whole)
 
 
 class FluentLists(Things):
-    def __init__(self):
-        super().__init__("cramhy_msgs/Fluents", "fluents")
+    def __init__(self, whole=False):
+        super().__init__("cramhy_msgs/Fluents", "fluents", whole)
 
 
 class Latest:
@@ -185,7 +188,7 @@ class State:
     """Everything as it is now: the sum of all messages of each kind."""
 
     def __init__(self):
-        self.sums = {"world": WorldState(), "tasks": TaskTrees(), "fluents": FluentLists(), "modules": Latest()}
+        self.sums = {"world": WorldState(), "tasks": TaskTrees(whole=True), "fluents": FluentLists(whole=True), "modules": Latest()}
 
     def add(self, kind, message):
         self.sums[kind].add(message)
