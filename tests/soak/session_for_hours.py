@@ -183,7 +183,7 @@ class Clients(threading.Thread):
     async def _once(self, service, values):
         from websockets.asyncio.client import connect
 
-        async with connect(self.address, max_size=None) as socket:
+        async with connect(self.address, max_size=None, ping_interval=None) as socket:
             await socket.send(json.dumps({"op": "call_service", "service": service, "args": values}))
             await socket.recv()
 
@@ -203,7 +203,7 @@ class Clients(threading.Thread):
     async def _page(self):
         from websockets.asyncio.client import connect
 
-        async with connect(self.address, max_size=None) as socket:
+        async with connect(self.address, max_size=None, ping_interval=None) as socket:
             for topic, kind in PAGE_TOPICS.items():
                 await socket.send(json.dumps({"op": "subscribe", "topic": topic, "type": kind, "queue_length": 0}))
             asked = 0.0
@@ -217,7 +217,7 @@ class Clients(threading.Thread):
     async def _client(self):
         from websockets.asyncio.client import connect
 
-        async with connect(self.address, max_size=None) as socket:
+        async with connect(self.address, max_size=None, ping_interval=None) as socket:
             for topic, kind in (("/turtle1/pose", "turtlesim/Pose"), ("/turtle1/color_sensor", "turtlesim/Color"), ("/rosout", "rosgraph_msgs/Log")):
                 await socket.send(json.dumps({"op": "subscribe", "topic": topic, "type": kind}))
             await socket.send(json.dumps({"op": "advertise", "topic": "/soak/count", "type": "std_msgs/Int32"}))

@@ -8,7 +8,7 @@ chapters of the past get the whole, and a recording that is replayed adds up to 
 from __future__ import annotations
 
 from ..ros.messages import message_class_exact
-from ..turtlesim.ink import Ink
+from ..turtlesim.ink import PIECE, Ink
 from ..turtlesim.measures import EXTENT
 
 
@@ -126,20 +126,19 @@ class WorldChanges:
         return message
 
 
-PIECE = 1000
-"""Strokes that are thinned out together, which takes some milliseconds."""
-
-
 class WorldState:
-    """The world as it is. Its strokes are thinned out piece by piece and kept as ink, 20 bytes each."""
+    """The world as it is. Its strokes are thinned out piece by piece and kept as ink, 20 bytes each.
+
+    Copies share the ink, of which they know how much there was: it only grows, until there is new paper or no more room.
+    """
 
     def __init__(self):
         self.type, self.stroke_type = message_class_exact("cramhy_msgs/World"), message_class_exact("cramhy_msgs/Stroke")
-        self.last, self.ink, self.shared, self.recent = None, Ink(), False, []
+        self.last, self.ink, self.amount, self.borrowed, self.recent = None, Ink(), 0, False, []
 
     def add(self, message):
         if self.last is None or message.complete or message.clears != self.last.clears:
-            self.ink, self.shared, self.recent = Ink(), False, []
+            self.ink, self.amount, self.borrowed, self.recent = Ink(), 0, False, []
         self.recent += [(each.x2, EXTENT - each.y2, each.x1, EXTENT - each.y1, (each.r, each.g, each.b), each.width)
                         for each in message.strokes]
         if len(self.recent) >= PIECE:
@@ -147,19 +146,15 @@ class WorldState:
         self.last = message
 
     def _thin_out(self):
-        if self.shared:  # somebody keeps what it was
-            self.ink, self.shared = self.ink.copy(), False
-        piece, self.recent = self.recent, []
-        for begin in range(0, len(piece), PIECE):
-            thin = Ink()
-            thin.take(piece[begin:begin + PIECE])
-            for colour, width, points in thin.polylines():
-                self.ink.take([(*end, *start, colour, width) for start, end in zip(points, points[1:])])
+        if self.borrowed or not self.ink.room_for(len(self.recent)):  # what others share stays as it is
+            self.ink, self.borrowed = self.ink.first(self.amount), False
+        self.ink.take_thinned(self.recent)
+        self.amount, self.recent = len(self.ink), []
 
     def message(self, complete=None):
         if self.last is None:
             return self.type(complete=True)
-        make, ink = self.stroke_type, self.ink.copy()
+        make, ink = self.stroke_type, self.ink.first(self.amount)
         ink.take(self.recent)
         message = self.last.copy()
         message.complete = True
@@ -167,14 +162,13 @@ class WorldState:
         return message
 
     def copy(self):
-        """What it is now, for `message` later: the ink is copied when more is drawn."""
+        """What it is now, for `message` later."""
         other = type(self)()
-        other.last, other.ink, other.recent = self.last, self.ink, list(self.recent)
-        other.shared = self.shared = True
+        other.last, other.ink, other.amount, other.borrowed, other.recent = self.last, self.ink, self.amount, True, self.recent[:]
         return other
 
     def __len__(self):
-        return 0 if self.last is None else len(self.last.turtles) + len(self.ink) // 10 + len(self.recent) // 3
+        return 0 if self.last is None else len(self.last.turtles) + self.amount // 10 + len(self.recent) // 3
 
 
 KINDS = ("world", "tasks", "fluents", "modules")
