@@ -162,9 +162,11 @@ class WorldState:
         return message
 
     def copy(self):
-        """What it is now, for `message` later."""
+        """What it is now, for `message` later. The recent strokes become ink, since as Python's objects they take ten times as much."""
+        if self.recent:
+            self._thin_out()
         other = type(self)()
-        other.last, other.ink, other.amount, other.borrowed, other.recent = self.last, self.ink, self.amount, True, self.recent[:]
+        other.last, other.ink, other.amount, other.borrowed = self.last, self.ink, self.amount, True
         return other
 
     def __len__(self):

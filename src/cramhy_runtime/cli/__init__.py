@@ -11,9 +11,10 @@ import gc
 import sys
 from contextlib import ExitStack
 
-from .surroundings import in_any_surroundings, working_folder
+from .surroundings import check_for_session, ends_if_missing, in_any_surroundings
 
 
+@ends_if_missing
 def session(options, default_time="wall", closings=None):
     """The `Session` that the options describe, opened to the outside as they say, with systems loaded and the package set.
 
@@ -24,9 +25,7 @@ def session(options, default_time="wall", closings=None):
     from cramhy_runtime.repl.session import Session
 
     backtrace.show(options.backtrace)
-    if (problem := working_folder()) is not None:
-        print(f"cramhy: {problem}", file=sys.stderr)
-        sys.exit(2)
+    check_for_session(options.backend)
     made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
                    turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)))
     gc.enable()

@@ -82,6 +82,40 @@ def in_any_surroundings(command):
     return run
 
 
+def ends_if_missing(start):
+    """Decorate the function ``start``, which begins a session: that the system gives too little for it is told, and ends the program."""
+
+    @functools.wraps(start)
+    def run(*arguments, **options):
+        try:
+            return start(*arguments, **options)
+        except Exception as problem:
+            line = missing(problem)
+            if line is None:
+                raise
+            _end(line, 1)
+
+    return run
+
+
+def check_for_session(backend):
+    """End the program, with a line for the user, when no session can begin here, or none with this back end."""
+    if (problem := working_folder()) is not None:
+        _end(problem, 2)
+    if backend == "greenlet":
+        from . import openings
+
+        try:
+            openings.require("greenlet", "--backend greenlet")
+        except openings.NotPossible as problem:
+            _end(problem, 2)
+
+
+def _end(line, status):
+    print(f"cramhy: {line}", file=sys.stderr)
+    sys.exit(status)
+
+
 def working_folder():
     """Why the working folder cannot be used, as a line for the user; ``None`` when it can."""
     try:
@@ -99,7 +133,8 @@ def missing(problem):
         if isinstance(problem, NoStack) or isinstance(problem, RuntimeError) and "can't start new thread" in str(problem):
             return ("the system gives no more threads, or no memory for their stacks (ulimit -u, ulimit -v). Raise the limit, or end other "
                     "programs.")
-        if isinstance(problem, MemoryError) or _has_number(problem, errno.ENOMEM):
+        if (isinstance(problem, MemoryError) or _has_number(problem, errno.ENOMEM)
+                or isinstance(problem, ImportError) and "failed to map segment" in str(problem)):
             return "the system gives no more memory (ulimit -v). Raise the limit, or end other programs."
         if _has_number(problem, errno.EMFILE, errno.ENFILE):
             return "too many files are open (ulimit -n). Raise the limit, or close other programs."
