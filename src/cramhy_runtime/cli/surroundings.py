@@ -4,10 +4,10 @@ A program may be started without standard streams, with a disk that is full behi
 it prints, in a folder that has been removed, or with limits too small for it. `in_any_surroundings` wraps the command line, so that each of
 these either works or is told in one line, and the plans of the session end through their cleanup.
 
-A stream that is closed at the start becomes ``/dev/null``: input has ended, output is dropped. Its number must not stay free,
-because the next file that is opened would get it, and a recording would receive what a library prints. Output that cannot be written any
-more ends the program as ``(exit :code 1)`` does (`OutputLost`); from then on it is dropped, so that cleanup forms which print still
-run to their end. Signs that the encoding of the output lacks are written as ``\\u2192``, and bytes of file names that are no text as they are.
+A stream that is closed at the start becomes ``/dev/null``: input has ended, output is dropped. Its number must not stay free, because the
+next file that is opened would get it, and a recording would receive what a library prints. Output that cannot be written any more ends
+the program as ``(exit :code 1)`` does (`OutputLost`); from then on it is dropped, so that cleanup forms which print still run to their
+end. Signs that the encoding of the output lacks are written as ``\\u2192``, and bytes of file names that are no text as they are.
 """
 
 from __future__ import annotations
@@ -22,6 +22,10 @@ import sys
 
 SHOWN = "cramhy-shown"
 """Name of the error handler for encodings."""
+NO_MEMORY = "the system gives no more memory (ulimit -v). Raise the limit, or end other programs."
+NO_THREADS = ("the system gives no more threads, or no memory for their stacks (ulimit -u, ulimit -v). Raise the limit, or end other "
+              "programs.")
+NO_FILES = "too many files are open (ulimit -n). Raise the limit, or close other programs."
 _STREAMS = (("stdin", "r"), ("stdout", "w"), ("stderr", "w"))
 
 
@@ -75,7 +79,7 @@ def in_any_surroundings(command):
             line = missing(problem)
             if line is None:
                 raise
-            print(f"cramhy: {line}", file=sys.stderr)
+            _say(line)
             status = 1
         return _finish(status)
 
@@ -112,8 +116,12 @@ def check_for_session(backend):
 
 
 def _end(line, status):
-    print(f"cramhy: {line}", file=sys.stderr)
+    _say(line)
     sys.exit(status)
+
+
+def _say(line):
+    print(f"cramhy: {line}", file=sys.stderr)
 
 
 def working_folder():
@@ -127,17 +135,27 @@ def working_folder():
 
 def missing(problem):
     """One line about an exception that says that the system gives too little; ``None`` for any other."""
+    try:
+        return _missing(problem)
+    except MemoryError:
+        return NO_MEMORY
+
+
+def _missing(problem):
     from cramhy_runtime.kernel.errors import NoStack
 
     while problem is not None:
-        if isinstance(problem, NoStack) or isinstance(problem, RuntimeError) and "can't start new thread" in str(problem):
-            return ("the system gives no more threads, or no memory for their stacks (ulimit -u, ulimit -v). Raise the limit, or end other "
-                    "programs.")
-        if (isinstance(problem, MemoryError) or _has_number(problem, errno.ENOMEM)
-                or isinstance(problem, ImportError) and "failed to map segment" in str(problem)):
-            return "the system gives no more memory (ulimit -v). Raise the limit, or end other programs."
+        text = str(problem)
+        if isinstance(problem, NoStack) or isinstance(problem, RuntimeError) and "can't start new thread" in text:
+            return NO_THREADS
+        if isinstance(problem, MemoryError) or _has_number(problem, errno.ENOMEM):
+            return NO_MEMORY
+        if isinstance(problem, ImportError) and "failed to map segment" in text:
+            return NO_MEMORY
+        if isinstance(problem, SystemError) and "without" in text and "exception" in text:  # Python's import when memory ends within it
+            return NO_MEMORY
         if _has_number(problem, errno.EMFILE, errno.ENFILE):
-            return "too many files are open (ulimit -n). Raise the limit, or close other programs."
+            return NO_FILES
         problem = problem.__cause__ or problem.__context__
     return None
 
@@ -205,6 +223,6 @@ def _finish(status):
     if output.lost is None:
         return status
     if output.lost.errno != errno.EPIPE:  # whoever reads only the beginning wants to hear nothing of that
-        print(f"cramhy: standard output cannot be written: {output.lost.strerror}. What was printed since is lost. Make room there, or "
-              "send the output elsewhere.", file=sys.stderr)
+        _say(f"standard output cannot be written: {output.lost.strerror}. What was printed since is lost. Make room there, or send the "
+             "output elsewhere.")
     return status or 1
