@@ -24,16 +24,23 @@ class Things:
 
     def clear(self):
         """Begin anew, with no change."""
-        self.stamp, self.complete, self.things, self.removed = 0.0, False, {}, []
+        self.stamp, self.complete, self._things, self._copied, self.removed = 0.0, False, {}, (), []
+
+    @property
+    def things(self):
+        """The things by their ids. A copy keeps them in a row until somebody asks: that takes a fifth of the memory, and copies are many."""
+        if self._things is None:
+            self._things, self._copied = {thing.id: thing for thing in self._copied}, ()
+        return self._things
 
     @property
     def changed(self):
-        return bool(self.complete or self.things or self.removed)
+        return bool(self.complete or len(self) or self.removed)
 
     def add(self, message):
         self.stamp = message.stamp
         if message.complete:
-            self.complete, self.things, self.removed = True, {}, []
+            self.complete, self._things, self._copied, self.removed = True, {}, (), []
         things = self.things
         for thing in getattr(message, self.field):
             things[thing.id] = thing
@@ -47,16 +54,19 @@ class Things:
         """The sum as one message; ``complete``: that it is everything there is."""
         everything = True if self.complete or self.whole or complete else None
         removed = [] if everything else list(self.removed)
-        return self.type(stamp=self.stamp, complete=everything, removed=removed, **{self.field: list(self.things.values())})
+        return self.type(stamp=self.stamp, complete=everything, removed=removed, **{self.field: list(self._row())})
+
+    def _row(self):
+        return self._copied if self._things is None else self._things.values()
 
     def copy(self):
         """What it is now, for `message` later."""
         other = type(self)(whole=self.whole)
-        other.stamp, other.complete, other.things, other.removed = self.stamp, self.complete, dict(self.things), []
+        other.stamp, other.complete, other._things, other._copied = self.stamp, self.complete, None, tuple(self._row())
         return other
 
     def __len__(self):
-        return len(self.things)
+        return len(self._row())
 
 
 class TaskTrees(Things):
