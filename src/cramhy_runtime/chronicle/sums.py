@@ -28,7 +28,7 @@ class Things:
 
     @property
     def things(self):
-        """The things by their ids. A copy keeps them in a row until somebody asks: that takes a fifth of the memory, and copies are many."""
+        """The things by their ids. A copy keeps them in a row until somebody asks, which takes a fifth of the memory."""
         if self._things is None:
             self._things, self._copied = {thing.id: thing for thing in self._copied}, ()
         return self._things
