@@ -290,6 +290,27 @@ class TestTerminals:
         assert "Traceback" not in terminal.text
 
 
+class TestHeap:
+    LINE = f"{shlex.quote(sys.executable)} -c 'from cramhy_runtime.cli import heap; print(heap.keep_small())'"
+
+    @linux
+    def test_it_is_set_up_unless_the_user_did(self, shell):
+        libc = os.confstr("CS_GNU_LIBC_VERSION") if "CS_GNU_LIBC_VERSION" in os.confstr_names else None
+        if not libc:
+            pytest.skip("another C library")
+        assert shell(self.LINE).stdout == "True\n"
+        assert shell(self.LINE, MALLOC_ARENA_MAX="4").stdout == "False\n"
+
+    def test_where_it_cannot_be_nothing_happens(self, monkeypatch):
+        from cramhy_runtime.cli import heap
+
+        monkeypatch.setattr(sys, "platform", "win32")
+        assert heap.keep_small() is False
+        monkeypatch.setattr(sys, "platform", "linux")
+        monkeypatch.setitem(sys.modules, "ctypes", None)
+        assert heap.keep_small() is False
+
+
 @linux
 class TestLimits:
     @pytest.mark.parametrize("kilobytes", [25_000, 32_000, 45_000, 60_000, 100_000, 300_000])

@@ -15,6 +15,8 @@ from urllib.parse import urlsplit
 
 from cramhy_runtime import chronicle, rosbridge, view
 
+from . import heap
+
 NEEDS = {
     "serve": ("web", ("uvicorn", "websockets")),
     "view": ("web", ("uvicorn", "websockets")),
@@ -78,6 +80,8 @@ def _is_address(text):
 
 def open_session(options, closings):
     """Open what ``options`` ask for, in the session that has just begun. ``closings`` is an `contextlib.ExitStack`."""
+    if options.record or options.ros or options.view or options.serve:
+        heap.keep_small()
     if options.record:
         closings.callback(chronicle.record(options.record, program_of(options)).close)
     if options.ros:
