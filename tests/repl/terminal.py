@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import pty
 import re
 import select
 import signal
+import struct
 import subprocess
 import sys
+import termios
 import time
 from pathlib import Path
 
@@ -19,16 +22,18 @@ PATIENCE = 30  # s; only a test that fails waits so long
 class Terminal:
     """``cramhy`` with ``arguments`` in a pseudo-terminal of its own. A context manager.
 
-    editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used. wrapped: the
-    terminal is kept open by this process, too, as a shell does, so that its modes can be looked at (`slave`); `begin` starts the program.
+    editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used. variables: of the
+    environment, ``None`` for one that is not set. size: (lines, columns) of the terminal. wrapped: the terminal is kept open by this
+    process, too, as a shell does, so that its modes can be looked at (`slave`); `begin` starts the program.
     """
 
-    def __init__(self, *arguments, editor=False, wrapped=False):
+    def __init__(self, *arguments, editor=False, variables=None, size=None, wrapped=False):
         self.text = ""
         self.seen = 0
         self.slave = None
         environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}", "TERM": "dumb",
-                       "PROMPT_TOOLKIT_NO_CPR": "1"}
+                       "PROMPT_TOOLKIT_NO_CPR": "1", **(variables or {})}
+        environment = {name: value for name, value in environment.items() if value is not None}
         hide = "" if editor else "sys.modules['prompt_toolkit'] = None; "
         program = f"import sys; {hide}from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
         self.command = [sys.executable, "-c", program, *arguments]
@@ -39,6 +44,8 @@ class Terminal:
             return
         self.pid, self.master = pty.fork()
         if self.pid == 0:
+            if size is not None:
+                fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
             os.execve(sys.executable, self.command, environment)
 
     def begin(self):

@@ -12,7 +12,8 @@ plan did stands beside what the robot did, with the same times.
 
 Where the parts are: `plans`, `fluents`, `modules`, `world` see what happens, `chronicler` looks at the end of each instant of the kernel,
 `sums` merges, `history` keeps, `board` publishes and serves. `recorder` writes a file, with `schemas` that tell Foxglove what messages
-look like and a `scene` for its 3D panel; `recordings` reads one, `player` replays it. `texts` shows values on one line.
+look like, a `scene` for its 3D panel and a `chunk_index` of what is where; `recordings` reads one, `player` replays it. `texts` shows
+values on one line.
 """
 
 from __future__ import annotations

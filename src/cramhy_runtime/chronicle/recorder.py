@@ -24,6 +24,7 @@ from ..lisp.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, to_json
 from . import chronicler, scene
+from .chunk_index import pack_indexes
 from .recordings import RecordingError, needs_mcap
 from .schemas import schema_text
 from .sums import TOPICS
@@ -60,6 +61,7 @@ class Recorder:
         try:
             self._part = storage.growing(self.path)
             self._writer = writer.Writer(self._part.file, chunk_size=CHUNK)
+            pack_indexes(self._writer)
             self._writer.start(profile="", library=f"cramhy {__version__}")
             self._writer.add_metadata("cramhy", self._about(program))
             self._writer.flush()  # whenever the process is killed, the file is a recording

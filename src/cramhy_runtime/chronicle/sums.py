@@ -8,62 +8,75 @@ chapters of the past get the whole, and a recording that is replayed adds up to 
 from __future__ import annotations
 
 from ..ros.messages import message_class_exact
-from ..turtlesim.ink import Ink
+from ..turtlesim.ink import PIECE, Ink
 from ..turtlesim.measures import EXTENT
 
 
 class Things:
-    """The sum of messages that hold things with an ``id``, and the ids of those that are ``removed``."""
+    """The sum of messages that hold things with an ``id``, and the ids of those that are ``removed``.
 
-    def __init__(self, ros_type, field):
-        self.type, self.field = message_class_exact(ros_type), field
+    whole: it is a `State`'s, which is only ever asked for everything. Then no ids are kept of what is gone: in hours they are many.
+    """
+
+    def __init__(self, ros_type, field, whole=False):
+        self.type, self.field, self.whole = message_class_exact(ros_type), field, whole
         self.clear()
 
     def clear(self):
         """Begin anew, with no change."""
-        self.stamp, self.complete, self.things, self.removed = 0.0, False, {}, []
+        self.stamp, self.complete, self._things, self._copied, self.removed = 0.0, False, {}, (), []
+
+    @property
+    def things(self):
+        """The things by their ids. A copy keeps them in a row until somebody asks, which takes a fifth of the memory."""
+        if self._things is None:
+            self._things, self._copied = {thing.id: thing for thing in self._copied}, ()
+        return self._things
 
     @property
     def changed(self):
-        return bool(self.complete or self.things or self.removed)
+        return bool(self.complete or len(self) or self.removed)
 
     def add(self, message):
         self.stamp = message.stamp
         if message.complete:
-            self.complete, self.things, self.removed = True, {}, []
+            self.complete, self._things, self._copied, self.removed = True, {}, (), []
         things = self.things
         for thing in getattr(message, self.field):
             things[thing.id] = thing
         for gone in message.removed:
             things.pop(gone, None)
             self.removed.append(gone)
-        if self.complete:
+        if self.complete or self.whole:
             self.removed = []
 
     def message(self, complete=None):
         """The sum as one message; ``complete``: that it is everything there is."""
-        everything = True if self.complete or complete else None
+        everything = True if self.complete or self.whole or complete else None
         removed = [] if everything else list(self.removed)
-        return self.type(stamp=self.stamp, complete=everything, removed=removed, **{self.field: list(self.things.values())})
+        return self.type(stamp=self.stamp, complete=everything, removed=removed, **{self.field: list(self._row())})
+
+    def _row(self):
+        return self._copied if self._things is None else self._things.values()
 
     def copy(self):
         """What it is now, for `message` later."""
-        other = type(self)()
-        other.stamp, other.complete, other.things, other.removed = self.stamp, self.complete, dict(self.things), []
+        other = type(self)(whole=self.whole)
+        other.stamp, other.complete, other._things, other._copied = self.stamp, self.complete, None, tuple(self._row())
         return other
 
     def __len__(self):
-        return len(self.things)
+        return len(self._row())
 
 
 class TaskTrees(Things):
-    def __init__(self):
-        super().__init__("cramhy_msgs/TaskTree", "tasks")
+    def __init__(self, whole=False):
+        super().__init__("cramhy_msgs/TaskTree", "tasks", whole)
 
 
 class FluentLists(Things):
-    def __init__(self):
-        super().__init__("cramhy_msgs/Fluents", "fluents")
+    def __init__(self, whole=False):
+        super().__init__("cramhy_msgs/Fluents", "fluents", whole)
 
 
 class Latest:
@@ -123,20 +136,19 @@ class WorldChanges:
         return message
 
 
-PIECE = 1000
-"""Strokes that are thinned out together, which takes some milliseconds."""
-
-
 class WorldState:
-    """The world as it is. Its strokes are thinned out piece by piece and kept as ink, 20 bytes each."""
+    """The world as it is. Its strokes are thinned out piece by piece and kept as ink, 20 bytes each.
+
+    Copies share the ink, of which they know how much there was: it only grows, until there is new paper or no more room.
+    """
 
     def __init__(self):
         self.type, self.stroke_type = message_class_exact("cramhy_msgs/World"), message_class_exact("cramhy_msgs/Stroke")
-        self.last, self.ink, self.shared, self.recent = None, Ink(), False, []
+        self.last, self.ink, self.amount, self.borrowed, self.recent = None, Ink(), 0, False, []
 
     def add(self, message):
         if self.last is None or message.complete or message.clears != self.last.clears:
-            self.ink, self.shared, self.recent = Ink(), False, []
+            self.ink, self.amount, self.borrowed, self.recent = Ink(), 0, False, []
         self.recent += [(each.x2, EXTENT - each.y2, each.x1, EXTENT - each.y1, (each.r, each.g, each.b), each.width)
                         for each in message.strokes]
         if len(self.recent) >= PIECE:
@@ -144,19 +156,15 @@ class WorldState:
         self.last = message
 
     def _thin_out(self):
-        if self.shared:  # somebody keeps what it was
-            self.ink, self.shared = self.ink.copy(), False
-        piece, self.recent = self.recent, []
-        for begin in range(0, len(piece), PIECE):
-            thin = Ink()
-            thin.take(piece[begin:begin + PIECE])
-            for colour, width, points in thin.polylines():
-                self.ink.take([(*end, *start, colour, width) for start, end in zip(points, points[1:])])
+        if self.borrowed or not self.ink.room_for(len(self.recent)):  # what others share stays as it is
+            self.ink, self.borrowed = self.ink.first(self.amount), False
+        self.ink.take_thinned(self.recent)
+        self.amount, self.recent = len(self.ink), []
 
     def message(self, complete=None):
         if self.last is None:
             return self.type(complete=True)
-        make, ink = self.stroke_type, self.ink.copy()
+        make, ink = self.stroke_type, self.ink.first(self.amount)
         ink.take(self.recent)
         message = self.last.copy()
         message.complete = True
@@ -164,14 +172,15 @@ class WorldState:
         return message
 
     def copy(self):
-        """What it is now, for `message` later: the ink is copied when more is drawn."""
+        """What it is now, for `message` later. The recent strokes become ink, since as Python's objects they take ten times as much."""
+        if self.recent:
+            self._thin_out()
         other = type(self)()
-        other.last, other.ink, other.recent = self.last, self.ink, list(self.recent)
-        other.shared = self.shared = True
+        other.last, other.ink, other.amount, other.borrowed = self.last, self.ink, self.amount, True
         return other
 
     def __len__(self):
-        return 0 if self.last is None else len(self.last.turtles) + len(self.ink) // 10 + len(self.recent) // 3
+        return 0 if self.last is None else len(self.last.turtles) + self.amount // 10 + len(self.recent) // 3
 
 
 KINDS = ("world", "tasks", "fluents", "modules")
@@ -185,7 +194,7 @@ class State:
     """Everything as it is now: the sum of all messages of each kind."""
 
     def __init__(self):
-        self.sums = {"world": WorldState(), "tasks": TaskTrees(), "fluents": FluentLists(), "modules": Latest()}
+        self.sums = {"world": WorldState(), "tasks": TaskTrees(whole=True), "fluents": FluentLists(whole=True), "modules": Latest()}
 
     def add(self, kind, message):
         self.sums[kind].add(message)

@@ -12,7 +12,10 @@ import os
 import sys
 from contextlib import ExitStack
 
+from .surroundings import check_for_session, ends_if_missing, in_any_surroundings
 
+
+@ends_if_missing
 def session(options, closings, default_time="wall", opened=True):
     """The `Session` that the options describe, opened to the outside as they say, with systems loaded and the package set.
 
@@ -24,6 +27,7 @@ def session(options, closings, default_time="wall", opened=True):
     from cramhy_runtime.repl.session import Session
 
     backtrace.show(options.backtrace)
+    check_for_session(options.backend)
     made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
                    turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)), cleanup_limit=options.cleanup_limit)
     gc.enable()
@@ -50,6 +54,7 @@ def evaluate_forms(made, forms):
         made.evaluate_text(form, "<--eval>")
 
 
+@in_any_surroundings
 def main(arguments=None):
     """Run the command; the exit status. That of a process that a signal ended is 128 + the signal's number, as a shell says it."""
     from cramhy_runtime.kernel import signals, standard_input
@@ -81,9 +86,6 @@ def _main(arguments):
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
     except Terminated as ended:
         return ended.code
-    except BrokenPipeError:
-        sys.stderr.close()
-        return 1
     except (KeyboardInterrupt, Abandoned):
         return 130
     finally:

@@ -16,7 +16,7 @@ from pathlib import Path
 from cramhy_runtime import chronicle, rosbridge, storage, view
 from cramhy_runtime.extras import install_command
 
-from . import robot_address
+from . import heap, robot_address
 
 NEEDS = {
     "serve": ("web", ("uvicorn", "websockets")),
@@ -24,6 +24,7 @@ NEEDS = {
     "replay": ("web,record", ("uvicorn", "websockets", "mcap")),
     "record": ("record", ("mcap",)),
     "ros": ("ros", ("roslibpy",)),
+    "greenlet": ("fast", ("greenlet",)),
 }
 """The extra that an option needs, and its modules that have to be there."""
 
@@ -73,6 +74,8 @@ def check(options):
 
 def open_session(options, closings):
     """Open what ``options`` ask for, in the session that has just begun. ``closings`` is an `contextlib.ExitStack`."""
+    if options.record or options.ros or options.view or options.serve:
+        heap.keep_small()
     tidy(os.getcwd)
     if getattr(options, "picture", None):
         tidy(lambda: os.path.dirname(os.path.realpath(options.picture)))

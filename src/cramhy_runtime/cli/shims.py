@@ -17,6 +17,8 @@ from pathlib import Path
 from cramhy_runtime import storage
 from cramhy_runtime.ros_tools import running
 
+from .surroundings import missing, working_folder
+
 _HOMES = {
     **dict.fromkeys(("catkin_create_pkg", "catkin_make", "rosls", "rospack", "rosversion", "roscd"), "workspace"),
     **dict.fromkeys(("roscore", "rosrun"), "programs"),
@@ -138,10 +140,10 @@ def tool(name, arguments):
         return 2
     try:
         return getattr(import_module(f".{_HOMES[name]}", __package__), name)(arguments) or 0
-    except BrokenPipeError:
-        raise
     except OSError as problem:  # a folder that cannot be read, or written to
-        print(f"{name}: {problem.filename}: {storage.why(problem)}", file=sys.stderr)
+        if missing(problem):
+            raise
+        print(f"{name}: {working_folder() or f'{problem.filename}: {storage.why(problem)}'}", file=sys.stderr)
         return 1
 
 

@@ -21,7 +21,7 @@ timer, so the virtual clock jumps there. The wall clock is the same with a pace-
 Where the parts are:
 
 * `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `signals` what the
-  system asks of the process; `outside` other threads and calls that block; `standard_input`, `lost_output` what a terminal may do;
+  system asks of the process; `outside` other threads and calls that block; `standard_input` lines that are typed;
   `company` a thread of the system's that serves clients, and its share of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
 * `timers`, `clocks`, `pace` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`

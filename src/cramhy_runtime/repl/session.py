@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import gc
-import linecache
 import os
 from pathlib import Path
 
@@ -25,6 +24,8 @@ from cramhy_runtime.lisp.files.namestrings import parse_native
 from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
 from cramhy_runtime.lisp.files.pathnames import DEFAULTS
 from cramhy_runtime.lisp.evaluation.places_in_source import circumstance, locate
+
+from . import typed_texts
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
@@ -148,7 +149,7 @@ class Session:
 
         self.texts += 1
         name = name or f"<repl {self.texts}>"
-        linecache.cache[name] = (len(text), None, text.splitlines(True), name)
+        typed_texts.keep(name, text)
         reader = Reader(text, filename=name)
         end = object()
         while (form := reader.read(eof_error=False, eof_value=end)) is not end:

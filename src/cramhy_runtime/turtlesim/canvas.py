@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from math import ceil, floor, hypot, inf
 
-from .ink import Ink
+from .ink import PIECE, Ink
 from .measures import METRE, SIZE
 
 _CENTRE = 0.5 - 2.0**-7  # of a pixel, from its corner; a little less than half, which decides about centres on the border
 _LEVEL = 1e-12
 _LAST, _ROW = SIZE - 1, SIZE * 3
-_MOST_LINES = 4096  # a minute of driving: drawn in some ten milliseconds
+_MOST_LINES = PIECE  # a quarter of a minute of driving
+_AS_DRAWN = 20_000  # five minutes of driving without a clear: what is drawn later is thinned out, which takes as long as the drawing
 
 
 class Canvas:
@@ -51,7 +52,7 @@ class Canvas:
             self.news.append(line)
         if len(self._lines) > _MOST_LINES:
             self.flush()
-            self._ink.take(self._lines)
+            (self._ink.take if len(self._ink) < _AS_DRAWN else self._ink.take_thinned)(self._lines)
             self._lines, self._drawn = [], 0
 
     def flush(self):

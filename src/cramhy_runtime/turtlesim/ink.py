@@ -1,7 +1,7 @@
 """The ink on the paper as lines, for those who draw it themselves: the live page, and pictures without pixels.
 
-A turtle that drives draws a line per tick, 62 a second. They are kept in arrays, 20 bytes each, and made few only when somebody asks:
-lines that continue one another become one polyline, and points of it are left out that lie within `TOLERANCE` of what is drawn
+A turtle that drives draws a line per tick, 62 a second. They are kept in arrays, 20 bytes each, and made few when somebody asks, or piece
+by piece: lines that continue one another become one polyline, and points of it are left out that lie within `TOLERANCE` of what is drawn
 without them, a fifth of a pixel. Lines of different turtles that cross within a few seconds may come in another order.
 """
 
@@ -14,8 +14,11 @@ from .measures import EXTENT
 
 TOLERANCE = 0.0045
 """Metres that a polyline may be off: a fifth of a pixel."""
-MOST_LINES = 200_000
-"""Lines kept, about an hour of driving. Then they are thinned out, and if that is not enough the oldest quarter is forgotten."""
+MOST_LINES = 50_000
+"""Lines kept, a megabyte: thinned out piece by piece some hours of driving on paper that nobody clears, where every pixel has been painted
+ten times by then. Beyond that all are thinned out, and if that is not enough the oldest quarter is forgotten."""
+PIECE = 1000
+"""Lines that are thinned out together, which takes some milliseconds."""
 _TOGETHER = 512  # lines among which one may continue another
 _WINDOW = 48  # points that one straight piece of a polyline may leave out
 
@@ -33,9 +36,7 @@ class Ink:
 
     def copy(self):
         """Another `Ink` with the same lines."""
-        other = Ink()
-        other._ends, other._pens, other._table = self._ends[:], self._pens[:], dict(self._table)
-        return other
+        return self.first(len(self))
 
     def take(self, lines):
         """Add lines ``(x2, y2, x1, y1, colour, width)`` in metres on the screen, as `Canvas` keeps them, from 1 to 2."""
@@ -46,6 +47,24 @@ class Ink:
                 pens.append(table.setdefault((colour, width), len(table)))
         if len(pens) > MOST_LINES:
             self._shorten()
+
+    def take_thinned(self, lines):
+        """Add lines as `take` does, thinned out in pieces: in hours that is a tenth of them."""
+        for begin in range(0, len(lines), PIECE):
+            piece = Ink()
+            piece.take(lines[begin : begin + PIECE])
+            for colour, width, points in piece.polylines():
+                self.take([(*end, *start, colour, width) for start, end in zip(points, points[1:])])
+
+    def first(self, count):
+        """Another `Ink` with the first ``count`` lines."""
+        other = Ink()
+        other._ends, other._pens, other._table = self._ends[: 4 * count], self._pens[:count], dict(self._table)
+        return other
+
+    def room_for(self, count):
+        """Whether so many lines can be added without any line before them being changed."""
+        return len(self) + count <= MOST_LINES
 
     def _shorten(self):
         polylines = self.polylines()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 import weakref
 
-from cramhy_runtime.kernel import lost_output, standard_input
+from cramhy_runtime.kernel import standard_input
 
 from ..data import UNBOUND, lisp_list, one
 from ..dynamic import special
@@ -41,19 +41,8 @@ class ConsoleOutput(FileOutput):
         self.copies = []
 
     def emit(self, text):
-        try:
-            super().emit(text)
-        except OSError as problem:
-            if not lost_output.lost(self.file, problem):
-                raise
+        super().emit(text)
         self.record(text)
-
-    def flush(self):
-        try:
-            super().flush()
-        except OSError as problem:
-            if not lost_output.lost(self.file, problem):
-                raise
 
     def record(self, text):
         """Write only to the copies: what the user typed stands on the terminal already."""

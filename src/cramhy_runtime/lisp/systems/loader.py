@@ -47,7 +47,7 @@ _not_used = {}
 def _sha256(text):
     import hashlib  # a prompt that loads nothing does without it, and is there 2 ms sooner
 
-    return hashlib.sha256(text.encode())
+    return hashlib.sha256(text.encode(errors="surrogatepass"))
 
 
 def stamp():
@@ -64,7 +64,7 @@ def stamp():
             for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
                 if entry.name.endswith((".py", ".hy", ".lisp")):
                     status = entry.stat()
-                    digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode())
+                    digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode(errors="surrogatepass"))
         _stamp = digest.hexdigest()
     return _stamp
 
