@@ -1,13 +1,14 @@
 """What a process finds around it when it starts, and what it does when a part of that is missing or fails.
 
 A program may be started without standard streams, with a disk that is full behind its output, with an encoding that has no sign for what
-it prints, in a folder that has been removed, or with limits too small for it. `in_any_surroundings` wraps the command line, so that each of
-these either works or is told in one line, and the plans of the session end through their cleanup.
+it prints, in a folder that has been removed, or with limits too small for it. `in_any_surroundings` wraps the command line, so that each
+of these either works or is told in one line, and the plans of the session end through their cleanup.
 
 A stream that is closed at the start becomes ``/dev/null``: input has ended, output is dropped. Its number must not stay free, because the
 next file that is opened would get it, and a recording would receive what a library prints. Output that cannot be written any more is
 dropped, and ends the program with the status 1, as a signal ends it: the main task hears of it at its next checkpoint. The task that
-prints goes on, since a cleanup form may print before it stops the robot. Signs that the encoding of the output lacks are written as ``\\u2192``, and bytes of file names that are no text as they are.
+prints goes on, since a cleanup form may print before it stops the robot. Signs that the encoding of the output lacks are written as
+``\\u2192``, and bytes of file names that are no text as they are.
 """
 
 from __future__ import annotations
