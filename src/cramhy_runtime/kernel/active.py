@@ -37,7 +37,8 @@ def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=K
     if _active is not None and _active.main.carrier.ident == get_ident():
         _active.stop()
     _active = None
-    kernel = kind(clock, backend, seed, time_limit, cleanup_limit)
+    kernel = kind(clock, backend, seed, time_limit)
+    kernel.cleanup_limit = cleanup_limit
     kernel.when_stopped = lambda: _forget(kernel)
     _active = kernel
     signals.listen(kernel)

@@ -52,7 +52,7 @@ class Kernel(Endings, Outside):
         "interruptible", "_scheduler", "main", "current", "__weakref__",
     )
 
-    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None, cleanup_limit=CLEANUP_LIMIT):
+    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
         self.clock = make_clock(clock)
         self.backend = make_backend(backend)
         self.time_limit = time_limit
@@ -80,7 +80,7 @@ class Kernel(Endings, Outside):
         self._patience = PATIENCE
         self._at_stop = {}  # its keys: see `at_stop`
         self._wakers = ()  # functions that end what the main thread waits for outside of the kernel: see `woken_by`
-        self.cleanup_limit = cleanup_limit
+        self.cleanup_limit = CLEANUP_LIMIT
         self.ended_by = None  # the number of the signal that asked the process to end
         self.stopped = False
         self.when_stopped = lambda: None  # for `active`, which keeps track of the kernels
