@@ -61,15 +61,20 @@ def where(frame):
 
 def waiting_list(kernel):
     """For each task that waits: its name, what it waits for, and where; the oldest first."""
+    return list_of(kernel, [task for task in kernel.tasks if task.state in (PARKED, BLOCKED)])
+
+
+def list_of(kernel, tasks):
+    """For each of TASKS: its name, what it waits for, or that it computes, and where."""
     lines = []
-    waiting = [task for task in kernel.tasks if task.state in (PARKED, BLOCKED)]
-    for task in waiting[:LONGEST_LIST]:
-        line = f"  {task.name} waits for {task.describe_why() or 'a wake-up'}"
+    for task in tasks[:LONGEST_LIST]:
+        waits = task.state in (PARKED, BLOCKED)
+        line = f"  {task.name} " + (f"waits for {task.describe_why() or 'a wake-up'}" if waits else "computes")
         if place := where(kernel.frame_of(task)):
             line += f"\n      at {place}"
         lines.append(line)
-    if len(waiting) > LONGEST_LIST:
-        lines.append(f"  and {len(waiting) - LONGEST_LIST} more")
+    if len(tasks) > LONGEST_LIST:
+        lines.append(f"  and {len(tasks) - LONGEST_LIST} more")
     return "\n".join(lines)
 
 
@@ -83,17 +88,9 @@ def tell(text):
 
 def abandoned_text(kernel, tasks, why=""):
     """Whose cleanup is given up: of TASKS, each with what it waits for, and WHY."""
-    lines = []
-    for task in tasks[:LONGEST_LIST]:
-        line = f"  {task.name} {f'waits for {task.describe_why()}' if task.state in (PARKED, BLOCKED) else 'computes'}"
-        if place := where(kernel.frame_of(task)):
-            line += f"\n      at {place}"
-        lines.append(line)
-    if len(tasks) > LONGEST_LIST:
-        lines.append(f"  and {len(tasks) - LONGEST_LIST} more")
-    listed = "\n".join(lines)
     whose = "this task" if len(tasks) == 1 else f"these {len(tasks)} tasks"
-    return f"The cleanup of {whose} was given up.{f' {why}' if why else ''} What it was to stop may still be going on:\n{listed}"
+    return (f"The cleanup of {whose} was given up.{f' {why}' if why else ''} What it was to stop may still be going on:\n"
+            f"{list_of(kernel, tasks)}")
 
 
 def deadlock_text(kernel):
