@@ -147,6 +147,16 @@ class TestStreams:
         assert (tmp_path / "cleaned").exists() and not (tmp_path / "went-on").exists()
 
     @linux
+    @pytest.mark.parametrize("time", ["virtual", "wall"])
+    def test_the_branches_beside_it_are_ended_through_their_cleanup(self, shell, tmp_path, backend, time):
+        branch = '(unwind-protect {0} (with-open-file (file "{1}" :direction :output) (print 1 file)))'
+        prints, sleeps = branch.format("(loop (print 1) (finish-output) (sleep 0.1))", "one"), branch.format("(sleep 1000)", "other")
+        (tmp_path / "plan.lisp").write_text(f"(in-package :cram-user)\n(top-level (par {prints} {sleeps}))")
+        done = shell(f"{CRAMHY} run plan.lisp --time {time} --backend {backend} >/dev/full")
+        assert (done.returncode, done.stderr) == (1, FULL)
+        assert (tmp_path / "one").exists() and (tmp_path / "other").exists()
+
+    @linux
     def test_lost_output_is_no_error_that_a_plan_handles(self, shell, tmp_path):
         (tmp_path / "stubborn.lisp").write_text("(loop (ignore-errors (print 1) (finish-output)))")
         done = shell(f"{CRAMHY} run stubborn.lisp --time virtual >/dev/full")
