@@ -16,7 +16,7 @@ from ..ros import graph, names, rosout
 from ..ros.loggers import Loggers
 
 LABELS = {rosout.DEBUG: "DEBUG", rosout.INFO: " INFO", rosout.WARN: " WARN", rosout.ERROR: "ERROR"}
-MOST_LINES = 2_000
+MOST_LINES = 1_000
 _FIRST = ("__ns", "__name")
 
 
