@@ -78,20 +78,22 @@ LOOK = """\
 
 
 class Typist:
-    """Types lines into the console, showing them as a terminal would; afterwards the lines of ``further``."""
+    """Types lines into the console, showing them as a terminal would. ``finished()`` is called with the last of them."""
 
     interactive = False
 
-    def __init__(self, texts, further=None):
+    def __init__(self, texts, finished=lambda: None):
         self.lines = [line for text in texts for line in text.splitlines()]
-        self.further = further
+        self.finished = finished
 
     def line(self, prompt):
         from cramhy_runtime.lisp.streams import streams
 
         if not self.lines:
-            return self.further.line(prompt) if self.further is not None else None
+            return None
         line = self.lines.pop(0)
+        if not self.lines:
+            self.finished()
         streams.CONSOLE_OUTPUT.fresh_line()
         streams.CONSOLE_OUTPUT.write(f"{prompt}{line}\n")
         return line
@@ -103,7 +105,9 @@ def main():
     parser.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
     parser.add_argument("--backend", choices=["threads", "greenlet"], default="threads")
     options = parser.parse_args()
-    from cramhy_runtime.repl.console import Console, Input
+    from cramhy_runtime.cli import program
+    from cramhy_runtime.repl.console import Console
+    from cramhy_runtime.repl.lines import standard_lines
     from cramhy_runtime.repl.session import Session
 
     save = f'(turtlesim:save-paper "{options.png}")'
@@ -112,8 +116,15 @@ def main():
     stays = sys.stdin.isatty() and sys.stdout.isatty()
     if stays:
         texts.append(";; Go on typing; Ctrl-D ends.")
-    typist = Typist(texts, Input() if stays else None)
-    sys.exit(Console(lambda: Session(time="virtual", seed=options.seed, backend=options.backend), typist).run())
+
+    def stay():
+        console.input = standard_lines()
+
+    console = Console(lambda: Session(time="virtual", seed=options.seed, backend=options.backend),
+                      Typist(texts, stay) if stays else Typist(texts))
+    with program():
+        status = console.run()
+    sys.exit(status)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,8 @@ from pathlib import Path
 
 import pytest
 
+from cramhy_runtime.extras import install_command
+
 from .conftest import environment
 from .terminal import Terminal
 
@@ -147,6 +149,16 @@ class TestStreams:
         assert (tmp_path / "cleaned").exists() and not (tmp_path / "went-on").exists()
 
     @linux
+    @pytest.mark.parametrize("time", ["virtual", "wall"])
+    def test_the_branches_beside_it_are_ended_through_their_cleanup(self, shell, tmp_path, backend, time):
+        branch = '(unwind-protect {0} (with-open-file (file "{1}" :direction :output) (print 1 file)))'
+        prints, sleeps = branch.format("(loop (print 1) (finish-output) (sleep 0.1))", "one"), branch.format("(sleep 1000)", "other")
+        (tmp_path / "plan.lisp").write_text(f"(in-package :cram-user)\n(top-level (par {prints} {sleeps}))")
+        done = shell(f"{CRAMHY} run plan.lisp --time {time} --backend {backend} >/dev/full")
+        assert (done.returncode, done.stderr) == (1, FULL)
+        assert (tmp_path / "one").exists() and (tmp_path / "other").exists()
+
+    @linux
     def test_lost_output_is_no_error_that_a_plan_handles(self, shell, tmp_path):
         (tmp_path / "stubborn.lisp").write_text("(loop (ignore-errors (print 1) (finish-output)))")
         done = shell(f"{CRAMHY} run stubborn.lisp --time virtual >/dev/full")
@@ -259,7 +271,7 @@ class TestPython:
             done = shell(f'{shlex.quote(sys.executable)} -c "{hidden}" {words} --backend greenlet < /dev/null')
             assert (done.returncode, done.stdout) == (2, "")
             assert done.stderr == ("cramhy: --backend greenlet needs greenlet, and greenlet is not installed. Type: "
-                                   "pip install 'cramhy[fast]'\n")
+                                   f"{install_command('fast')}\n")
 
 
 class TestTerminals:
@@ -319,7 +331,7 @@ class TestLimits:
         """How much a Python takes depends on its version, so the line is one of those that may come."""
         if options:
             pytest.importorskip("uvicorn")
-        python = shell(f"ulimit -v {kilobytes}; {shlex.quote(sys.executable)} -c 'import json, asyncio' 2>/dev/null")
+        python = shell(f"ulimit -v {kilobytes}; {shlex.quote(sys.executable)} -c 'import json, asyncio, hashlib' 2>/dev/null")
         if python.returncode:
             pytest.skip("Python itself does not start with so little")
         done = shell(f"ulimit -v {kilobytes}; echo '(+ 1 2)' | {CRAMHY} repl --time virtual {options}")

@@ -12,6 +12,7 @@ WRITERS = {"write_text", "write_bytes", "save", "mkstemp", "mkdtemp", "NamedTemp
            "copytree", "move", "touch", "symlink_to", "FileIO"}
 RENAMERS = {"replace", "rename", "renames", "link"}
 EXCEPT = {
+    ("cli/surroundings.py", "open"): "the null device, in place of a stream that is closed",
     ("lisp/streams/file_streams.py", "open"): "Lisp's :append and :overwrite change a file where it is, as they should; devices, too",
     ("lisp/files/files.py", "rename"): "rename-file renames a file that the user named",
     ("ros/roslisp/log_file.py", "open"): "a log is appended to, line by line",

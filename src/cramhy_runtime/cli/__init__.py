@@ -10,7 +10,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 
 from .surroundings import check_for_session, ends_if_missing, in_any_surroundings
 
@@ -57,13 +57,21 @@ def evaluate_forms(made, forms):
 @in_any_surroundings
 def main(arguments=None):
     """Run the command; the exit status. That of a process that a signal ended is 128 + the signal's number, as a shell says it."""
+    from cramhy_runtime.kernel import signals
+
+    with program():
+        status = _main(sys.argv[1:] if arguments is None else arguments)
+        return 128 + signals.received[0] if signals.received else status
+
+
+@contextmanager
+def program():
+    """What stands around a program with a prompt or a session: signals end it in order, and the terminal is as it was afterwards."""
     from cramhy_runtime.kernel import signals, standard_input
 
-    arguments = sys.argv[1:] if arguments is None else arguments
     with signals.held(), standard_input.terminal_of_a_session():
         standard_input.install()
-        status = _main(arguments)
-        return 128 + signals.received[0] if signals.received else status
+        yield
 
 
 def _main(arguments):

@@ -40,7 +40,7 @@ class StandardInput(io.TextIOBase):
         self._file = file
         self._fd = file.fileno()
         self._text = ""
-        self.reconfigure(file.encoding)
+        self.reconfigure(file.encoding, file.errors)
         self._ended = self._woken = self._interrupted = False
         self._bell, self._ring = os.pipe()
         for end in (self._bell, self._ring):

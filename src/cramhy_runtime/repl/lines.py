@@ -94,8 +94,8 @@ class PlainLines(Lines):
     def wait(self, prompt):
         try:
             with sys.stdin.at_prompt(self.press) if self.can_be_woken else nullcontext():
-                streams.CONSOLE_OUTPUT.write(prompt)
-                streams.CONSOLE_OUTPUT.flush()
+                sys.stdout.write(prompt)  # and not into the transcript, where it comes with the line
+                sys.stdout.flush()
                 streams.CONSOLE_OUTPUT.column = 0
                 line = sys.stdin.readline()
         except BrokenOff:

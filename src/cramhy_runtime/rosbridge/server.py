@@ -149,10 +149,11 @@ class Server:
         loop, limits = asyncio.get_running_loop(), self.limits
         asking = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.end(late))
         self.strangers = WaitingRoom(loop, limits.strangers, limits.first_message, lambda one, late: one.give_up(late))
+        # A thread that sleeps off what it overspent (`company`) may be late with a pong that an honest client sent in time.
         config = uvicorn.Config(
             self.application, interface="asgi3", loop="asyncio", http=make_protocol(asking), ws=make_websocket(limits), lifespan="off",
             log_config=None, log_level=100, access_log=False, server_header=False, date_header=False, proxy_headers=False,
-            ws_max_size=self.limits.message, ws_per_message_deflate=False, ws_ping_interval=20.0, ws_ping_timeout=20.0,
+            ws_max_size=self.limits.message, ws_per_message_deflate=False, ws_ping_interval=20.0, ws_ping_timeout=120.0,
             timeout_keep_alive=5, timeout_graceful_shutdown=1, h11_max_incomplete_event_size=16384,
         )  # fmt: skip
         self._uvicorn = served = uvicorn.Server(config)

@@ -16,7 +16,7 @@ from ..ros import graph, names, rosout
 from ..ros.loggers import Loggers
 
 LABELS = {rosout.DEBUG: "DEBUG", rosout.INFO: " INFO", rosout.WARN: " WARN", rosout.ERROR: "ERROR"}
-MOST_LINES = 2_000
+MOST_LINES = 1_000
 MOST_TEXT = 2000  # characters of a line: it may hold a name that a client of another process has made up
 _FIRST = ("__ns", "__name")
 
