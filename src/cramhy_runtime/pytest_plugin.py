@@ -165,3 +165,10 @@ def _explained(problem):
     from cramhy_runtime.repl.session import condition_of
 
     return explanation(condition_of(problem))
+
+
+def pytest_runtest_makereport(item, call):
+    """A signal that ends the process ends pytest, and is not the failure of a test."""
+    errors = sys.modules.get("cramhy_runtime.kernel.errors")
+    if errors is not None and call.excinfo is not None and isinstance(call.excinfo.value, errors.Terminated):
+        pytest.exit(str(call.excinfo.value), returncode=call.excinfo.value.code)

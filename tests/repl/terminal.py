@@ -123,5 +123,6 @@ class Terminal:
             data = os.read(self.master, 65536)
         except OSError:  # Linux's way to say that the other end is closed
             return False
-        self.text += re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\r", "", data.decode())
+        shown = re.sub(r"\x1b\[(\d+)D\x1b\[(\d+)C", lambda moves: " " * (int(moves[2]) - int(moves[1])), data.decode())
+        self.text += re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\r", "", shown)
         return bool(data)

@@ -54,7 +54,7 @@ def storm(request, tmp_path, monkeypatch):
     (tmp_path / "setup.lisp").write_text(SETUP)
     monkeypatch.chdir(tmp_path)
     with Terminal("repl", "--time", clock, "--backend", backend, "--load", "setup.lisp", "--package", "cram-user",
-                  editor=editor == "edited") as terminal:
+                  editor=editor == "edited", variables={"TERM": "xterm" if editor == "edited" else "dumb"}) as terminal:
         terminal.expect("CPL-USER> ")
         terminal.way = way
         yield terminal

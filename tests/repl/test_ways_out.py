@@ -233,7 +233,6 @@ def note(word):
         print(word, file=file)
 
 def send(speed):
-    message = velocity.type_class() if hasattr(velocity, "type_class") else None
     velocity.publish({{"linear": {{"x": speed}}}})
 
 def drive():
@@ -275,8 +274,7 @@ def test_a_python_script_ends(folder, end, clock, backend):
 
 def script(folder, end, clock, backend, number=None):
     """The exit status of a script without ``kernel.stop()``, after it was checked that its task was cleaned up and recorded."""
-    program = SCRIPT.replace('    message = velocity.type_class() if hasattr(velocity, "type_class") else None\n', "")
-    (folder / "script.py").write_text(program.format(clock=clock, backend=backend, end=end))
+    (folder / "script.py").write_text(SCRIPT.format(clock=clock, backend=backend, end=end))
     process = subprocess.Popen([sys.executable, "script.py"], cwd=folder, env=environment(), stderr=subprocess.PIPE, text=True)
     try:
         if number is not None:
@@ -308,7 +306,7 @@ def test_a_closed_terminal_ends_the_session(folder, where, clock, backend, edito
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
     monkeypatch.chdir(folder)
     with Terminal("repl", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--package", "cram-user", "--record", "run.mcap",
-                  editor=editor) as terminal:
+                  editor=editor, variables={"TERM": "xterm" if editor else "dumb"}) as terminal:
         terminal.expect("CPL-USER> ")
         waits = "(lambda () (error \"stuck\"))" if where == "in the debugger" else WAITS["that steps"]
         if where != "at the prompt":
@@ -336,7 +334,8 @@ def wait_for(condition, pause=0.01):
 def test_the_terminal_is_as_it_was(folder, way, editor, clock, backend):
     if backend == "greenlet":
         pytest.importorskip("greenlet")
-    with Terminal("repl", "--time", clock, "--backend", backend, "--package", "cram-user", editor=editor, wrapped=True) as terminal:
+    with Terminal("repl", "--time", clock, "--backend", backend, "--package", "cram-user", editor=editor, wrapped=True,
+                  variables={"TERM": "xterm" if editor else "dumb"}) as terminal:
         before = termios.tcgetattr(terminal.slave)
         terminal.begin()
         terminal.expect("CPL-USER> ")
@@ -432,3 +431,50 @@ def test_output_that_nobody_reads_any_more_does_not_cost_the_cleanup(folder, clo
         assert noted(folder / "log") == STOPPED, complaints
         assert process.process.returncode == 1 and "Traceback" not in complaints
     assert commands(folder / "run.mcap") == [1.0, 0.0]
+
+
+# ---------------------------------------------------------------------------------------------------------------- requests, keys
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("clock", CLOCKS)
+def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, backend):
+    """Two at a time, while it waits and while it answers: each request gets one answer."""
+    pytest.importorskip(backend if backend == "greenlet" else "mcap")
+    with Process(folder, "eval", "--time", clock, "--backend", backend) as process:
+        def answer(form):
+            process.type(json.dumps({"form": form}))
+            return json.loads(process.process.stdout.readline())
+
+        answer("nil")
+        for number in range(30):
+            process.send(signal.SIGINT)
+            process.send(signal.SIGINT)
+            if number % 3 == 0:
+                process.type(json.dumps({"form": "(loop repeat 20000 collect 1)"}))
+                process.send(signal.SIGINT)
+                assert set(json.loads(process.process.stdout.readline())) >= {"output", "values", "error"}
+        for _ in range(100):
+            if answer("(+ 1 2)")["values"] == ["3"]:
+                break
+        else:
+            pytest.fail("it is interrupted without end")
+        process.process.stdin.close()
+        assert process.process.wait(PATIENCE) == 0
+
+
+@pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])
+def test_the_key_that_ends_the_input_ends_one_read(folder, editor):
+    with Terminal("repl", "--time", "virtual", "--package", "cram-user", editor=editor,
+                  variables={"TERM": "xterm" if editor else "dumb"}) as terminal:
+        terminal.expect("CPL-USER> ")
+        for _ in range(2):
+            terminal.type("(list :read (read-line *standard-input* nil :eof))")
+            wait_for(lambda: terminal._more(0.1) or "eof))\n" in terminal.text[terminal.seen:])
+            time.sleep(0.3)  # the editor gives the terminal back
+            os.write(terminal.master, b"\x04")
+            terminal.expect(r"\(:READ :EOF\)\nCPL-USER> ")
+        terminal.type("(list :read (read-line))")
+        time.sleep(0.3)
+        terminal.type("hello")
+        terminal.expect(r'\(:READ "hello"\)\nCPL-USER> ')

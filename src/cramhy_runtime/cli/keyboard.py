@@ -51,7 +51,7 @@ def teleop(words=()):
         print(f"ERROR: {problem}", file=sys.stderr)
         node = None
         return 1
-    except (KeyboardInterrupt, Stopped):
+    except KeyboardInterrupt:
         return 0
     finally:
         if node is not None:
@@ -60,10 +60,6 @@ def teleop(words=()):
             except (Refused, SessionEnded):
                 pass  # it has ended by itself
         graph.close()
-
-
-class Stopped(Exception):
-    """Another program asked this one to end."""
 
 
 @contextmanager
@@ -85,18 +81,12 @@ def keys_one_by_one():
         changed[3] &= ~(termios.ICANON | termios.ECHO)
         termios.tcsetattr(0, termios.TCSADRAIN, changed)
 
-    def end(*_):
-        raise Stopped
-
-    handlers = {getattr(signal, name): handler for name, handler in (("SIGTERM", end), ("SIGHUP", end), ("SIGCONT", begin))
-                if hasattr(signal, name)}
-    saved = {number: signal.signal(number, handler) for number, handler in handlers.items()}
+    saved = signal.signal(signal.SIGCONT, begin)  # the shell had the terminal meanwhile
     begin()
     try:
         yield
     finally:
-        for number, handler in saved.items():
-            signal.signal(number, handler)
+        signal.signal(signal.SIGCONT, saved)
         try:
             termios.tcsetattr(0, termios.TCSADRAIN, before)
         except termios.error:

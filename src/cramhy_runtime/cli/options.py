@@ -9,13 +9,23 @@ from __future__ import annotations
 import argparse
 
 
+def _seconds(text):
+    number = float(text)
+    if not number >= 0:
+        raise ValueError
+    return number
+
+
+_seconds.__name__ = "number of seconds"  # what argparse calls it in its complaint
+
+
 def _session_options():
     options = argparse.ArgumentParser(add_help=False)
     options.add_argument("--time", choices=["virtual", "wall"], default=None, help="virtual: as fast as the machine computes; or wall time")
     options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
     options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks")
     options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time")
-    options.add_argument("--cleanup-limit", type=float, default=5.0, metavar="SECONDS",
+    options.add_argument("--cleanup-limit", type=_seconds, default=5.0, metavar="SECONDS",
                          help="what plans get for their cleanup when the process is asked to end (5)")
     options.add_argument("--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first")
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in")

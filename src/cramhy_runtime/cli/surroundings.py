@@ -28,6 +28,9 @@ NO_MEMORY = "the system gives no more memory (ulimit -v). Raise the limit, or en
 NO_THREADS = ("the system gives no more threads, or no memory for their stacks (ulimit -u, ulimit -v). Raise the limit, or end other "
               "programs.")
 NO_FILES = "too many files are open (ulimit -n). Raise the limit, or close other programs."
+AT_ONCE = 4096
+"""Bytes that a pipe takes whole if it takes any (PIPE_BUF of pipe(7))."""
+LOOK, PATIENCE = 0.05, 1.0  # s between two looks whether there is room; s to wait for room when the process shall end
 _STREAMS = (("stdin", "r"), ("stdout", "w"), ("stderr", "w"))
 
 
@@ -49,21 +52,41 @@ class Output(io.FileIO):
         self.ends_program, self.lost = ends_program, None
 
     def write(self, data):
-        """Write all of ``data``, and wait where another program made the terminal or pipe one that does not wait."""
+        """Write all of ``data``. It waits for a reader that is slow, but not for one that does not read while the process shall end."""
         data = memoryview(data).cast("B")
         rest = data
         while rest and self.lost is None:
             try:
-                written = super().write(rest)
-                if written is None:
-                    select.select([], [self], [])
-                else:
-                    rest = rest[written:]
+                self._wait_for_room()
+                written = super().write(rest[:AT_ONCE])
+                rest = rest[written or 0:]
             except OSError as problem:
                 self.lost = problem
                 if self.ends_program:
                     _end_program()
         return len(data)
+
+
+    def _wait_for_room(self):
+        """Return when `AT_ONCE` bytes can be written without a wait, as far as the system can tell."""
+        waited = 0.0
+        while not self._has_room():
+            waited += LOOK
+            if waited > PATIENCE and _is_ending():
+                raise OSError(errno.EPIPE, "nobody reads it")
+
+    def _has_room(self):
+        try:
+            return bool(select.select([], [self], [], LOOK)[1])
+        except (OSError, ValueError):  # only sockets can be waited for, or the number is too high
+            return True
+
+
+def _is_ending():
+    from cramhy_runtime import kernel
+
+    session = kernel.active()
+    return session is not None and session.ended_by is not None
 
 
 def _end_program():

@@ -93,7 +93,9 @@ def _kernel(clock: Any, backend: Any, seed: Any, time_limit: float | None) -> It
             with kernel.aside():
                 kernel.start(**options)
                 yield
-    except kernel.Interrupted:
+    except kernel.Terminated:
+        raise
+    except (kernel.Interrupted, kernel.Abandoned):
         if kernel.active() is not None:
             kernel.interrupt_over()
         interrupted = True

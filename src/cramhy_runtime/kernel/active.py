@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from . import signals
 from .budget import budget
 from .endings import CLEANUP_LIMIT
-from .errors import KernelError
+from .errors import KernelError, Terminated
 from .pace import Pace, TimeWanted
 from .scheduler import Kernel
 
@@ -106,11 +106,17 @@ def _forget(kernel):
 def _stop_at_exit():
     """A script that just ends shall not leave out the cleanup of its tasks, nor what serves them (a recording, a robot's connection)."""
     kernel = _active
+    signals.leaving = True
     if kernel is not None:
-        if kernel.current is kernel.main and kernel.main.carrier.ident == get_ident():
-            stop()
-        else:
-            kernel.close_what_serves()
+        asked_before = kernel.ended_by
+        try:
+            if kernel.current is kernel.main and kernel.main.carrier.ident == get_ident():
+                stop()
+            else:
+                kernel.close_what_serves()
+        except Terminated as ended:
+            if asked_before is None:  # else the main program has an exit status already
+                signals.end_by(ended.number)
     signals.end_as_interrupted()
 
 

@@ -1,15 +1,15 @@
 """How a run ends: interrupts, termination, alarms, abandoned cleanup, stopping, and the failures that nobody looked at.
 
 The main task hears of what concerns the run as a whole, by alarms: Ctrl-C, a signal that ends the process, a deadlock, the time
-limit. An alarm wakes it
-ahead of the queue. From there the tree comes down in the ordinary way: the main task unwinds, cancels its children and
-joins them, and so on below.
+limit. An alarm wakes it ahead of the queue. From there the tree comes down in the ordinary way: the main task unwinds, cancels its
+children and joins them, and so on below.
 
 An interrupt must work from a signal handler, at any moment: while the main thread has the baton, waits for it, waits for
 the clock, or is outside in a blocking call. So `interrupt` only puts a message into the inbox, ends the current slice and
 rings the bell: three operations that a handler may do between any two instructions. The message does the rest.
 """
 
+import sys
 import time
 from _thread import get_ident
 
@@ -25,15 +25,16 @@ PATIENCE = 10  # how often a stopping kernel looks whether calls that block have
 
 
 class Request:
-    """A message in the inbox that asks the main task to end what it does."""
+    """A message in the inbox that asks the main task to end what it does. ``void``: it is dealt with already."""
 
-    __slots__ = ("_read",)
+    __slots__ = ("_read", "void")
 
     def __init__(self, read):
-        self._read = read
+        self._read, self.void = read, False
 
     def __call__(self):
-        self._read()
+        if not self.void:
+            self._read()
 
 
 class Endings:
@@ -49,7 +50,7 @@ class Endings:
         A second call before the first is over (`interrupt_over`, `settle`) gives up cleanup: `Abandoned` is raised at
         every park point and checkpoint of all tasks that are cleaning up, in shields too, and in the main task.
         """
-        self._ask(Interrupted, Abandoned)
+        self._ask_main_task(Interrupted, Abandoned)
 
     def terminate(self, number):
         """Raise `Terminated` in the main task, because of the signal NUMBER. Safe from signal handlers and from any thread.
@@ -58,7 +59,7 @@ class Endings:
         interrupt does. A process that does not end by that is ended all the same (`signals`).
         """
         self.will_end(number)
-        self._ask(lambda: Terminated(number), lambda: TerminatedAtOnce(number))
+        self._ask_main_task(lambda: Terminated(number), lambda: TerminatedAtOnce(number))
 
     def will_end(self, number):
         """The signal NUMBER has asked the process to end; from now on it is watched whether it does."""
@@ -66,7 +67,7 @@ class Endings:
             self.ended_by = number
             signals.watch(self, number)
 
-    def _ask(self, first, second):
+    def _ask_main_task(self, first, second):
         """Have an exception raised in the main task: one that FIRST makes, or SECOND when it unwinds already."""
         main = self.main
         if self.interruptible and not self._wakers and get_ident() == main.carrier.ident and (self._unwinding or not main.shielded):
@@ -104,6 +105,11 @@ class Endings:
         """Whether an interrupt, or a signal that ends the process, was sent and is not over yet."""
         return bool(self._interrupts) or self._unwinding
 
+    def cleanup_began(self):
+        """When the cleanup that goes on began to count, by the wall's clock; ``None`` before it stops. First the plan of the main task
+        cleans up, and then what runs beside it, which the plan may need for that: each has the whole limit."""
+        return self._stops_since
+
     def deaf_for(self):
         """For how many seconds an interrupt has been waiting to be read: the task that has the baton passes no checkpoint."""
         since = self._asked_at
@@ -111,12 +117,10 @@ class Endings:
 
     def take_back(self):
         """Nobody reads the requests in the inbox, so the signal handler raises by itself: they are dealt with by that."""
-        for message in [message for message in self._inbox if isinstance(message, Request)]:
-            try:
-                self._inbox.remove(message)
-            except ValueError:
-                continue  # it was read at this very moment
-            self._interrupts -= 1
+        for message in list(self._inbox):
+            if isinstance(message, Request) and not message.void:
+                message.void = True
+                self._interrupts -= 1
         self._asked_at = None
         self._unwinding = True
         self._limit_cleanup()
@@ -196,7 +200,7 @@ class Endings:
 
         Tasks get `cleanup_limit` seconds of the kernel's clock; then what serves them is closed (`at_stop`), and their cleanup is
         abandoned, which the user is told; for calls that block it waits half a second. A task that is still there after that stays
-        parked for ever.
+        parked for ever. Raises `Terminated` if a signal asked for the end of the process meanwhile.
         """
         if self.stopped:
             return
@@ -204,6 +208,7 @@ class Endings:
         if self.current is not main or main.carrier.ident != get_ident():
             raise KernelError("Only the main task can stop the kernel, or start another one in its place.")
         self._stopping = True
+        self._stops_since = time.monotonic()
         self._limit = main.cancel_request = main.alarms = None
         main.attention = False
         for task in self.tasks[1:]:
@@ -223,6 +228,8 @@ class Endings:
         self.stopped = True
         self.backend.close()
         self.when_stopped()
+        if self.ended_by is not None and not isinstance(sys.exc_info()[1], Terminated):
+            raise Terminated(self.ended_by)  # the signal came while it stopped
 
     def close_what_serves(self):
         """Call what was registered by `at_stop`, the last first."""

@@ -50,6 +50,11 @@ class Outside:
         """Whether messages may come from outside, so that whoever waits for something else must not keep the baton."""
         return self._outside > 0
 
+    @property
+    def stops(self):
+        """Whether it is about to stop."""
+        return self._stopping
+
     def count_outside(self, difference):
         self._outside += difference
 

@@ -48,7 +48,8 @@ class Kernel(Endings, Outside):
     __slots__ = (
         "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_tasks", "_born", "_streak",
         "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts", "_asked_at",
-        "_unwinding", "_stopping", "_patience", "_at_stop", "_wakers", "cleanup_limit", "ended_by", "stopped", "when_stopped",
+        "_unwinding", "_stopping", "_stops_since",
+        "_patience", "_at_stop", "_wakers", "cleanup_limit", "ended_by", "stopped", "when_stopped",
         "interruptible", "_scheduler", "main", "current", "__weakref__",
     )
 
@@ -77,6 +78,7 @@ class Kernel(Endings, Outside):
         self._asked_at = None  # when the first of these was sent, by the wall's clock
         self._unwinding = False  # one was raised in the main task and is not over
         self._stopping = False
+        self._stops_since = None
         self._patience = PATIENCE
         self._at_stop = {}  # its keys: see `at_stop`
         self._wakers = ()  # functions that end what the main thread waits for outside of the kernel: see `woken_by`

@@ -37,9 +37,13 @@ LOOK = 0.05  # s between two looks
 _kernels = []  # those that listen, the innermost last
 _before = {}  # the handlers that stood there before ours
 _held = 0  # how many programs keep our handlers between kernels
+_program = None  # the process of these programs
 
 received = []
 """The numbers of the signals that have asked this process to end, the first first."""
+
+leaving = False
+"""Whether the main program is over, and Python starts no more threads."""
 
 restore_terminal = []
 """Functions that bring the terminal back to what it was; called when a process is ended by force."""
@@ -59,11 +63,22 @@ def forget(kernel):
         _restore()
 
 
+def _forget_parent():
+    """A forked child has none of its parent's tasks to end, so signals are for whoever had them before us."""
+    _kernels.clear()
+    _restore()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_parent)
+
+
 @contextmanager
 def held():
     """While the block runs, signals are ours between kernels, too: for a program, which ends in order before and after its session."""
-    global _held
+    global _held, _program
     _held += 1
+    _program = os.getpid()
     _install()
     try:
         yield
@@ -88,7 +103,7 @@ def _install():
 
 
 def _restore():
-    if _kernels or _held or threading.current_thread() is not threading.main_thread():
+    if _kernels or (_held and os.getpid() == _program) or threading.current_thread() is not threading.main_thread():
         return
     for number, handler in _before.items():
         if signal.getsignal(number) is _hear:
@@ -98,7 +113,7 @@ def _restore():
 
 def _uncaught(kind, exception, traceback):
     """The main program ends by an exception."""
-    if issubclass(kind, Interrupted):
+    if issubclass(kind, Interrupted) and not hasattr(sys, "ps1") and not sys.flags.interactive:
         _uncaught_interrupts.append(exception)
     sys.__excepthook__(kind, exception, traceback)
 
@@ -108,10 +123,16 @@ _uncaught_interrupts = []
 
 def end_as_interrupted():
     """The last thing of a process whose main program did not catch Ctrl-C: it ends by the signal, as Python ends it. Else nothing."""
-    if _uncaught_interrupts and threading.current_thread() is threading.main_thread():
-        _flush()
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        signal.raise_signal(signal.SIGINT)
+    if _uncaught_interrupts:
+        end_by(signal.SIGINT)
+
+
+def end_by(number):
+    """End the process by the signal NUMBER itself. For its last moment, in the main thread."""
+    _flush()
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(number, signal.SIG_DFL)
+        signal.raise_signal(number)
 
 
 def _hear(number, frame):
@@ -122,8 +143,9 @@ def _hear(number, frame):
         raise KeyboardInterrupt if number == signal.SIGINT else Terminated(number)
     again = kernel in _reminded
     _reminded.discard(kernel)
-    if kernel.deaf_for() >= DEAF and _has_the_baton(kernel):
-        kernel.take_back()
+    if kernel.deaf_for() >= DEAF and _runs_here(kernel):
+        if kernel.current.carrier is not None:  # and not a callback: the main task hears of that one itself
+            kernel.take_back()
         if number == signal.SIGINT:
             raise Interrupted
         kernel.will_end(number)
@@ -134,10 +156,12 @@ def _hear(number, frame):
         kernel.terminate(number)
 
 
-def _has_the_baton(kernel):
-    """Whether the task that has the baton runs in this thread; or a callback, in whichever."""
+def _runs_here(kernel):
+    """Whether what has the baton, a task or a callback, surely runs in this thread, and may be broken off."""
+    if kernel.stops:  # what serves plans is being closed, and has its time
+        return False
     carrier = kernel.current.carrier
-    return carrier is None or carrier.ident == threading.get_ident()
+    return kernel.backend.calls_back if carrier is None else carrier.ident == threading.get_ident()
 
 
 _reminded = set()  # kernels to whose main thread `watch` sends the signal once more: that does not count as a second one
@@ -156,7 +180,7 @@ def _watch(kernel, number):
     began = time.monotonic()
 
     def over(seconds):
-        """Whether the kernel stopped within SECONDS from the beginning."""
+        """Whether the kernel stopped within SECONDS after BEGAN."""
         while not kernel.stopped and time.monotonic() < began + seconds:
             time.sleep(LOOK)
         return kernel.stopped
@@ -170,8 +194,10 @@ def _watch(kernel, number):
         return
     kernel.post(kernel.give_up)
     budget.end()
-    if not over(limit + FORCE):
-        _end_by_force(kernel, number)
+    while not over(limit + FORCE):
+        if kernel.cleanup_began() is None or kernel.cleanup_began() <= began:
+            return _end_by_force(kernel, number)
+        began = kernel.cleanup_began()  # what runs beside the plan cleans up after it, and has as long again
 
 
 def _send_to_main_thread(number):
@@ -185,16 +211,18 @@ def _send_to_main_thread(number):
 
 def _end_by_force(kernel, number):
     """The task that has the baton does not give it away: end the process without it."""
-    name = kernel.current.name
-    reports.tell(f"{name} did not come to a point where it can be ended within {kernel.cleanup_limit + FORCE:g} s after "
-                 f"{signal.Signals(number).name}, so the process ends without its cleanup. A long computation in Python should call "
-                 "kernel.checkpoint() now and then, and a call that blocks belongs into kernel.run_blocking.")
-    closing = threading.Thread(target=kernel.close_what_serves, daemon=True)
-    closing.start()
-    closing.join(LAST)
-    for restore in restore_terminal:
-        restore()
-    _flush()
+    task = kernel.current
+    name = "The program" if task.carrier is None else task.name
+
+    def say():
+        reports.tell(f"{name} did not come to a point where it can be ended within {kernel.cleanup_limit + FORCE:g} s after "
+                     f"{signal.Signals(number).name}, so the process ends without its cleanup. A long computation in Python should call "
+                     "kernel.checkpoint() now and then, and a call that blocks belongs into kernel.run_blocking.")
+
+    for last in (kernel.close_what_serves, say, _flush, *restore_terminal):  # each may be stuck, as on a pipe that nobody reads
+        helper = threading.Thread(target=last, daemon=True)
+        helper.start()
+        helper.join(LAST)
     os._exit(128 + number)
 
 

@@ -2,7 +2,7 @@
 
 Python's own `sys.stdin` waits in a system call, which only an exception in the middle of it breaks off; what was read by then is lost.
 This one waits for two things at once, input and a pipe of its own (`wake`), and moves what it has read into its buffer before anybody
-looks. It takes the place of `sys.stdin` (`install`), so that the prompt, READ-LINE in a form and Python's `input` share one buffer.
+looks. It takes the place of `sys.stdin` (`install`), so that the prompt and READ-LINE in a form share one buffer.
 
 On a terminal it can keep Ctrl-C in its place among the typed lines (`at_prompt`). Otherwise the terminal makes a signal of the key, which
 overtakes what was typed before, and throws that away. So at the prompt the key ends a line, as Enter does, and the line says so.
@@ -42,6 +42,7 @@ class StandardInput(io.TextIOBase):
         self._text = ""
         self.reconfigure(file.encoding, file.errors)
         self._ended = self._woken = self._interrupted = False
+        self._gone = False  # nothing will ever come again
         self._bell, self._ring = os.pipe()
         for end in (self._bell, self._ring):
             os.set_blocking(end, False)
@@ -110,6 +111,8 @@ class StandardInput(io.TextIOBase):
         if 0 <= size < end:
             end = size
         line, self._text = self._text[:end], self._text[end:]
+        if not line:
+            self._ended = self._gone  # at a terminal the key that ends the input ends one read
         return line
 
     def _wait(self):
@@ -122,9 +125,12 @@ class StandardInput(io.TextIOBase):
     def _fill(self):
         try:
             data = os.read(self._fd, CHUNK)
+        except BlockingIOError:
+            return
         except OSError:  # the terminal was closed
-            data = b""
+            data, self._gone = b"", True
         self._ended = not data
+        self._gone = self._gone or self._ended and not self.isatty()
         self._text += self._decoder.decode(data, self._ended)
         if self._keys and INTERRUPT in self._text:
             before, _, after = self._text.rpartition(INTERRUPT)

@@ -72,9 +72,13 @@ class Console:
         self.input = self.input or standard_lines()
         conditions.install_debugger(self.debug)
         streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT  # warnings belong to the transcript
+        interrupted = False
         try:
             while True:
                 try:
+                    if interrupted:  # told here, where another interrupt is heard
+                        self.interrupted()
+                        interrupted = False
                     text = self.read_text(self.session.prompt())
                     if text is None:
                         if self.input.interactive:
@@ -84,7 +88,7 @@ class Console:
                 except kernel.Terminated:
                     raise
                 except (KeyboardInterrupt, kernel.Abandoned, Interruption):  # between two steps of ours, as while values are printed
-                    self.interrupted()
+                    interrupted = True
         except SystemExit as leaving:
             return exit_status(leaving)
         finally:

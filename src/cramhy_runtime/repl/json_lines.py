@@ -38,7 +38,20 @@ def serve(session, lines=None, out=None):
     while (line := _next(lines)) is not None:
         if not line.strip():
             continue
-        out.write(json.dumps(answer(session, line)) + "\n")
+        _give(session, line, out)
+
+
+def _give(session, line, out):
+    """Answer ``line``: once, whatever interrupt comes meanwhile."""
+    try:
+        found = answer(session, line)
+    except kernel.Terminated:
+        raise
+    except (KeyboardInterrupt, kernel.Abandoned):  # after the form, while its values are printed
+        found = _failure("", "CRAMHY::INTERRUPTED", "The form was interrupted.")
+    text = json.dumps(found) + "\n"
+    with kernel.shield():
+        out.write(text)
         out.flush()
 
 
@@ -51,14 +64,17 @@ def _next(lines):
                 if kernel.active().hears_outside:  # a server listens: its clients are answered while we wait
                     return kernel.run_blocking(next, lines, None)
                 return next(lines, None)
-        except standard_input.BrokenOff:
-            try:
-                kernel.yield_()  # what woke us is raised here
-            except kernel.Interrupted:
-                pass
-        except kernel.Interrupted:
+        except kernel.Terminated:
+            raise
+        except (standard_input.BrokenOff, KeyboardInterrupt, kernel.Abandoned):
             pass
-        kernel.interrupt_over()
+        try:
+            kernel.interrupt_over()
+            kernel.yield_()  # what woke us is raised here
+        except kernel.Terminated:
+            raise
+        except (KeyboardInterrupt, kernel.Abandoned):
+            kernel.interrupt_over()
 
 
 def _standard_input():

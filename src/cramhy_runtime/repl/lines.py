@@ -9,7 +9,7 @@ but before the form runs, interrupts the form, and what was typed ahead stays.
 from __future__ import annotations
 
 import sys
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 
 from cramhy_runtime.kernel.standard_input import BrokenOff, StandardInput, ctrl_c_as_a_key, drop_unfinished, typed_ahead
 from cramhy_runtime.lisp.streams import streams
@@ -118,13 +118,13 @@ class EditedLines(Lines):
     interactive = True
 
     def __init__(self):
-        from prompt_toolkit import PromptSession
         from prompt_toolkit.history import InMemoryHistory
 
         super().__init__()
-        self._editor = PromptSession(history=InMemoryHistory())
+        self._editor = _session_class()(history=InMemoryHistory())
+        self._editor.begun = self._begun
         self._woken = False
-        self._loop = None  # in which the editor runs
+        self._loop = self._application = None  # in which the editor runs, and what it runs there
 
     def wait(self, prompt):
         if self._woken:
@@ -132,7 +132,7 @@ class EditedLines(Lines):
             return BROKEN_OFF
         try:
             with ctrl_c_as_a_key(self._editor.input.fileno()):  # before the prompt stands there
-                line = self._editor.prompt(prompt, pre_run=self._begun, handle_sigint=False)
+                line = self._editor.prompt(prompt, pre_run=lambda: self._begun(self._editor.app), handle_sigint=False)
         except KeyboardInterrupt:  # the key, or `wake`
             self._woken = False
             return BROKEN_OFF
@@ -143,15 +143,15 @@ class EditedLines(Lines):
         self._look_for_ctrl_c()
         return line
 
-    def _begun(self):
+    def _begun(self, application):
         import asyncio
 
-        self._loop = asyncio.get_running_loop()
+        self._application, self._loop = application, asyncio.get_running_loop()
         if self._woken:
             self._leave()
 
     def _leave(self):
-        application = self._editor.app
+        application = self._application
         if application.is_running and application.future is not None and not application.future.done():
             application.exit(exception=KeyboardInterrupt())
 
@@ -184,3 +184,20 @@ class EditedLines(Lines):
         store_typeahead(source, keys)
         if pressed:
             self.press()
+
+
+def _session_class():
+    """prompt_toolkit's `PromptSession`, which calls ``begun`` with its application when that has begun to run. A terminal that cannot move
+    its cursor gets an application of its own for each line."""
+    from prompt_toolkit import PromptSession
+
+    class Session(PromptSession):
+        begun = None
+
+        @contextmanager
+        def _dumb_prompt(self, *arguments):
+            with super()._dumb_prompt(*arguments) as application:
+                application.pre_run_callables.append(lambda: self.begun(application))
+                yield application
+
+    return Session

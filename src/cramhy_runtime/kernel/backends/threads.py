@@ -15,6 +15,7 @@ import sys
 import threading
 from collections import deque
 
+from .. import signals
 from ..clocks import LONGEST_WAIT
 from ..depth import STACK_SIZE
 from ..errors import NoStack, Terminated
@@ -153,7 +154,12 @@ class ThreadBackend:
         Python delivers signals to the main thread. So while the main task is outside, an interrupt may raise right here
         and so end a wait for input or for a socket, which nothing else could.
         """
-        spare = borrow(kernel.carry)
+        try:
+            spare = borrow(kernel.carry)
+        except NoStack:
+            if not signals.leaving:
+                raise
+            return call()  # the others wait, and cleanup goes on
         kernel.leave(task)
         try:
             spare.lock.release()
