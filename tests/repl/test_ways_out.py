@@ -459,8 +459,7 @@ def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, ba
                 break
         else:
             pytest.fail("it is interrupted without end")
-        process.process.stdin.close()
-        assert process.process.wait(PATIENCE) == 0
+        assert process.end()[0] == 0
 
 
 @pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])

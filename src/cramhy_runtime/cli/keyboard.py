@@ -18,6 +18,8 @@ PACE = 0.1  # s between two looks whether the session is still there
 
 def teleop(words=()):
     """Drive with the arrow keys until ``q``, the end of the input or Ctrl-C; the exit status. words: of the node's command line."""
+    from cramhy_runtime.kernel import signals
+    from cramhy_runtime.kernel.errors import Terminated
     from cramhy_runtime.ros_tools import there
     from cramhy_runtime.ros_tools.reach import NoSession, Refused, SessionEnded
     from cramhy_runtime.ros_tools.running import NO_SESSION
@@ -51,7 +53,8 @@ def teleop(words=()):
         print(f"ERROR: {problem}", file=sys.stderr)
         node = None
         return 1
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Terminated):
+        signals.answered()
         return 0
     finally:
         if node is not None:

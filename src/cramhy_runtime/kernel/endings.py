@@ -147,7 +147,8 @@ class Endings:
         """The limit of cleanup is reached: abandon it, in the scheduler."""
         if not (self._stopping or self.stopped):
             self._abandon_tasks(f"It took longer than {self.cleanup_limit:g} s.")
-            self._alarm(TerminatedAtOnce(self.ended_by), True)
+            if self.ended_by is not None:
+                self._alarm(TerminatedAtOnce(self.ended_by), True)
 
     def _abandon_tasks(self, why=""):
         """Give up the cleanup of all tasks that were asked to end, and the tasks below them: a request to end would not reach one

@@ -88,8 +88,10 @@ def held():
 
 
 def answered():
-    """The program has done what the signals asked for, as a part of what it is there for: its exit status is its own."""
+    """The program is there until somebody ends it, and has done what the signals asked for: its exit status is its own."""
     received.clear()
+    for kernel in _kernels:
+        kernel.ended_by = None
 
 
 def _install():
