@@ -15,6 +15,7 @@ sends the signal again to a main thread that has not heard it. After the limit o
 not stopped soon after that, it says whose fault it is, closes what serves the plans, and ends the process.
 """
 
+import _signal  # below `signal`, whose enumerations would take half of the time in which a kernel starts
 import os
 import signal
 import sys
@@ -28,6 +29,7 @@ from .errors import Interrupted, Terminated
 
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGBREAK") if hasattr(signal, name))
 """The signals that end a process."""
+_HEARD = tuple(map(int, (signal.SIGINT, *ENDING)))
 
 DEAF = 1.0  # s after which a main thread that has not read a message is taken to compute outside of the kernel
 FORCE = 2.0  # s that a process gets to end after its cleanup was given up
@@ -97,19 +99,20 @@ def answered():
 def _install():
     if sys.excepthook is sys.__excepthook__:
         sys.excepthook = _uncaught
-    for number in (signal.SIGINT, *ENDING):
-        handler = signal.getsignal(number)
-        if number not in _before and handler in (signal.SIG_DFL, signal.default_int_handler):
-            signal.signal(number, _hear)
-            _before[number] = handler
+    for number in _HEARD:
+        if number not in _before:
+            handler = _signal.getsignal(number)
+            if handler is signal.default_int_handler or handler == signal.SIG_DFL:
+                _signal.signal(number, _hear)
+                _before[number] = handler
 
 
 def _restore():
     if _kernels or (_held and os.getpid() == _program) or threading.current_thread() is not threading.main_thread():
         return
     for number, handler in _before.items():
-        if signal.getsignal(number) is _hear:
-            signal.signal(number, handler)
+        if _signal.getsignal(number) is _hear:
+            _signal.signal(number, handler)
     _before.clear()
 
 
