@@ -22,7 +22,7 @@ from ..ros.messages import message_class_exact
 from ..ros.wire import ros_text
 from .texts import value_text
 
-MOST_DEAD = 1000
+MOST_DEAD = 500
 """Dead tasks that are remembered."""
 MOST_EVENTS = 5000
 """Events that may wait for the end of an instant; with more, the tasks are looked at before it."""
