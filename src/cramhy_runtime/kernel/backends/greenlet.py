@@ -10,7 +10,7 @@ from collections import deque
 
 from greenlet import getcurrent, greenlet
 
-from .threads import borrow
+from .threads import borrow_unless_leaving
 
 KEEP = 256  # idle greenlets that one kernel keeps
 
@@ -125,7 +125,9 @@ class GreenletBackend:
                 outcome[:] = None, exception
             kernel.post(lambda: kernel.comes_back(task, visit))
 
-        helper = borrow(outside)
+        helper = borrow_unless_leaving(outside)
+        if helper is None:
+            return call()
         visit = kernel.leave(task)
         helper.lock.release()
         kernel.hand_over(task)

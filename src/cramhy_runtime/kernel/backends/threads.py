@@ -65,6 +65,17 @@ def borrow(job):
     return carrier
 
 
+def borrow_unless_leaving(job):
+    """As `borrow`, but None when Python starts no more threads because the main program is over: then a call that blocks is made with the
+    baton, so that cleanup goes on."""
+    try:
+        return borrow(job)
+    except NoStack:
+        if not signals.leaving:
+            raise
+        return None
+
+
 def threads_in_use():
     """The threads of this process beside the main one, without those that are idle in the pool."""
     return _thread._count() - len(_idle)
@@ -154,12 +165,9 @@ class ThreadBackend:
         Python delivers signals to the main thread. So while the main task is outside, an interrupt may raise right here
         and so end a wait for input or for a socket, which nothing else could.
         """
-        try:
-            spare = borrow(kernel.carry)
-        except NoStack:
-            if not signals.leaving:
-                raise
-            return call()  # the others wait, and cleanup goes on
+        spare = borrow_unless_leaving(kernel.carry)
+        if spare is None:
+            return call()
         kernel.leave(task)
         try:
             spare.lock.release()
