@@ -436,12 +436,13 @@ def test_output_that_nobody_reads_any_more_does_not_cost_the_cleanup(folder, clo
 # ---------------------------------------------------------------------------------------------------------------- requests, keys
 
 
+@pytest.mark.parametrize("options", [(), ("--serve",)], ids=["alone", "serving"])
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("clock", CLOCKS)
-def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, backend):
+def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, backend, options):
     """Two at a time, while it waits and while it answers: each request gets one answer."""
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
-    with Process(folder, "eval", "--time", clock, "--backend", backend) as process:
+    with Process(folder, "eval", "--time", clock, "--backend", backend, *options) as process:
         def answer(form):
             process.type(json.dumps({"form": form}))
             return json.loads(process.process.stdout.readline())

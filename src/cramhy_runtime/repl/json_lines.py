@@ -58,16 +58,24 @@ def _give(session, line, out):
 def _next(lines):
     """The next request, ``None`` at the end. An interrupt between two requests has nothing to end."""
     wake = getattr(lines, "wake", None)
+    taken = []  # an interrupt may be raised while a line is on its way to us
+
+    def take():
+        taken.append(next(lines, None))
+
     while True:
         try:
             with kernel.woken_by(wake) if wake else nullcontext():
                 if kernel.active().hears_outside:  # a server listens: its clients are answered while we wait
-                    return kernel.run_blocking(next, lines, None)
-                return next(lines, None)
+                    kernel.run_blocking(take)
+                else:
+                    take()
         except kernel.Terminated:
             raise
         except (standard_input.BrokenOff, KeyboardInterrupt, kernel.Abandoned):
-            pass
+            kernel.interrupt_over()
+        if taken:
+            return taken[0]
         try:
             kernel.interrupt_over()
             kernel.yield_()  # what woke us is raised here
