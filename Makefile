@@ -1,10 +1,11 @@
 # make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make test: everything.
+# make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # The first call of any of them makes the environment.
 PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: tutorial view test docs bench golden lint soak clean
+.PHONY: tutorial view test docs site bench golden lint soak clean
 
 tutorial: $(READY)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -21,7 +22,12 @@ golden: $(READY)
 
 docs: $(READY)
 	@$(BIN)/python tests/lisp/standard_page.py
-	@$(BIN)/python tests/tutorials/pages.py
+	@$(BIN)/python tests/operators/page.py
+	@$(BIN)/python tests/docs/command_line.py
+	@$(BIN)/python tests/docs/pages.py
+
+site: $(READY)
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 bench: $(READY)
 	@for file in benchmarks/*_bench.py; do echo "== $$file"; $(BIN)/python $$file; done
@@ -32,6 +38,7 @@ soak: $(READY)
 
 lint: $(READY)
 	@$(BIN)/ruff check src hy_src tests benchmarks tutorials
+	@$(BIN)/ruff format --check .
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "cramhy needs Python 3.11 or later; try make PYTHON=python3.11")'
@@ -41,4 +48,4 @@ $(READY): pyproject.toml
 	@touch $(READY)
 
 clean:
-	rm -rf .venv .pytest_cache .hypothesis
+	rm -rf .venv .pytest_cache .hypothesis site

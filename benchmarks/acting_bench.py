@@ -13,19 +13,20 @@ from contextlib import contextmanager
 
 from measuring import Table, repeat
 
-from cramhy_runtime import cpl, image, kernel
+from cramhy_runtime import cpl, kernel
+from cramhy_runtime.session import boot
 from cramhy_runtime import designators as desig
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime.designators.locations import generators, register_location_generator, validators
 from cramhy_runtime.designators.protocol import reference
-from cramhy_runtime.lisp.data import lisp_list, one
-from cramhy_runtime.lisp.packages import intern, keyword, sym
-from cramhy_runtime.lisp.reader.reader_functions import read_from_string
-from cramhy_runtime.lisp.systems.systems import load_system
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.prolog.facts import define_fact_group
+from cramhy_runtime.ground.data import lisp_list, one
+from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.languages.commonlisp.reader.reader_functions import read_from_string
+from cramhy_runtime.languages.commonlisp.systems.systems import load_system
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
 
-image.boot()
+boot()
 
 
 def define_navigation():
@@ -33,13 +34,20 @@ def define_navigation():
     navigation = intern("BENCH-NAVIGATION", "CRAM-USER")
     d, speed = intern("?D", "CRAM-USER"), intern("?SPEED", "CRAM-USER")
     prop, driving = sym("DESIG::DESIG-PROP"), lisp_list(keyword("TYPE"), keyword("BENCH-DRIVING"))
-    grounding, matching, available = map(sym, ("DESIG::MOTION-GROUNDING", "CPM::MATCHING-PROCESS-MODULE",
-                                               "CPM::AVAILABLE-PROCESS-MODULE"))
-    define_fact_group(intern("BENCH", "CRAM-USER"), lisp_list(grounding, matching, available), lisp_list(
-        lisp_list(lisp_list(grounding, d, lisp_list(intern("DRIVE", "CRAM-USER"), speed)), lisp_list(prop, d, driving),
-                  lisp_list(prop, d, lisp_list(keyword("SPEED"), speed))),
-        lisp_list(lisp_list(matching, d, navigation), lisp_list(prop, d, driving)),
-        lisp_list(lisp_list(available, navigation))))
+    grounding, matching, available = map(sym, ("DESIG::MOTION-GROUNDING", "CPM::MATCHING-PROCESS-MODULE", "CPM::AVAILABLE-PROCESS-MODULE"))
+    define_fact_group(
+        intern("BENCH", "CRAM-USER"),
+        lisp_list(grounding, matching, available),
+        lisp_list(
+            lisp_list(
+                lisp_list(grounding, d, lisp_list(intern("DRIVE", "CRAM-USER"), speed)),
+                lisp_list(prop, d, driving),
+                lisp_list(prop, d, lisp_list(keyword("SPEED"), speed)),
+            ),
+            lisp_list(lisp_list(matching, d, navigation), lisp_list(prop, d, driving)),
+            lisp_list(lisp_list(available, navigation)),
+        ),
+    )
     pm.define_process_module(navigation, lambda designator: None)
     return navigation
 

@@ -18,7 +18,7 @@ from measuring import Table, rounds
 
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import chronicler
-from cramhy_runtime.lisp.streams import streams
+from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl.session import Session
 
 PLANS = """

@@ -22,7 +22,7 @@ import time
 from measuring import Table, microseconds, number, repeat
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl.fluent_operators import fl_funcall, fl_lt, fl_plus
+from cramhy_runtime.cpl.fluents.operators import fl_funcall, fl_lt, fl_plus
 from cramhy_runtime.repl.session import Session
 
 PLANS = """
@@ -121,6 +121,7 @@ def virtual_time_of_others():
     except ImportError:
         in_trio = "trio MockClock 40-49 k (recorded)"
     else:
+
         async def sleeper(count):
             for _ in range(count // 10):
                 await trio.sleep(1)
@@ -157,6 +158,7 @@ def virtual_time_of_others():
 
 def hand_over(count):
     """Two tasks of the kernel that yield to each other: ``count`` hand-overs of the baton."""
+
     def yielding():
         for _ in range(count // 2):
             kernel.yield_()
@@ -167,6 +169,7 @@ def hand_over(count):
 
 def wide(branches):
     """A ``par`` of so many branches, as often as there are ``count`` branches in all."""
+
     def work(count):
         def body():
             for _ in range(count // branches):
@@ -264,16 +267,24 @@ class Bench:
 
     def tasks(self):
         self.row("(top-level)", "tops", 50, goal=(30, 10), cram="96", python=self.peer("thread start and join", thread_start_and_join, 20))
-        self.row("par of 2 trivial branches, whole form", "pars", 20, goal=(100, 25), cram="530",
-                 python=f"{self.peer('two threads', two_threads, 10)}, {trio_nursery()}")
+        self.row(
+            "par of 2 trivial branches, whole form",
+            "pars",
+            20,
+            goal=(100, 25),
+            cram="530",
+            python=f"{self.peer('two threads', two_threads, 10)}, {trio_nursery()}",
+        )
         for branches, cram in ((10, "102"), (100, "81"), (1000, "102")):
             self.row(f"par of {branches}, per branch", wide(branches), max(100, branches), goal=(30, 10), cram=cram)
 
     def losers(self):
-        for loser, work, count, goal, cram in (("in (sleep 10)", "pursue-sleep", 10, 150, "3,200"),
-                                               ("in a wait that never ends", "pursue-wait", 10, 150, "1,700"),
-                                               ("in (loop do (wait-duration 0.1))", "pursue-loop", 10, 150, "4,800"),
-                                               ("in a busy loop", "pursue-busy", 5, 5000, "never ends")):
+        for loser, work, count, goal, cram in (
+            ("in (sleep 10)", "pursue-sleep", 10, 150, "3,200"),
+            ("in a wait that never ends", "pursue-wait", 10, 150, "1,700"),
+            ("in (loop do (wait-duration 0.1))", "pursue-loop", 10, 150, "4,800"),
+            ("in a busy loop", "pursue-busy", 5, 5000, "never ends"),
+        ):
             self.row(f"pursue, loser {loser}", work, count, goal=goal, cram=cram)
 
     def waking(self):
@@ -303,12 +314,19 @@ class Bench:
         if self.only in "virtual sleeps a second":
             work = self.lisp("sleeps")
             figures = [1e6 / microseconds(work, 200) for _ in range(3)]
-            self.table.line("virtual sleeps a second, of ten branches", max(figures), statistics.median(figures), (10_000, 50_000),
-                            python=virtual_time_of_others(), more_is_better=True)
+            self.table.line(
+                "virtual sleeps a second, of ten branches",
+                max(figures),
+                statistics.median(figures),
+                (10_000, 50_000),
+                python=virtual_time_of_others(),
+                more_is_better=True,
+            )
         if self.only in "parked tasks at once":
             goal = 100_000 if self.backend == "greenlet" else 10_000
-            told = subprocess.run([sys.executable, __file__, "--park", str(goal), "--backend", self.backend],
-                                  capture_output=True, text=True)
+            told = subprocess.run(
+                [sys.executable, __file__, "--park", str(goal), "--backend", self.backend], capture_output=True, text=True
+            )
             if told.returncode:
                 print(f"{'parked tasks at once':48} failed: {told.stderr.strip().splitlines()[-1:]}")
                 self.table.missed.append("parked tasks at once")
@@ -316,8 +334,10 @@ class Bench:
             parked, each, begun, ended = told.stdout.split()
             peer = "10,000 threads of 256 KiB: 170 MB (recorded)" if self.backend == "threads" else ""
             self.table.line("parked tasks at once", int(parked), int(parked), goal, "about 1,000", peer, more_is_better=True)
-            print(f"    {int(each) * int(parked) / 1e6:,.0f} MB, {int(each) / 1000:.1f} KB each; "
-                  f"all parked after {begun} s, dead after {ended} s")
+            print(
+                f"    {int(each) * int(parked) / 1e6:,.0f} MB, {int(each) / 1000:.1f} KB each; "
+                f"all parked after {begun} s, dead after {ended} s"
+            )
 
     def beyond_the_table(self):
         """What users feel, though no figures of CRAM stand beside it."""

@@ -22,44 +22,75 @@ from pathlib import Path
 
 from plan_text import plan_text
 
-from cramhy_runtime.lisp.data import Cons
-from cramhy_runtime.lisp.systems.loader import load_file
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.languages.commonlisp.systems.loader import load_file
 from cramhy_runtime.repl.session import Session
 
 PROGRAMS = {
     "a recursive function: fib 20": ("(defun fib (n) (if (< n 2) n (+ (fib (- n 1)) (fib (- n 2)))))", "(fib 20)"),
-    "loop over a vector of floats": ("(defvar *floats* (coerce (loop for i below 50000 collect (* i 0.5)) 'vector)) "
-                                     "(defun energy (v) (loop for x across v sum (* x x))) (defun energies () (energy *floats*))",
-                                     "(energies)"),
-    "mapcar with a closure": ("(defvar *numbers* (loop for i below 20000 collect i)) "
-                              "(defun scaled (k l) (mapcar (lambda (x) (* x k)) l)) (defun all-scaled () (scaled 3 *numbers*))",
-                              "(all-scaled)"),
-    "generic dispatch": ("(defclass arm () ()) (defclass left-arm (arm) ()) (defclass right-arm (arm) ()) (defgeneric side (arm)) "
-                         "(defmethod side ((arm left-arm)) 1) (defmethod side ((arm right-arm)) 2) "
-                         "(defvar *arms* (list (make-instance 'left-arm) (make-instance 'right-arm))) "
-                         "(defun sides () (let ((s 0)) (dotimes (i 10000 s) (dolist (arm *arms*) (incf s (side arm))))))", "(sides)"),
-    "struct access": ("(defstruct place x y) (defvar *places* (loop for i below 20000 collect (make-place :x i :y 2))) "
-                      "(defun areas-of-places () (let ((s 0)) (dolist (p *places* s) (setf (place-y p) 3) "
-                      "(incf s (* (place-x p) (place-y p))))))", "(areas-of-places)"),
-    "string building with format": ("(defun texts () (let ((l nil)) (dotimes (i 5000 (length l)) "
-                                    "(push (format nil \"~a goes to place ~d of ~s.~%\" \"Turtle\" i :kitchen) l))))", "(texts)"),
+    "loop over a vector of floats": (
+        "(defvar *floats* (coerce (loop for i below 50000 collect (* i 0.5)) 'vector)) "
+        "(defun energy (v) (loop for x across v sum (* x x))) (defun energies () (energy *floats*))",
+        "(energies)",
+    ),
+    "mapcar with a closure": (
+        "(defvar *numbers* (loop for i below 20000 collect i)) "
+        "(defun scaled (k l) (mapcar (lambda (x) (* x k)) l)) (defun all-scaled () (scaled 3 *numbers*))",
+        "(all-scaled)",
+    ),
+    "generic dispatch": (
+        "(defclass arm () ()) (defclass left-arm (arm) ()) (defclass right-arm (arm) ()) (defgeneric side (arm)) "
+        "(defmethod side ((arm left-arm)) 1) (defmethod side ((arm right-arm)) 2) "
+        "(defvar *arms* (list (make-instance 'left-arm) (make-instance 'right-arm))) "
+        "(defun sides () (let ((s 0)) (dotimes (i 10000 s) (dolist (arm *arms*) (incf s (side arm))))))",
+        "(sides)",
+    ),
+    "struct access": (
+        "(defstruct place x y) (defvar *places* (loop for i below 20000 collect (make-place :x i :y 2))) "
+        "(defun areas-of-places () (let ((s 0)) (dolist (p *places* s) (setf (place-y p) 3) "
+        "(incf s (* (place-x p) (place-y p))))))",
+        "(areas-of-places)",
+    ),
+    "string building with format": (
+        "(defun texts () (let ((l nil)) (dotimes (i 5000 (length l)) "
+        '(push (format nil "~a goes to place ~d of ~s.~%" "Turtle" i :kitchen) l))))',
+        "(texts)",
+    ),
     "nested dotimes 300 x 300": ("(defun nested () (let ((s 0)) (dotimes (i 300 s) (dotimes (j 300) (setq s (+ s j))))))", "(nested)"),
     "push 100000, nreverse": ("(defun build () (let ((l nil)) (dotimes (i 100000) (push i l)) (length (nreverse l))))", "(build)"),
-    "&key calls 50000": ("(defun area (&key (width 1) (height 1)) (* width height)) "
-                         "(defun areas () (let ((s 0)) (dotimes (i 50000 s) (incf s (area :width i :height 2)))))", "(areas)"),
-    "specials 100000": ("(defvar *count* 0) (defun counting () (let ((*count* 0)) (dotimes (i 100000) (incf *count*)) *count*))",
-                        "(counting)"),
+    "&key calls 50000": (
+        "(defun area (&key (width 1) (height 1)) (* width height)) "
+        "(defun areas () (let ((s 0)) (dotimes (i 50000 s) (incf s (area :width i :height 2)))))",
+        "(areas)",
+    ),
+    "specials 100000": (
+        "(defvar *count* 0) (defun counting () (let ((*count* 0)) (dotimes (i 100000) (incf *count*)) *count*))",
+        "(counting)",
+    ),
     "loop collect when 50000": ("(defun looped () (length (loop for i from 1 to 50000 when (evenp i) collect (* i i))))", "(looped)"),
-    "assoc in a list of 50, 5000": ("(defun searched () (let ((a (loop for i below 50 collect (cons i i))) (s 0)) "
-                                    "(dotimes (i 5000 s) (incf s (cdr (assoc (mod i 50) a))))))", "(searched)"),
-    "hash table 50000": ("(defun hashed () (let ((h (make-hash-table))) (dotimes (i 50000) (setf (gethash i h) i)) "
-                         "(hash-table-count h)))", "(hashed)"),
-    "handler-case 20000": ("(defun handled () (let ((n 0)) (dotimes (i 20000 n) (handler-case (when (evenp i) (error \"x\")) "
-                           "(error () (incf n))))))", "(handled)"),
-    "return-from in mapc 20000": ("(defun left () (let ((n 0)) (dotimes (i 20000 n) "
-                                  "(block b (mapc (lambda (x) (when (= x 2) (return-from b nil)) (incf n)) '(1 2 3))))))", "(left)"),
-    "return-from a closure 20000": ("(defun call (f) (funcall f)) (defun escape () (let ((n 0)) (dotimes (i 20000 n) "
-                                    "(block b (call (lambda () (incf n) (return-from b nil)))))))", "(escape)"),
+    "assoc in a list of 50, 5000": (
+        "(defun searched () (let ((a (loop for i below 50 collect (cons i i))) (s 0)) "
+        "(dotimes (i 5000 s) (incf s (cdr (assoc (mod i 50) a))))))",
+        "(searched)",
+    ),
+    "hash table 50000": (
+        "(defun hashed () (let ((h (make-hash-table))) (dotimes (i 50000) (setf (gethash i h) i)) (hash-table-count h)))",
+        "(hashed)",
+    ),
+    "handler-case 20000": (
+        '(defun handled () (let ((n 0)) (dotimes (i 20000 n) (handler-case (when (evenp i) (error "x")) (error () (incf n))))))',
+        "(handled)",
+    ),
+    "return-from in mapc 20000": (
+        "(defun left () (let ((n 0)) (dotimes (i 20000 n) "
+        "(block b (mapc (lambda (x) (when (= x 2) (return-from b nil)) (incf n)) '(1 2 3))))))",
+        "(left)",
+    ),
+    "return-from a closure 20000": (
+        "(defun call (f) (funcall f)) (defun escape () (let ((n 0)) (dotimes (i 20000 n) "
+        "(block b (call (lambda () (incf n) (return-from b nil)))))))",
+        "(escape)",
+    ),
 }
 
 
@@ -250,8 +281,30 @@ def escape():
     return n
 
 
-PYTHON = dict(zip(PROGRAMS, (fib, energies, all_scaled, sides, areas_of_places, texts, nested, build, areas, counting, looped, searched,
-                             hashed, handled, left, escape), strict=True))
+PYTHON = dict(
+    zip(
+        PROGRAMS,
+        (
+            fib,
+            energies,
+            all_scaled,
+            sides,
+            areas_of_places,
+            texts,
+            nested,
+            build,
+            areas,
+            counting,
+            looped,
+            searched,
+            hashed,
+            handled,
+            left,
+            escape,
+        ),
+        strict=True,
+    )
+)
 MORE = {"generic dispatch": ("  beside a method call", sides_by_methods)}
 
 

@@ -36,6 +36,7 @@ def microseconds(work, count):
 
 def repeat(call):
     """The work that calls ``call`` so many times."""
+
     def work(count):
         for _ in range(count):
             call()
@@ -72,6 +73,7 @@ class Table:
             goal = goal[self.backend == "greenlet"]
         ratio, remark = "", ""
         if goal is not None:
+
             def quotient(figure):
                 return goal / figure if more_is_better else figure / goal
 

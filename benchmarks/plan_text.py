@@ -1,4 +1,4 @@
-'''A file of Lisp as people write for robots: classes, structures, generic functions, macros, loops, conditions, plans, designators.'''
+"""A file of Lisp as people write for robots: classes, structures, generic functions, macros, loops, conditions, plans, designators."""
 
 PART = """
 (defclass part-{n} ()

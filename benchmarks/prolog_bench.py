@@ -16,16 +16,18 @@ import time
 from measuring import Table, repeat, rounds
 from prolog_programs import GOALS, LISTS, ZEBRA, edges, swi_figures
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import make_package, sym
-from cramhy_runtime.lisp.reader.reader import read_from_string
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import make_package, sym
+from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 from cramhy_runtime.repl.session import quiet_collector
 
-image.boot()
+boot()
 
-from cramhy_runtime.prolog import facts, query  # noqa: E402
-from cramhy_runtime.prolog.terms import Var  # noqa: E402
+from cramhy_runtime.prolog.engine import fact_groups as facts  # noqa: E402
+from cramhy_runtime.prolog import query  # noqa: E402
+from cramhy_runtime.prolog.terms.terms import Var  # noqa: E402
 from cramhy_runtime.utilities.lazy_lists import force_ll  # noqa: E402
 
 HERE = make_package("PROLOG-BENCH", use=["COMMON-LISP", "CRAM-PROLOG"])
@@ -72,8 +74,15 @@ class PrologTable(Table):
         """Measure ``work`` in units a second."""
         times = [microseconds / units for microseconds in rounds(repeat(work), count, time.process_time)]
         live = self.swi.get(name)
-        self.line(title, 1e6 / min(times), 1e6 / statistics.median(times), goal, cram, f"{swi}, {f'{live * units:,.0f}' if live else '-'}",
-                  more_is_better=True)
+        self.line(
+            title,
+            1e6 / min(times),
+            1e6 / statistics.median(times),
+            goal,
+            cram,
+            f"{swi}, {f'{live * units:,.0f}' if live else '-'}",
+            more_is_better=True,
+        )
 
 
 def inferences(length):
@@ -101,8 +110,13 @@ def main():
     table.rate(f"three-way join, {len(join()):,} answers", "join", join, 1, 100, "10.8", "766")
     table.rate(f"three-way join with a cycle, {len(cycle())} answers", "cycle", cycle, 1, 150, "12.2", "4,975")
     table.rate("zebra puzzle with named variables", "zebra", first("zebra"), 1, 30, "0.97", "723")
-    define("motion", ["""((motion-like ?d (drive ?m)) (property ?d (type drive)) (property ?d (speed ?s)) (property ?d (angle ?a))
-                          (lisp-fun make-motion ?s ?a ?m))"""])
+    define(
+        "motion",
+        [
+            """((motion-like ?d (drive ?m)) (property ?d (type drive)) (property ?d (speed ?s)) (property ?d (angle ?a))
+                          (lisp-fun make-motion ?s ?a ?m))"""
+        ],
+    )
     define("desig", ["((property d1 (type drive)))", "((property d1 (speed 5)))", "((property d1 (angle 2)))"])
     read("make-motion").function = lambda speed, angle: (speed, angle)
     motion, designator = read("motion-like"), read("d1")

@@ -12,12 +12,21 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-LISTS = ["((app () ?l ?l))", "((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))", "((nrev () ()))",
-         "((nrev (?h . ?t) ?r) (nrev ?t ?rt) (app ?rt (?h) ?r))", "((mem ?x (?x . ?_)))", "((mem ?x (?_ . ?t)) (mem ?x ?t))"]
+LISTS = [
+    "((app () ?l ?l))",
+    "((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))",
+    "((nrev () ()))",
+    "((nrev (?h . ?t) ?r) (nrev ?t ?rt) (app ?rt (?h) ?r))",
+    "((mem ?x (?x . ?_)))",
+    "((mem ?x (?_ . ?t)) (mem ?x ?t))",
+]
 
-ZEBRA = ["((right-of ?y ?x (?x ?y . ?_)))", "((right-of ?y ?x (?_ . ?t)) (right-of ?y ?x ?t))",
-         "((next-to ?x ?y ?l) (right-of ?x ?y ?l))", "((next-to ?x ?y ?l) (right-of ?y ?x ?l))",
-         """((zebra ?houses ?owner)
+ZEBRA = [
+    "((right-of ?y ?x (?x ?y . ?_)))",
+    "((right-of ?y ?x (?_ . ?t)) (right-of ?y ?x ?t))",
+    "((next-to ?x ?y ?l) (right-of ?x ?y ?l))",
+    "((next-to ?x ?y ?l) (right-of ?y ?x ?l))",
+    """((zebra ?houses ?owner)
              (== ?houses ((house ?n1 ?p1 ?c1 ?d1 ?s1) (house ?n2 ?p2 ?c2 ?d2 ?s2) (house ?n3 ?p3 ?c3 ?d3 ?s3)
                           (house ?n4 ?p4 ?c4 ?d4 ?s4) (house ?n5 ?p5 ?c5 ?d5 ?s5)))
              (== ?n1 norwegian) (== ?d3 milk)
@@ -29,7 +38,8 @@ ZEBRA = ["((right-of ?y ?x (?x ?y . ?_)))", "((right-of ?y ?x (?_ . ?t)) (right-
              (next-to (house ?m1 ?m2 ?m3 ?m4 kools) (house ?o1 horse ?o2 ?o3 ?o4) ?houses)
              (mem (house ?q1 ?q2 ?q3 juice luckystrike) ?houses) (mem (house japanese ?r1 ?r2 ?r3 parliaments) ?houses)
              (next-to (house norwegian ?t1 ?t2 ?t3 ?t4) (house ?u1 ?u2 blue ?u3 ?u4) ?houses)
-             (mem (house ?owner zebra ?w1 ?w2 ?w3) ?houses))"""]
+             (mem (house ?owner zebra ?w1 ?w2 ?w3) ?houses))""",
+]
 
 
 def edges():
@@ -50,12 +60,19 @@ def numbers(count):
 JOIN = "(and (edge ?x ?y) (edge ?y ?z) (edge ?z ?w))"
 CYCLE = "(and (edge ?x ?y) (edge ?y ?z) (edge ?z ?x))"
 GOALS = {  # name → the goal, and what stands for its solutions when all are wanted
-    "nrev 30": (f"(nrev {numbers(30)} ?r)", None), "nrev 300": (f"(nrev {numbers(300)} ?r)", None),
+    "nrev 30": (f"(nrev {numbers(30)} ?r)", None),
+    "nrev 300": (f"(nrev {numbers(300)} ?r)", None),
     "append": (f"(app {numbers(20)} (1) ?c)", None),
     "member 1000": (f"(member ?x {numbers(1000)})", "?x"),
-    "own member 100": (f"(mem ?x {numbers(100)})", "?x"), "own member 1000": (f"(mem ?x {numbers(1000)})", "?x"),
-    "all edges": ("(edge ?x ?y)", "(?x ?y)"), "first edge": ("(edge ?x ?y)", None), "edges of": ("(edge n3 ?y)", "?y"),
-    "join": (JOIN, "(?x ?y ?z ?w)"), "cycle": (CYCLE, "(?x ?y ?z)"), "zebra": ("(zebra ?houses ?owner)", None)}
+    "own member 100": (f"(mem ?x {numbers(100)})", "?x"),
+    "own member 1000": (f"(mem ?x {numbers(1000)})", "?x"),
+    "all edges": ("(edge ?x ?y)", "(?x ?y)"),
+    "first edge": ("(edge ?x ?y)", None),
+    "edges of": ("(edge n3 ?y)", "?y"),
+    "join": (JOIN, "(?x ?y ?z ?w)"),
+    "cycle": (CYCLE, "(?x ?y ?z)"),
+    "zebra": ("(zebra ?houses ?owner)", None),
+}
 
 _RATE = """
 rate(Name, Goal) :- rate(Name, Goal, 1).
@@ -70,8 +87,10 @@ def swi_figures(read):
     if program is None:
         return {}
     clauses = [_clause(read(text)) for text in [*LISTS, *ZEBRA, *edges()]]
-    rates = [f"rate('{name}', {_goal(read(goal)) if wanted is None else f'findall({_term(read(wanted))}, {_goal(read(goal))}, _)'})"
-             for name, (goal, wanted) in GOALS.items()]
+    rates = [
+        f"rate('{name}', {_goal(read(goal)) if wanted is None else f'findall({_term(read(wanted))}, {_goal(read(goal))}, _)'})"
+        for name, (goal, wanted) in GOALS.items()
+    ]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "peers.pl"
         path.write_text("\n".join([*sorted(clauses, key=_functor), _RATE, f"main :- {', '.join(rates)}.", ""]))

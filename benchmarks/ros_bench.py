@@ -18,13 +18,14 @@ from time import process_time
 
 from measuring import Table, repeat, rounds
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.data import one
-from cramhy_runtime.lisp.evaluation.evaluator import evaluate
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.reader.reader_functions import read_from_string
-from cramhy_runtime.lisp.streams import streams
-from cramhy_runtime.lisp.systems.systems import load_system
+from cramhy_runtime import kernel
+from cramhy_runtime.session import fresh_start
+from cramhy_runtime.ground.data import one
+from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.languages.commonlisp.reader.reader_functions import read_from_string
+from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.systems.systems import load_system
 from cramhy_runtime.ros.roslisp import node
 from cramhy_runtime.turtlesim.node import running_simulator, start_turtlesim
 
@@ -71,7 +72,7 @@ def alone(table):
     busy_row(table, "tick, history kept, while driving", driving, 8192)
     simulator.history.stop()
     simulator.history = None
-    set_pen = calling("(call-service \"/turtle1/set_pen\" 'turtlesim-srv:SetPen :r 1 :g 2 :b 3 :width 4 :off 0)")
+    set_pen = calling('(call-service "/turtle1/set_pen" \'turtlesim-srv:SetPen :r 1 :g 2 :b 3 :width 4 :off 0)')
     table.row("service call to turtlesim", set_pen, 50, goal=50, cram="15.8 ms")
 
 
@@ -107,8 +108,9 @@ def plans(table):
 def messages(table):
     """The rows of messages and topics."""
     table.row("make-message Twist", calling('(make-message "geometry_msgs/Twist")'), 500, goal=5, cram="4.8")
-    table.row("make-message Twist, two fields", calling('(make-message "geometry_msgs/Twist" (:x :linear) 1.0 (:z :angular) 2.0)'), 200,
-              cram="")
+    table.row(
+        "make-message Twist, two fields", calling('(make-message "geometry_msgs/Twist" (:x :linear) 1.0 (:z :angular) 2.0)'), 200, cram=""
+    )
     sent = calling("(send-vel-cmd 1.5 0.3)")
 
     def send_and_take(count):
@@ -128,7 +130,7 @@ def starting(table):
 def main():
     for backend in ("threads", "greenlet"):
         try:
-            image.fresh_start(backend=backend, turtlesim=False)
+            fresh_start(backend=backend, turtlesim=False)
         except ImportError:
             print("greenlet is not installed")
             continue
@@ -138,7 +140,7 @@ def main():
         table = Table("ROS", backend)
         starting(table)
         alone(table)
-        calling("(init-ros-turtle \"turtle1\")")(1)
+        calling('(init-ros-turtle "turtle1")')(1)
         messages(table)
         observed(table)
         plans(table)

@@ -8,14 +8,26 @@ from pathlib import Path
 import late_threads
 import pytest
 from hypothesis import settings
-from image_as_it_was import image_as_it_was
+from cramhy_runtime.session import Image
 
 REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
 
 
-LONG = ("soak", "view", "rosbridge", "repl", "tutorials", "slides", "test_house.py", "test_invariants.py", "test_clause_index.py",
-        "test_against_reference.py", "test_anomalies.py", "test_collecting.py")
+LONG = (
+    "soak",
+    "view",
+    "rosbridge",
+    "repl",
+    "tutorials",
+    "slides",
+    "test_house.py",
+    "test_invariants.py",
+    "test_clause_index.py",
+    "test_against_reference.py",
+    "test_anomalies.py",
+    "test_collecting.py",
+)
 """Folders and files whose tests take seconds: they come first, so that on two processors neither waits for the other at the end."""
 
 # What hypothesis makes up is the same each time, so that a change is not blamed for what an unlucky draw finds; the soak draws anew.
@@ -40,9 +52,9 @@ def shared():
 
 
 @pytest.fixture(autouse=True, scope="module")
-def image_for_the_next_file():
-    """Each file of tests finds the image as the one before it found it, whatever their order."""
-    with image_as_it_was():
+def image_of_its_own():
+    """Each file of tests has an image of its own, with what all files have defined when they were imported."""
+    with Image(as_now=True):
         yield
 
 
@@ -58,8 +70,8 @@ def backend(request):
 def session():
     """A session in virtual time, without the turtle."""
     from cramhy_runtime import kernel
-    from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-    from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
     from cramhy_runtime.repl.session import Session
 
     made = Session(time="virtual", turtlesim=False)

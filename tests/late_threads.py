@@ -18,8 +18,8 @@ POINTS = (
     ("twisted.internet.epollreactor", "EPollReactor", "doPoll"),
     ("websockets.sync.connection", "Connection", "send"),
     ("websockets.sync.connection", "Connection", "recv"),
-    ("cramhy_runtime.kernel.outside", "Outside", "post"),
-    ("cramhy_runtime.kernel.outside", "Outside", "_read_inbox"),
+    ("cramhy_runtime.kernel.inbox", "Outside", "post"),
+    ("cramhy_runtime.kernel.inbox", "Outside", "_read_inbox"),
 )
 
 

@@ -2,11 +2,11 @@
 
 import pytest
 
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
-from cramhy_runtime.lisp.streams.streams import StringOutputStream
-from cramhy_runtime.lisp.tools.advice import hint_for
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
+from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.repl.session import condition_of
 
 

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[1]
 @pytest.fixture
 def installed(monkeypatch):
     """A function that says what pip noted of cramhy's origin: a dictionary, ``None`` for an index, or a text that is not JSON."""
+
     class Distribution:
         def __init__(self, noted):
             self.noted = noted
@@ -34,17 +35,23 @@ def installed(monkeypatch):
     return installed
 
 
-@pytest.mark.parametrize(("noted", "extra", "command"), [
-    (None, "web", "pip install 'cramhy[web]'"),
-    (None, "web,record", "pip install 'cramhy[web,record]'"),
-    ("{no JSON", "web", "pip install 'cramhy[web]'"),
-    ({"url": "file:///opt/cramhy", "dir_info": {"editable": True}}, "web", "pip install -e '/opt/cramhy[web]'"),
-    ({"url": "file:///opt/my%20clone%27s", "dir_info": {"editable": True}}, "ros", """pip install -e '/opt/my clone'"'"'s[ros]'"""),
-    ({"url": "file:///opt/cramhy", "dir_info": {}}, "web", "pip install '/opt/cramhy[web]'"),
-    ({"url": "file:///opt/cramhy.whl", "archive_info": {}}, "web", "pip install 'cramhy[web] @ file:///opt/cramhy.whl'"),
-    ({"url": "https://example.org/c.git", "vcs_info": {"vcs": "git", "commit_id": "0"}}, "web",
-     "pip install 'cramhy[web] @ git+https://example.org/c.git'"),
-])
+@pytest.mark.parametrize(
+    ("noted", "extra", "command"),
+    [
+        (None, "web", "pip install 'cramhy[web]'"),
+        (None, "web,record", "pip install 'cramhy[web,record]'"),
+        ("{no JSON", "web", "pip install 'cramhy[web]'"),
+        ({"url": "file:///opt/cramhy", "dir_info": {"editable": True}}, "web", "pip install -e '/opt/cramhy[web]'"),
+        ({"url": "file:///opt/my%20clone%27s", "dir_info": {"editable": True}}, "ros", """pip install -e '/opt/my clone'"'"'s[ros]'"""),
+        ({"url": "file:///opt/cramhy", "dir_info": {}}, "web", "pip install '/opt/cramhy[web]'"),
+        ({"url": "file:///opt/cramhy.whl", "archive_info": {}}, "web", "pip install 'cramhy[web] @ file:///opt/cramhy.whl'"),
+        (
+            {"url": "https://example.org/c.git", "vcs_info": {"vcs": "git", "commit_id": "0"}},
+            "web",
+            "pip install 'cramhy[web] @ git+https://example.org/c.git'",
+        ),
+    ],
+)
 @pytest.mark.skipif(os.name == "nt", reason="these paths and quotes are those of a POSIX shell")
 def test_the_command_names_where_cramhy_came_from(installed, noted, extra, command):
     installed(noted)

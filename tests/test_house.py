@@ -1,49 +1,133 @@
-"""The house keeps its order: floors, size of files, who may use threads and the wall clock (design.md section 3)."""
+"""The house keeps its order: floors, size of files, who may use threads and the wall clock."""
 
 from __future__ import annotations
 
 import ast
+import importlib
+import importlib.util
 import os
 import re
 import subprocess
 import sys
-from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
+from cramhy_runtime.ground import ports
+
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "cramhy_runtime"
-FLOORS = [["extras"], ["kernel", "storage"], ["lisp"], ["utilities"], ["transforms", "cpl", "prolog", "ros"],
-          ["designators", "turtlesim", "episodes", "actionlib", "rosbridge"],
-          ["occasions", "tf"], ["process_modules"], ["projection"], ["chronicle", "ros_tools"], ["view", "repl", "testing"],
-          ["cli", "image", "pytest_plugin", "__init__"]]
+FLOORS = [
+    ["extras"],
+    ["kernel", "storage"],
+    ["ground"],
+    ["utilities", "transforms"],
+    ["cpl", "prolog", "ros"],
+    ["designators", "turtlesim", "episodes", "actionlib", "rosbridge"],
+    ["occasions", "tf"],
+    ["process_modules"],
+    ["projection"],
+    ["languages"],
+    ["session"],
+    ["chronicle", "ros_tools", "testing"],
+    ["view", "repl"],
+    ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
+]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
-ALLOWED_UPWARDS = {("repl", "image"), ("testing", "image"), ("pytest_plugin", "image"), ("cli", "image")}
-"""``image`` puts all rooms together, so that a session can begin with it; nothing below the surfaces may import it."""
 
 FILES = sorted(SOURCE.rglob("*.py"))
-TEXTS = sorted({*FILES, *(path for folder in ("hy_src", "tests", "tutorials", "benchmarks") for ending in ("*.py", "*.hy", "*.lisp")
-                          for path in (ROOT / folder).rglob(ending))})
+TEXTS = sorted(
+    {
+        *FILES,
+        *(
+            path
+            for folder in ("hy_src", "tests", "tutorials", "benchmarks")
+            for ending in ("*.py", "*.hy", "*.lisp")
+            for path in (ROOT / folder).rglob(ending)
+        ),
+    }
+)
 
 
 def room_of(path):
     return path.relative_to(SOURCE).parts[0].removesuffix(".py")
 
 
-def imported_names(path):
-    """The dotted names of modules, or of things in them, that a file imports, wherever in it the import stands."""
+def imported_names(path, when_run=False):
+    """The dotted names of modules, or of things in them, that a file imports, wherever in it the import stands; WHEN_RUN: without those
+    that only type checkers read, below ``if TYPE_CHECKING:``."""
     package = ["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts[:-1]]
-    for node in ast.walk(ast.parse(path.read_text())):
+    tree = ast.parse(path.read_text())
+    unread = {
+        inner
+        for node in ast.walk(tree)
+        if when_run and isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        for statement in node.body
+        for inner in ast.walk(statement)
+    }
+    for node in ast.walk(tree):
+        if node in unread:
+            continue
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            base = package[:len(package) - node.level + 1] if node.level else []
+            base = package[: len(package) - node.level + 1] if node.level else []
             module = [*base, *(node.module or "").split(".")] if node.module else base
-            names = [".".join(module)] + [".".join([*module, alias.name]) for alias in node.names]
+            names = []
+            for alias in node.names:  # a module of the package, or something in its ``__init__``
+                part = SOURCE.parent.joinpath(*module, alias.name)
+                names.append(".".join([*module, alias.name] if part.is_dir() or part.with_suffix(".py").exists() else module))
         else:
             continue
         yield from names
+
+
+def bound_modules(path):
+    """For each local name of a file that stands for a module of cramhy_runtime, wherever the import stands: the dotted name."""
+    package = ["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts[:-1]]
+    bound = {}
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            bound |= {alias.asname or alias.name.split(".")[0]: alias.name for alias in node.names if alias.name.startswith("cramhy")}
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            module = [*base, *(node.module or "").split(".")] if node.module else base
+            for alias in node.names:
+                part = SOURCE.parent.joinpath(*module, alias.name)
+                if part.is_dir() or part.with_suffix(".py").exists():
+                    bound[alias.asname or alias.name] = ".".join([*module, alias.name])
+    return bound
+
+
+def patches(path):
+    """The statements of a file that set or delete a name of an imported module: ``module.name = value``, ``setattr(module, ...)``."""
+    modules = bound_modules(path)
+
+    def is_module(node, shadowed):
+        """Whether ``node`` is a module: its name, or a module as the attribute of a package."""
+        if isinstance(node, ast.Name):
+            return node.id in modules and node.id not in shadowed
+        return isinstance(node, ast.Attribute) and ast.unparse(node).replace(".", "/") in parts and is_module(node.value, shadowed)
+
+    parts = {
+        f"{name}/{'/'.join(other.removeprefix(dotted + '.').split('.'))}"
+        for name, dotted in modules.items()
+        for other in MODULES
+        if other.startswith(dotted + ".")
+    }
+
+    def look(node, shadowed):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            shadowed = shadowed | {argument.arg for argument in ast.walk(node.args) if isinstance(argument, ast.arg)}
+        if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load) and is_module(node.value, shadowed):
+            yield f"line {node.lineno}: {ast.unparse(node)}"
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("setattr", "delattr"):
+            if is_module(node.args[0], shadowed):
+                yield f"line {node.lineno}: {ast.unparse(node)}"
+        for child in ast.iter_child_nodes(node):
+            yield from look(child, shadowed)
+
+    return list(look(ast.parse(path.read_text()), frozenset()))
 
 
 def imported_rooms(path):
@@ -58,16 +142,178 @@ def imported_rooms(path):
 def test_a_room_imports_only_from_floors_below_its_own(path):
     room = room_of(path)
     for other in set(imported_rooms(path)) - {room}:
-        assert FLOOR[other] < FLOOR[room] or (room, other) in ALLOWED_UPWARDS, f"{room} imports {other}"
+        assert FLOOR[other] < FLOOR[room], f"{room} imports {other}"
 
 
-@pytest.mark.parametrize("room", FLOOR)
-def test_the_modules_of_a_room_import_each_other_without_circles(room):
-    """Not even within functions: what a lower module needs of a higher one goes through one seam, as ``lisp/late.py``."""
-    modules = {".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__"): path
-               for path in FILES if room_of(path) == room}
-    TopologicalSorter({name: {other for other in imported_names(path) if other in modules and other != f"cramhy_runtime.{room}"} - {name}
-                       for name, path in modules.items()}).prepare()
+def circles(edges):
+    """The sets of nodes that reach each other, largest first; those of one node are none (Tarjan's algorithm)."""
+    index, low, stack, on_stack, found = {}, {}, [], set(), []
+
+    def visit(node):
+        index[node] = low[node] = len(index)
+        stack.append(node)
+        on_stack.add(node)
+        for other in edges.get(node, ()):
+            if other not in index:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in on_stack:
+                low[node] = min(low[node], index[other])
+        if low[node] == index[node]:
+            members = []
+            while not members or members[-1] != node:
+                members.append(stack.pop())
+                on_stack.discard(members[-1])
+            if len(members) > 1:
+                found.append(sorted(members))
+
+    for node in edges:
+        if node not in index:
+            visit(node)
+    return sorted(found, key=len, reverse=True)
+
+
+def module_name(path):
+    return ".".join(["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__")
+
+
+MODULES = {module_name(path): path for path in FILES}
+
+LISTED = {
+    "cramhy_runtime.cli.shims": lambda module: {f"cramhy_runtime.cli.{home}" for home in module._HOMES.values()},
+    "cramhy_runtime.ros_tools.running": lambda module: {
+        f"cramhy_runtime.ros_tools.{each}" for homes in module._HOMES.values() for each in homes
+    },
+    "cramhy_runtime.languages.commonlisp.package": lambda module: {
+        f"cramhy_runtime.{name}" if name.startswith("ground.") else f"cramhy_runtime.languages.commonlisp.{name}"
+        for name in (*module.MODULES, *module.HELPERS)
+    },
+}
+"""Modules that import modules of ours by a computed name, and the list that the name comes from."""
+OF_OTHERS = {
+    "cramhy_runtime.languages.commonlisp.syntax.macros",  # the macros, which are written in Hy (hy_src)
+    "cramhy_runtime.languages.commonlisp.python.python_calls",  # (py:call "math.sqrt" 2): a module of the user's
+    "cramhy_runtime.languages.commonlisp.python.python_packages",  # the same, as a package
+}
+"""Modules that import modules of others by a computed name."""
+
+
+def names_in_strings(name):
+    """The modules of ours that a module imports by a string, which may stand in a list."""
+    computed = False
+    for node in ast.walk(ast.parse(MODULES[name].read_text())):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("import_module", "importlib.import_module", "__import__"):
+            if isinstance(node.args[0], ast.Constant):
+                yield importlib.util.resolve_name(node.args[0].value, name.rpartition(".")[0])
+            else:
+                computed = True
+    if computed and name not in OF_OTHERS:
+        assert name in LISTED, f"{name} imports by a computed name; list in LISTED what it may be"
+        yield from LISTED[name](importlib.import_module(name))
+
+
+EDGES = {
+    name: {other for other in (*imported_names(path, when_run=True), *names_in_strings(name)) if other in MODULES} - {name}
+    for name, path in MODULES.items()
+}
+"""Which module imports which, wherever in it the import stands. A function that imports when it is called counts, and so does a string; what is
+imported for type checkers does not."""
+
+PORT_INSTALLERS = {
+    "ground.conditions": {"signals"},
+    "ground.plain_answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
+    "languages.commonlisp.answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
+}
+"""Who installs which ports of the ground: the plain answers, and those of the one language that is started."""
+SERVICE_INSTALLERS = {
+    "prolog.compiler.compiler": {"compile_clauses"},
+    "prolog.explanations.undefined": {"warn_undefined"},
+    "prolog.tracing": {"watch_predicate", "watch_construct"},
+}
+"""Who installs what the engine of Prolog asks of the folders above it."""
+
+
+def installers(holder):
+    """For each module: the names that it gives to ``holder.install``."""
+    found = {}
+    for name, path in MODULES.items():
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == f"{holder}.install":
+                found.setdefault(name.removeprefix("cramhy_runtime."), set()).update(keyword.arg for keyword in node.keywords)
+    return found
+
+
+def test_ports_are_few_and_it_is_known_who_installs_them():
+    assert len(ports.Ports.__annotations__) <= 8
+    assert installers("PORTS") == PORT_INSTALLERS
+    assert installers("SERVICES") == SERVICE_INSTALLERS
+    assert [name for name, path in MODULES.items() if "install_reporter(" in path.read_text() and room_of(path) != "kernel"] == [
+        "cramhy_runtime.session.boot"
+    ]
+
+
+def parts_of(room):
+    """For each part of a room, a folder or a module beside the folders: the other parts that it imports."""
+    parts = {}
+    for name, others in EDGES.items():
+        here = _part_of(room, MODULES[name])
+        if here:
+            parts.setdefault(here, set()).update({_part_of(room, MODULES[other]) for other in others} - {None, here})
+    return parts
+
+
+def _part_of(room, path):
+    """The folder of a room that a file is in, or its own name if it is beside the folders; ``None`` for others and ``__init__``."""
+    parts = path.relative_to(SOURCE).with_suffix("").parts
+    depth = room.count("/") + 1
+    return parts[depth] if "/".join(parts[:depth]) == room and parts[depth:] != ("__init__",) else None
+
+
+@pytest.mark.parametrize("room", sorted({str(path.parents[1].relative_to(SOURCE)) for path in SOURCE.glob("*/**/__init__.py")} - {"."}))
+def test_the_folders_of_a_room_are_in_no_circle(room):
+    assert not circles(parts_of(room))
+
+
+def test_the_parts_of_common_lisp_import_only_what_is_named_before_them():
+    told = ast.get_docstring(ast.parse((SOURCE / "languages" / "commonlisp" / "__init__.py").read_text()))
+    order = re.findall(r"(?<!`)`(\w+)`(?!`)", told)
+    parts = parts_of("languages/commonlisp")
+    assert sorted(order) == sorted(parts)
+    for part, others in parts.items():
+        assert others <= set(order[: order.index(part)]), part
+
+
+def test_no_circle_of_modules_is_large_and_none_leaves_its_folder():
+    for circle in circles(EDGES):
+        assert len(circle) <= 8, circle
+        assert len({MODULES[name].parent for name in circle}) == 1, circle
+
+
+def test_rooms_are_in_no_circle():
+    rooms = {}
+    for name, others in EDGES.items():
+        room = room_of(MODULES[name])
+        rooms.setdefault(room, set()).update(room_of(MODULES[each]) for each in others)
+    assert not circles(rooms)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_no_module_makes_up_names_when_they_are_asked_for(path):
+    """A module-level ``__getattr__`` (PEP 562) hides from editors and type checkers where a name comes from."""
+    names = [node.name for node in ast.parse(path.read_text()).body if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+    assert "__getattr__" not in names
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_nobody_sets_the_names_of_another_module(path):
+    assert not patches(path)
+
+
+def test_a_patch_is_found(monkeypatch):
+    path = SOURCE / "image_that_patches.py"  # it is never written
+    text = "from cramhy_runtime import kernel\nkernel.now = kernel.reports.LIMIT = 1\nsetattr(kernel, 'now', 2)\nkernel.cleanup.limit = 3\n"
+    monkeypatch.setattr(Path, "read_text", lambda self: text)
+    assert [line.split(":")[0] for line in patches(path)] == ["line 2", "line 2", "line 3", "line 4"]
 
 
 @pytest.mark.parametrize("path", [path for path in FILES if room_of(path) != "kernel"], ids=lambda path: str(path.relative_to(SOURCE)))
@@ -75,6 +321,24 @@ def test_threads_and_the_wall_clock_are_the_kernels(path):
     text = path.read_text()
     assert not re.search(r"^\s*(import|from) (_?threading|_thread|concurrent)\b", text, re.M)
     assert not re.search(r"\btime\.(sleep|time)\(|from time import", text)
+
+
+RUN_CODE = {
+    "utilities/generated_functions.py": "the text that the library writes",
+    "languages/commonlisp/evaluation/evaluator.py": "what the compiler made of a form that a user wrote",
+    "languages/commonlisp/systems/loader.py": "the kept code of a user's file",
+    "languages/commonlisp/systems/program_files.py": "the code of a user's compiled file",
+}
+"""The files that call ``exec``, and what they run with it."""
+
+
+def test_text_that_the_library_writes_is_run_in_one_place():
+    running = set()
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("exec", "eval"):
+                running.add(str(path.relative_to(SOURCE)))
+    assert running == set(RUN_CODE)
 
 
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
@@ -88,9 +352,11 @@ def test_every_module_opens_with_a_paragraph(path):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each module gets a fresh interpreter by a fork")
-@pytest.mark.parametrize("room", [path.parent for path in FILES
-                                  if path.name == "__init__.py" and "Where the parts are" in path.read_text()],
-                         ids=lambda room: str(room.relative_to(SOURCE)))
+@pytest.mark.parametrize(
+    "room",
+    [path.parent for path in FILES if path.name == "__init__.py" and "Where the parts are" in path.read_text()],
+    ids=lambda room: str(room.relative_to(SOURCE)),
+)
 def test_a_room_that_says_where_its_parts_are_names_them_all(room):
     told = ast.get_docstring(ast.parse((room / "__init__.py").read_text())).partition("Where the parts are")[2]
     parts = {path.stem for path in room.glob("*.py")} | {path.parent.name for path in room.glob("*/__init__.py")}

@@ -74,16 +74,28 @@ def hidden(tmp_path_factory):
     (folder / "sitecustomize.py").write_text(HIDING)
     runtime = tmp_path_factory.mktemp("run")
     kept = {key: value for key, value in os.environ.items() if key not in ("ROS_PACKAGE_PATH", "PYTHONPATH")}
-    return {**kept, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT / "src"), str(ROOT / "hy_src")]), "HOME": str(folder),
-            "XDG_RUNTIME_DIR": str(runtime)}
+    return {
+        **kept,
+        "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT / "src"), str(ROOT / "hy_src")]),
+        "HOME": str(folder),
+        "XDG_RUNTIME_DIR": str(runtime),
+    }
 
 
 @pytest.fixture
 def cramhy(hidden, tmp_path):
     """``cramhy("run", "x.lisp")``: the finished process of that command in such an environment."""
+
     def cramhy(*words, input=""):
-        return subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", *words], cwd=tmp_path, input=input, text=True, env=hidden,
-                              capture_output=True, timeout=300)
+        return subprocess.run(
+            [sys.executable, "-m", "cramhy_runtime.cli", *words],
+            cwd=tmp_path,
+            input=input,
+            text=True,
+            env=hidden,
+            capture_output=True,
+            timeout=300,
+        )
 
     return cramhy
 
@@ -100,7 +112,9 @@ def backend(request):
 
 
 def test_they_are_hidden_indeed(hidden):
-    done = python(hidden, """
+    done = python(
+        hidden,
+        """
 import importlib, os, select, signal, sys
 assert os.environ["CRAMHY_TEST_HIDDEN"] == "yes"
 for name in ("resource", "termios", "fcntl", "pwd"):
@@ -114,22 +128,29 @@ try:
     select.select([sys.stdin], [], [], 0)
 except OSError as problem:
     print(problem.errno)
-""")
+""",
+    )
     assert (done.stdout, done.stderr) == ("resource\ntermios\nfcntl\npwd\n[] []\n10038\n", "")
 
 
 def test_every_module_can_be_imported(hidden):
     source = ROOT / "src"
-    names = sorted(".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__")
-                   for path in (source / "cramhy_runtime").rglob("*.py") if path.name != "__main__.py")
-    done = python(hidden, f"""
+    names = sorted(
+        ".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__")
+        for path in (source / "cramhy_runtime").rglob("*.py")
+        if path.name != "__main__.py"
+    )
+    done = python(
+        hidden,
+        f"""
 import importlib
 for name in {names!r}:
     try:
         importlib.import_module(name)
     except Exception as problem:
         print(name, type(problem).__name__, problem)
-""")
+""",
+    )
     assert (done.stdout, done.stderr) == ("", "")
 
 
@@ -154,19 +175,28 @@ def test_the_repl_takes_the_first_forms_of_the_lectures_from_a_pipe(cramhy, back
 
 
 def test_a_file_runs(cramhy, backend, tmp_path):
-    (tmp_path / "plan.lisp").write_text("(in-package :cram-user)\n(print (top-level (par (sleep 1) (progn (sleep 2) :done))))\n"
-                                        "(print (top-level (with-failure-handling ((simple-plan-failure (e)\n"
-                                        "        (declare (ignore e)) (return 'caught)))\n"
-                                        "                    (pursue (sleep 9) (fail \"Lost.\")))))")
+    (tmp_path / "plan.lisp").write_text(
+        "(in-package :cram-user)\n(print (top-level (par (sleep 1) (progn (sleep 2) :done))))\n"
+        "(print (top-level (with-failure-handling ((simple-plan-failure (e)\n"
+        "        (declare (ignore e)) (return 'caught)))\n"
+        '                    (pursue (sleep 9) (fail "Lost.")))))'
+    )
     done = cramhy("run", "plan.lisp", "--backend", backend, "--time", "virtual")
     assert (done.returncode, done.stderr) == (0, "") and "CAUGHT" in done.stdout
 
 
 def test_forms_are_evaluated_as_json(cramhy, backend):
     told = ("machine-type", "software-type", "machine-instance", "software-version")
-    forms = ["(+ 1 2)", "(progn (time (loop repeat 10)) 1)", *(f"(typep ({name}) '(or null string))" for name in told),
-             "(>= (get-internal-run-time) 0)", "(progn (room) t)", "(cpl:top-level (cpl:par (cpl:sleep 1) (cpl:sleep 2)) 7)",
-             "(listen)", "(read-line *standard-input* nil)"]
+    forms = [
+        "(+ 1 2)",
+        "(progn (time (loop repeat 10)) 1)",
+        *(f"(typep ({name}) '(or null string))" for name in told),
+        "(>= (get-internal-run-time) 0)",
+        "(progn (room) t)",
+        "(cpl:top-level (cpl:par (cpl:sleep 1) (cpl:sleep 2)) 7)",
+        "(listen)",
+        "(read-line *standard-input* nil)",
+    ]
     done = cramhy("eval", "--backend", backend, input="".join(json.dumps({"form": form}) + "\n" for form in forms))
     assert (done.returncode, done.stderr) == (0, "")
     answers = [json.loads(line) for line in done.stdout.splitlines()]
@@ -203,8 +233,14 @@ def test_commands_that_need_no_session(cramhy):
 
 def test_a_session_serves_and_another_terminal_reaches_it(hidden, cramhy):
     pytest.importorskip("uvicorn")
-    process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--serve"], env=hidden, stdin=subprocess.PIPE,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--serve"],
+        env=hidden,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     try:
         process.stdin.write('(roslisp:start-ros-node "a")\n"ready"\n')
         process.stdin.flush()
@@ -226,8 +262,13 @@ def test_a_prompt_on_a_terminal_reads_lines(hidden):
     """Reading waits where nobody can say whether a line is there; the forms typed are answered."""
     pty = pytest.importorskip("pty")
     master, slave = pty.openpty()
-    process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual"], stdin=slave, stdout=slave,
-                               stderr=slave, env={**hidden, "TERM": "dumb"})
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual"],
+        stdin=slave,
+        stdout=slave,
+        stderr=slave,
+        env={**hidden, "TERM": "dumb"},
+    )
     os.close(slave)
     seen = b""
     try:

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import re
 import shlex
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -17,10 +15,11 @@ import pytest
 
 from cramhy_runtime.cli import options, shims
 from cramhy_runtime.ros_tools import hosting
-from cramhy_runtime.ros_tools.words import CommandError
+from cramhy_runtime.ros_tools.arguments import CommandError
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "tutorials").glob("*.md"))]
+PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "tutorials").glob("*.md"))]
+PAGES = [page for page in PAGES if page.parent.name != "reference" and page.name != "ARCHITECTURE.md"]  # these do not speak to users
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 EXTRAS = set(PROJECT["optional-dependencies"])
 PROGRAMS = {*PROJECT["scripts"], "hy", "python", "pip"}
@@ -29,22 +28,30 @@ FUNCTIONS = {"cramhy", "roslisp_repl", "roscd", *shims.TOOLS}
 """What ``eval "$(.venv/bin/cramhy ros-shims)"`` defines."""
 PROGRAMS_OF_TURTLESIM = {*hosting.PROGRAMS, "turtle_teleop_key"}
 STARTS = ("make", "cramhy", "roslisp_repl", "eval", "pip", "python3", "hy", "python", ".venv/bin/", "mine/bin/", *sorted(FUNCTIONS))
+ACTIVATED = "source .venv/bin/activate"
+"""Below this line of a page, programs of ``.venv/bin`` need no folder."""
 
 
 def commands_of(page):
     """The commands of a page, each as (number of its line, text)."""
-    language = None
+    language, activated = None, False
     for number, line in enumerate(page.read_text().splitlines(), 1):
+        activated = activated or line == ACTIVATED
         if line.startswith("```"):
             language = line[3:].strip() if language is None else None
         elif language in ("", "sh", "console"):
             text = line.removeprefix("$ ")
             if is_command(text):
-                yield number, text
+                yield number, found(text, activated)
         elif language is None:
             for text in re.findall(r"(?<!`)`([^`]+)`(?!`)", line):
                 if is_command(text) and " " in text:
-                    yield number, text
+                    yield number, found(text, activated)
+
+
+def found(text, activated):
+    """A command with the folder of its program, if the page has put that on the path."""
+    return f".venv/bin/{text}" if activated and text.split()[0] in PROGRAMS - FUNCTIONS else text
 
 
 def is_command(text):
@@ -52,7 +59,10 @@ def is_command(text):
     return first in STARTS or first.startswith((".venv/bin/", "mine/bin/"))
 
 
-COMMANDS = [pytest.param(text, id=f"{page.name}:{number}") for page in PAGES for number, text in commands_of(page)]
+FILES_OF_PAGES = {title for page in PAGES for title in re.findall(r'^```\w+ title="(.*?)"', page.read_text(), re.M)}
+"""Files that the reader makes."""
+
+COMMANDS = [pytest.param(text, id=f"{page.relative_to(ROOT)}:{number}") for page in PAGES for number, text in commands_of(page)]
 
 
 def words_of(text):
@@ -89,7 +99,7 @@ def check(words):
     elif name == "pip":
         check_pip(rest)
     elif name in ("python", "hy") and rest and not rest[0].startswith("-") and rest[0] != "FILE.hy":
-        assert (ROOT / rest[0]).is_file()
+        assert (ROOT / rest[0]).is_file() or rest[0] in FILES_OF_PAGES
     elif name in FUNCTIONS:
         check_ros(name, rest)
 
@@ -102,7 +112,7 @@ def check_make(targets):
 def check_cramhy(words):
     if words[:1] == ["ros"]:
         return check_ros(words[1], words[2:])
-    if not words or words == ["COMMAND"]:
+    if not words or words in (["COMMAND"], ["COMMAND", "--help"], ["--version"]):
         return None
     known = next(action.choices for action in options.parser()._actions if action.dest == "command")
     assert words[0] in known
@@ -116,15 +126,16 @@ def check_cramhy(words):
 
 
 def check_pip(words):
-    """An extra is installed from the clone: ``-e '.[web]'``."""
-    assert words[0] == "install" and words[1] == "-e"
-    (wanted,) = re.fullmatch(r"\.\[([\w,]+)\]", words[2]).groups()
-    assert set(wanted.split(",")) <= EXTRAS
+    """cramhy is installed from the clone or from a wheel, with extras that it has: ``'.[web]'``, ``-e '.[web]'``."""
+    assert words[0] == "install"
+    found = re.fullmatch(r"(?:\.|FILE\.whl)\[([\w,]+)\]", words[2 if words[1] == "-e" else 1])
+    assert found, "cramhy is installed from a folder or a file"
+    assert set(found[1].split(",")) <= EXTRAS
 
 
 def check_ros(name, words):
     from cramhy_runtime.ros_tools import running
-    from cramhy_runtime.ros_tools.words import found
+    from cramhy_runtime.ros_tools.arguments import found
 
     if name == "COMMAND":
         return
@@ -137,15 +148,28 @@ def check_ros(name, words):
         assert words[0] == "turtlesim" and words[1] in PROGRAMS_OF_TURTLESIM
 
 
-def test_readme_has_commands_of_every_kind():
-    kinds = {words_of(param.values[0])[0] for param in COMMANDS if param.id.startswith("README") and not param.values[0].startswith("eval")}
+def test_the_pages_have_commands_of_every_kind():
+    kinds = {words_of(param.values[0])[0] for param in COMMANDS if not param.values[0].startswith("eval")}
     assert {"make", "cramhy", "roslisp_repl", "rosrun", "rostopic", "rosservice", "roslaunch", "mine/bin/pip", ".venv/bin/hy"} <= kinds
 
 
-@pytest.mark.parametrize("text", [
-    "cramhy run --nothing FILE", "cramhy nothing", "cramhy repl --nothing", "make nothing", "pip install 'cramhy[web]'", "hy x.hy",
-    ".venv/bin/pip install -e '.[nothing]'", "rosrun turtlesim nothing", "rostopic nothing", ".venv/bin/nothing",
-    'eval "$(cramhy ros-shims)"'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cramhy run --nothing FILE",
+        "cramhy nothing",
+        "cramhy repl --nothing",
+        "make nothing",
+        "pip install 'cramhy[web]'",
+        ".venv/bin/pip install 'cramhy[web]'",
+        "hy x.hy",
+        ".venv/bin/pip install -e '.[nothing]'",
+        "rosrun turtlesim nothing",
+        "rostopic nothing",
+        ".venv/bin/nothing",
+        'eval "$(cramhy ros-shims)"',
+    ],
+)
 def test_what_is_wrong_is_found(text):
     with pytest.raises((AssertionError, SystemExit, CommandError)):
         test_a_command_is_one_that_there_is(text)
@@ -156,30 +180,7 @@ def test_options_that_are_named_are_known():
     parser = options.parser()
     commands = next(action.choices for action in parser._actions if action.dest == "command")
     known = {string for command in commands.values() for action in command._actions for string in action.option_strings}
-    quoted = re.findall(r"`(--[^`]+)`", (ROOT / "README.md").read_text())
+    quoted = [text for page in PAGES for text in re.findall(r"`(--[^`]+)`", page.read_text())]
     named = {option for text in quoted for option in re.findall(r"--[a-z-]+", text)}
     assert {"--time", "--serve", "--ros"} <= named
-    assert named - known == {"--lisp-limit"}
-
-
-def test_the_table_of_commands_is_complete():
-    """README names every command that ``cramhy --help`` names."""
-    named = next(action.choices for action in options.parser()._actions if action.dest == "command")
-    text = (ROOT / "README.md").read_text()
-    table = text[text.index("| command | does |"):text.index("## A second terminal")]
-    assert len(named) == 10
-    assert [name for name in named if not re.search(rf"[`\s]{name}\b", table)] == []
-
-
-@pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
-@pytest.mark.parametrize(("first", "command", "printed"), [
-    ("(in-package :cram-user)", ["hy"], "\nNIL "),
-    ("(import cramhy_runtime.cpl *)", ["cramhy_runtime.cli", "run"], "both\n"),
-])
-def test_the_hy_files_of_readme_run(tmp_path, first, command, printed):
-    """The blocks that begin with ``(require cramhy *)``, each given to the command that README names."""
-    blocks = re.findall(r"```\n(\(require cramhy \*\)\n.*?)```", (ROOT / "README.md").read_text(), re.S)
-    (block,) = [block for block in blocks if first in block]
-    (tmp_path / "file.hy").write_text(block)
-    done = subprocess.run([sys.executable, "-m", *command, "file.hy"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert (done.returncode, done.stdout, done.stderr) == (0, printed, "")
+    assert named - known == {"--lisp-limit", "--cramhy-time"}

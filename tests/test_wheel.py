@@ -1,7 +1,9 @@
-"""The wheel: what ``pip`` gets when it builds cramhy carries the licence, the course, the macros and the page."""
+"""What is published: the wheel carries the licence, the course, the macros and the page, and PyPI shows a README that leads somewhere."""
 
 from __future__ import annotations
 
+import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -13,14 +15,28 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 
+REPOSITORY = "https://example.org/robots/cramhy"
+
+
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    """The wheel that hatchling builds of this tree, opened."""
-    pytest.importorskip("hatchling", reason="the wheel is built with it: pip install hatchling")
-    folder = tmp_path_factory.mktemp("wheel")
-    subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)], cwd=ROOT, check=True,
-                   capture_output=True)
-    (path,) = folder.glob("*.whl")
+def dist(tmp_path_factory):
+    """The folder with the sdist of this tree and the wheel made of it, as ``release.yml`` builds them."""
+    for module in ("hatchling", "build"):
+        pytest.importorskip(module, reason=f"the wheel is built with it: pip install {module}")
+    folder = tmp_path_factory.mktemp("dist")
+    subprocess.run(
+        [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT)],
+        check=True,
+        capture_output=True,
+        env={**os.environ, "CRAMHY_REPOSITORY": REPOSITORY, "CRAMHY_TAG": "v0"},
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(dist):
+    """The wheel, opened."""
+    (path,) = dist.glob("*.whl")
     with zipfile.ZipFile(path) as opened:
         yield opened
 
@@ -35,6 +51,38 @@ def test_the_wheel_carries_the_licence(wheel):
     assert file_called(wheel, ".dist-info/licenses/LICENSE") == (ROOT / "LICENSE").read_text()
     metadata = Parser().parsestr(file_called(wheel, ".dist-info/METADATA"))
     assert (metadata["License-Expression"], metadata.get_all("License-File")) == ("BSD-3-Clause", ["LICENSE"])
+
+
+def test_twine_accepts_both(dist):
+    pytest.importorskip("twine", reason="it checks what is published: pip install twine")
+    done = subprocess.run([sys.executable, "-m", "twine", "check", "--strict", *map(str, dist.iterdir())], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.count("PASSED") == 2, done.stdout + done.stderr
+
+
+def test_each_link_and_picture_of_the_description_is_a_url(wheel):
+    metadata = Parser().parsestr(file_called(wheel, ".dist-info/METADATA"))
+    text = re.sub(r"^```.*?^```", "", metadata.get_payload(), flags=re.M | re.S)
+    targets = re.findall(r"\]\(([^)\s]+)\)", text)
+    assert len(targets) > 10
+    assert not [target for target in targets if not re.match("https?:|#", target)]
+    ours = [target.removeprefix(REPOSITORY) for target in targets if target.startswith(REPOSITORY)]
+    for target in ours:
+        kind, tag, path = re.fullmatch(r"/(blob|raw)/(v0)/([^#]+)(?:#.*)?", target).groups()
+        assert (ROOT / path).exists() and (kind == "raw") == path.endswith((".png", ".svg", ".gif")), target
+    assert [url.partition(", ")[0] for url in metadata.get_all("Project-URL")] == ["Documentation", "Changes", "Issues", "Source"]
+
+
+def test_the_metadata_say_for_whom_it_is(wheel):
+    metadata = Parser().parsestr(file_called(wheel, ".dist-info/METADATA"))
+    assert metadata["Author"] == "cramhy contributors" and metadata["Summary"]
+    classifiers = metadata.get_all("Classifier")
+    assert {"Intended Audience :: Education", "Intended Audience :: Science/Research", "Framework :: Pytest"} <= set(classifiers)
+
+
+def test_changes_and_citation_name_this_version(wheel):
+    version = Parser().parsestr(file_called(wheel, ".dist-info/METADATA"))["Version"]
+    assert re.search(rf"^## {re.escape(version)}\b", (ROOT / "CHANGELOG.md").read_text(), re.M)
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
 
 
 def test_the_licence_names_its_holders():
@@ -54,3 +102,14 @@ def test_the_wheel_has_every_file_of_the_tree(wheel, folder):
         pytest.skip("this tree is no clone of git's, so what belongs to it is not known")
     home = "cramhy_runtime/tutorials" if folder == "tutorials" else folder.partition("/")[2]
     assert {home + name.removeprefix(folder) for name in tracked.stdout.splitlines()} <= set(wheel.namelist())
+
+
+def test_an_editable_installation_has_no_copies(tmp_path):
+    """A copy of the tutorials would age, and pytest would take their packages for plugins."""
+    pytest.importorskip("hatchling", reason="the wheel is built with it: pip install hatchling")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel:editable", "-d", str(tmp_path)], cwd=ROOT, check=True, capture_output=True
+    )
+    (path,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(path) as opened:
+        assert {name for name in opened.namelist() if ".dist-info/" not in name} == {"_cramhy.pth"}

@@ -59,8 +59,8 @@ LECTURE_38 = [
     "(drive 5 2)",
     "(sleep 1.5)",
     ";; rosservice call /clear, rosservice call /reset",
-    "(call-service \"/clear\" 'std_srvs-srv:Empty)",
-    "(call-service \"/reset\" 'std_srvs-srv:Empty)",
+    '(call-service "/clear" \'std_srvs-srv:Empty)',
+    '(call-service "/reset" \'std_srvs-srv:Empty)',
     PAR_SAME_MODULE,
     "(sleep 1.5)",
     PAR_TWO_MODULES,
@@ -87,7 +87,7 @@ class Typist:
         self.finished = finished
 
     def line(self, prompt):
-        from cramhy_runtime.lisp.streams import streams
+        from cramhy_runtime.languages.commonlisp.streams import streams
 
         if not self.lines:
             return None
@@ -107,12 +107,19 @@ def main():
     options = parser.parse_args()
     from cramhy_runtime.cli import program
     from cramhy_runtime.repl.console import Console
-    from cramhy_runtime.repl.lines import standard_lines
+    from cramhy_runtime.repl.line_input import standard_lines
     from cramhy_runtime.repl.session import Session
 
     save = f'(turtlesim:save-paper "{options.png}")'
-    texts = [";; Lecture 34: controlling the turtle", *LECTURE_34, ";; Lecture 38: process modules", *LECTURE_38, save,
-             ";; What a plan is doing, while it is", LOOK]
+    texts = [
+        ";; Lecture 34: controlling the turtle",
+        *LECTURE_34,
+        ";; Lecture 38: process modules",
+        *LECTURE_38,
+        save,
+        ";; What a plan is doing, while it is",
+        LOOK,
+    ]
     stays = sys.stdin.isatty() and sys.stdout.isatty()
     if stays:
         texts.append(";; Go on typing; Ctrl-D ends.")
@@ -120,8 +127,9 @@ def main():
     def stay():
         console.input = standard_lines()
 
-    console = Console(lambda: Session(time="virtual", seed=options.seed, backend=options.backend),
-                      Typist(texts, stay) if stays else Typist(texts))
+    console = Console(
+        lambda: Session(time="virtual", seed=options.seed, backend=options.backend), Typist(texts, stay) if stays else Typist(texts)
+    )
     with program():
         status = console.run()
     sys.exit(status)

@@ -56,6 +56,7 @@ with fact_group("kitchen") as kitchen:
 
 # What there is to do, and what for. The classes declare types of designators: ``(an action (type bringing) (thing "cup") ...)``.
 
+
 class Bringing(Action):
     thing: str
     to: str
@@ -81,6 +82,7 @@ class Grasping(Motion):
 
 # Where to stand: candidates around the thing, the nearest first; the wall is somebody else's business.
 
+
 @location_generator(Near, priority=5)
 def around(place: Near) -> Iterator[tuple[float, float]]:
     x, y = PLACES[place.what]
@@ -100,6 +102,7 @@ def within_reach(place: Near, candidate: list[float]) -> bool:
 
 
 # How it is done. An action is a plan function with arguments, a motion a command for a part of the robot.
+
 
 @action_grounding(Bringing)
 def bringing(action: Bringing) -> Iterator[tuple[Any, ...]]:
@@ -123,6 +126,7 @@ def grasping(motion: Grasping) -> str:
 
 def bring(thing: str, to: str) -> str:
     """Try one place after the other where the thing may be, and put it down at ``to``."""
+
     def fetch_from(place: str) -> Any:
         return perform(Fetching(thing=Object(name=thing, at=place)))
 
@@ -144,6 +148,7 @@ def fetch(thing: Any) -> None:
 
 
 # The parts of the robot: each is a process module, does one thing at a time, and says which motions it is for.
+
 
 class Robot:
     place = (0.0, 0.0)

@@ -3,7 +3,7 @@
 They build messages of field specs as `make-message` does; what they mean stands in `cramhy_runtime.actionlib`. The file is
 loaded when those packages are made."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *)
 (import cramhy.roslisp [build check-path fields-and-values])
 

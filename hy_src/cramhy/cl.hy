@@ -1,10 +1,10 @@
-"The macros of Common Lisp, except those of places (setf, push, ...), which are in the runtime's `places.py`, and LOOP.
+"The macros of Common Lisp, except those of places (setf, push, ...), which are in `languages/commonlisp/evaluation/setf_places.py`, and LOOP.
 
 Each is what the standard says that it expands into; see the section of ANSI in its comment where that is not plain."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.lisp.evaluation.compilation_unit [duplicate-keys mention-type])
+        cramhy_runtime.languages.commonlisp.compiler.compilation_unit [duplicate-keys mention-type])
 
 (setv package "COMMON-LISP")
 
@@ -224,7 +224,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (do-loop 'let* 'setq bindings end body))
 
 (defoperator loop [#* forms]
-  (import cramhy_runtime.lisp.loop.loop [expand])
+  (import cramhy_runtime.languages.commonlisp.loop.loop [expand])
   (expand (list-from forms)))
 
 (defoperator loop-finish []
@@ -256,21 +256,10 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(nth ~n (multiple-value-list ~form)))
 
 (defoperator destructuring-bind [lambda-list form #* body]
-  (import cramhy_runtime.lisp.evaluation.lambda_lists [destructure])
+  (import cramhy_runtime.languages.commonlisp.syntax.lambda_lists [destructure])
   `(let* ~(lfor #(variable value) (destructure lambda-list form "DESTRUCTURING-BIND") [variable value]) ~@body))
 
 ;; ---------------------------------------------------------------------------------------------------------- definitions
-
-(defn body-parts [forms]
-  "(documentation or None, declarations, other forms) of the body of a definition."
-  (setv forms (list forms) documentation None declarations [])
-  (while forms
-    (setv head (get forms 0))
-    (cond
-      (and (isinstance head str) (is documentation None) (> (len forms) 1)) (setv documentation (.pop forms 0))
-      (and (listp head) (is head.car (sym "DECLARE"))) (.append declarations (.pop forms 0))
-      True (break)))
-  #(documentation declarations forms))
 
 (defn check-name [name operator valid kind]
   (when (not valid)
@@ -285,15 +274,15 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%define-function (quote ~name) (%named-lambda ~name ~lambda-list ~@declarations ~@forms) ~documentation (quote ~lambda-list)))
 
 (defoperator defmacro [name lambda-list #* body]
-  (import cramhy_runtime.lisp.evaluation.definitions [macro-function-form])
+  (import cramhy_runtime.languages.commonlisp.evaluation.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body)))
   `(%define-macro (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
 (defoperator define-compiler-macro [name lambda-list #* body]
   "Its function rewrites the calls that are compiled from now on."
-  (import cramhy_runtime.lisp.evaluation.definitions [macro-function-form])
+  (import cramhy_runtime.languages.commonlisp.evaluation.definitions [macro-function-form])
   (setv #(function documentation) (macro-function-form name lambda-list (list-from body) "DEFINE-COMPILER-MACRO"))
-  `(%define-compiler-macro (quote ~name) ~function))
+  `(%define-compiler-macro (quote ~name) ~function ~documentation))
 
 (defoperator defvar [name #* rest]
   (check-name name "DEFVAR" (is-symbol name) "symbol")
@@ -308,7 +297,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defn %note-special [name]
   "The forms after a definition see the variable as special even before the definition has run."
-  (import cramhy_runtime.lisp.evaluation.definitions [note-special])
+  (import cramhy_runtime.languages.commonlisp.evaluation.definitions [note-special])
   (note-special name))
 
 (defoperator defconstant [name value [documentation None]]
@@ -321,7 +310,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   `(%declaim ~@(lfor specifier specifiers `(quote ~specifier))))
 
 (defoperator deftype [name lambda-list #* body]
-  (import cramhy_runtime.lisp.evaluation.definitions [type-function-form])
+  (import cramhy_runtime.languages.commonlisp.evaluation.definitions [type-function-form])
   (setv #(function documentation) (type-function-form name lambda-list (list-from body)))
   `(%define-type (quote ~name) ~function ~documentation (quote ~lambda-list)))
 
@@ -339,7 +328,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-package-iterator [spec #* body]
   (setv #(name packages #* kinds) spec)
-  (import cramhy_runtime.lisp.symbols.package_definition [check-kinds])
+  (import cramhy_runtime.languages.commonlisp.packages.package_definition [check-kinds])
   (check-kinds kinds)
   (setv iterator (gensym "ITERATOR"))
   `(let [[~iterator (%package-iterator ~packages (quote ~kinds))]]
@@ -424,11 +413,11 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 ;; -------------------------------------------------------------------------------------------------------------- streams
 
 (defoperator with-output-to-string [spec #* body]
-  (setv #(variable #* rest) (elements spec))
-  (setv stream variable)
-  (if (and rest (is-not (get rest 0) None) (isinstance (get rest 0) LispSymbol) (not (isinstance (get rest 0) (type (sym ":A")))))
-      `(let [[~stream (%make-fill-pointer-output-stream ~(get rest 0))]] ~@body)
-      `(let [[~stream (make-string-output-stream)]] ~@body (get-output-stream-string ~stream))))
+  (setv #(stream #* options) (elements spec))
+  (setv target (if (or (not options) (isinstance (get options 0) Keyword)) None (get options 0)))
+  (if (is target None)
+      `(let [[~stream (make-string-output-stream)]] ~@body (get-output-stream-string ~stream))
+      `(let [[~stream (%make-fill-pointer-output-stream ~target)]] ~@body)))
 
 (defoperator with-input-from-string [spec #* body]
   (setv #(variable string #* options) spec)
@@ -479,7 +468,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 ;; ------------------------------------------------------------------------------------------------------------ the REPL's
 
 (defoperator time [form]
-  `(%time (lambda [] ~form)))
+  `(%timed (lambda [] ~form)))
 
 (defoperator trace [#* names]
   `(%trace (quote ~names)))

@@ -1,8 +1,8 @@
 "The macros of CLOS, conditions and structures: they take definitions apart and hand them to the runtime."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *)
-(import cramhy_runtime.lisp.evaluation.macros [mentions])
+(import cramhy_runtime.languages.commonlisp.syntax.macros [mentions])
 
 (setv package "COMMON-LISP")
 
@@ -126,10 +126,7 @@
 (defn method-function [name lambda-list body]
   "(function form, whether it takes the next methods)"
   (setv block (if (listp name) name.cdr.car name) #(plain _) (plain-parameters lambda-list))
-  (setv forms (list body) declarations [])
-  (while (and (> (len forms) 1) (isinstance (get forms 0) str)) (.pop forms 0))
-  (while (and forms (listp (get forms 0)) (is (. (get forms 0) car) (sym "DECLARE")))
-    (.append declarations (.pop forms 0)))
+  (setv #(_ declarations forms) (body-parts body))
   (.append declarations `(declare (ignorable ~@(required-names plain))))  ; their classes choose the method, which is a use
   (if (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")})
       (do
@@ -145,7 +142,7 @@
 (defoperator defmethod [name #* forms]
   (setv #(qualifiers lambda-list body) (method-parts forms))
   (setv #(_ specializers) (plain-parameters lambda-list) #(function uses-next) (method-function name lambda-list body))
-  (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) (get body 0) None))
+  (setv #(documentation _ _) (body-parts body))
   `(%define-method (quote ~name) ~(quoted-list qualifiers) ~specializers (quote ~lambda-list) ~function
                    :uses-next ~uses-next :documentation ~documentation))
 
@@ -200,7 +197,7 @@
   #((get options "ARGUMENTS") (get options "GENERIC-FUNCTION") documentation forms))
 
 (defn long-combination [name lambda-list groups #* body]
-  (import cramhy_runtime.lisp.evaluation.lambda_lists [variables-of])
+  (import cramhy_runtime.languages.commonlisp.syntax.lambda_lists [variables-of])
   (setv parts (lfor group (elements groups) (group-parts group)) options (gensym "OPTIONS"))
   (setv #(arguments generic documentation forms) (combination-options body))
   `(%define-long-combination (quote ~name) (quote ~(list-from (lfor part parts (get part 1))))
@@ -236,33 +233,39 @@
   `(%structure-slot (quote ~name)
      :initform ~(if initform `(lambda [] ~(get initform 0)) None)
      :type (quote ~(.get options "TYPE" True))
-     :read-only ~(.get options "READ-ONLY")))
+     :read-only ~(if (.get options "READ-ONLY") True None)))
 
-(defn constructor-form [entry slots]
-  "A constructor of `defstruct`: (name) or name with keywords, or (name lambda-list) by position."
+(defn constructor-form [entry slots included]
+  "A constructor of `defstruct`: (name) or name with keywords, or (name lambda-list) by position. `included` names the included type."
   (setv #(name #* rest) (if (listp entry) entry [entry]))
   (if (not rest)
       `(quote ~name)
       (do
-        (import cramhy_runtime.lisp.objects.structures [boa-lambda-list])
-        (setv initforms (dfor slot slots :if (or (not (listp slot)) (listp slot.cdr))
-                          (if (listp slot) slot.car slot) (if (listp slot) slot.cdr.car None)))
-        (setv #(lambda-list variables) (boa-lambda-list (get rest 0) initforms))
-        `(list (quote ~name) (quote ~variables) (lambda ~lambda-list (list ~@(elements variables)))))))
+        (import cramhy_runtime.languages.commonlisp.objects.structures [boa-lambda-list])
+        (setv initforms (dfor slot slots (if (listp slot) slot.car slot) (if (and (listp slot) (listp slot.cdr)) slot.cdr.car None)))
+        (setv #(lambda-list variables empty) (boa-lambda-list (get rest 0) initforms included))
+        `(list (quote ~name) (quote ~variables) (lambda ~lambda-list (list ~@(elements variables))) (quote ~empty)))))
+
+(defn included-structure [options]
+  "The values of the option :include of `defstruct`: the name of the included type and slots with other defaults; [None] without it."
+  (for [option options]
+    (when (and (listp option) (= (symbol-name option.car) "INCLUDE"))
+      (return (elements option.cdr))))
+  [None])
 
 (defoperator defstruct [head #* slots]
   (setv #(name #* options) (if (listp head) head [head]) slots (list slots))
   (when (not (is-symbol name))
     (error "~S: ~S is not a symbol." (sym "DEFSTRUCT") name))
   (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
-  (setv arguments [] constructors [])
+  (setv arguments [] constructors [] [included #* overrides] (included-structure options))
   (for [option options]
     (setv #(key #* values) (if (listp option) option [option]))
     (match (symbol-name key)
       "CONC-NAME" (.extend arguments [(sym ":CONC-NAME") (if values `(quote ~(get values 0)) None)])
       "CONSTRUCTOR" (.append constructors
                       (if values
-                          (if (is (get values 0) None) None (constructor-form (list-from values) slots))
+                          (if (is (get values 0) None) None (constructor-form (list-from values) [#* slots #* overrides] included))
                           `(quote ~(.intern (. name package) (+ "MAKE-" name.name)))))
       "COPIER" (when values (.extend arguments [(sym ":COPIER") `(quote ~(get values 0))]))
       "PREDICATE" (when values (.extend arguments [(sym ":PREDICATE") `(quote ~(get values 0))]))

@@ -4,14 +4,14 @@ functions and of goals are in `plans.hy`.
 A branch becomes a function of no arguments, and the operator a call of a function of `cramhy_runtime.cpl` with the branches.
 What the operators mean stands there, and in the sections of cpl.md that the comments name."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import itertools
         cramhy.operators *
         cramhy_runtime.cpl.logging [check-constant-tags]
-        cramhy_runtime.cpl.retry_counters [counter-variable]
-        cramhy_runtime.lisp.conditions [CompileError SimpleWarning]
-        cramhy_runtime.lisp.evaluation.compilation_unit [mention-type warn-of]
-        cramhy_runtime.lisp.printer.printer [prin1-to-string])
+        cramhy_runtime.cpl.failures.retry_counters [counter-variable]
+        cramhy_runtime.ground.conditions [CompileError SimpleWarning]
+        cramhy_runtime.languages.commonlisp.compiler.compilation_unit [mention-type warn-of]
+        cramhy_runtime.languages.commonlisp.printer.printer [prin1-to-string])
 
 (setv package "CRAM-LANGUAGE-IMPLEMENTATION")
 
@@ -19,36 +19,6 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   (lfor form forms `(lambda [] ~form)))
 
 ;; ------------------------------------------------------------------------------------------- 5, 6: top-level and operators
-
-(defoperator top-level [#* body]
-  `(%top-level (lambda [] ~@body)))
-
-(defoperator named-top-level [options #* body]
-  (setv name (.get (keyword-options "NAMED-TOP-LEVEL" (elements options) ["NAME"]) "NAME"))
-  `(%named-top-level (quote ~name) (lambda [] ~@body)))
-
-(defoperator seq [#* forms]
-  `(progn ~@forms))
-
-(defoperator par [#* forms]
-  `(%par ~@(branches forms)))
-
-(defoperator pursue [#* forms]
-  `(%pursue ~@(branches forms)))
-
-(defoperator try-all [#* forms]
-  `(%try-all ~@(branches forms)))
-
-(defoperator try-in-order [#* forms]
-  `(block nil (%try-in-order ~@(branches forms))))
-
-(defoperator try-each-in-order [spec #* body]
-  (setv #(variable items) spec)
-  `(block nil (%try-each-in-order ~items (lambda [~variable] ~@body))))
-
-(defoperator par-loop [spec #* body]
-  (setv #(variable items) spec)
-  `(%par-loop ~items (lambda [~variable] ~@body)))
 
 (defn ordering [form]
   (setv parts (if (listp form) (elements form) []))
@@ -90,18 +60,6 @@ What the operators mean stands there, and in the sections of cpl.md that the com
      (define-symbol-macro ~name (%parameter-value (quote ~name)))))
 
 ;; ------------------------------------------------------------------------------------------------------------ 3: tasks
-
-(defoperator on-suspension [form #* body]
-  `(%on-suspension (lambda [] ~form) (lambda [] ~@body)))
-
-(defoperator retry-after-suspension [#* body]
-  `(%retry-after-suspension (lambda [] ~@body)))
-
-(defoperator without-scheduling [#* body]
-  `(%without-scheduling (lambda [] ~@body)))
-
-(defoperator with-scheduling [#* body]
-  `(%with-scheduling (lambda [] ~@body)))
 
 (defoperator define-task-variable [name [value None] [documentation None] #* options]
   (setv table (keyword-options "DEFINE-TASK-VARIABLE" options ["TYPE" "INIT-FUNCTION" "IGNORE-PACKAGE-LOCKS"]))

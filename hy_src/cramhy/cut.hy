@@ -1,8 +1,8 @@
 "The macros of CRAM-UTILITIES: lazy lists and pattern variables (cpl.md 13)."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy-runtime.lisp.packages [keyword]
+        cramhy_runtime.ground.packages [keyword]
         cramhy-runtime.utilities.patterns [var-name])
 
 (setv package "CRAM-UTILITIES")
@@ -42,9 +42,6 @@
      (%lazy-dolist ~items (lambda [~variable] (declare (ignorable ~variable)) ~@body))
      (let* [[~variable nil]] (declare (ignorable ~variable)) ~(if result (get result 0) None))))
 
-(defoperator delay [#* body]
-  `(%delay-thunk (lambda [] ~@body)))
-
 (defn binding-form [variables values body]
   "Bind `variables` to the elements of the list that the form `values` gives."
   (setv rest (gensym "VALUES"))
@@ -69,12 +66,6 @@
 (defoperator with-pat-vars-bound [pattern sequence #* body]
   (setv variables (list-from (pattern-variables pattern [])))
   (binding-form variables `(%values-of-pattern (quote ~pattern) ~sequence (quote ~variables)) body))
-
-(defoperator assert-no-returning [#* forms]
-  `(%assert-no-returning (quote ~forms) (lambda [] ~@forms)))
-
-(defoperator assert-no-nlx [#* forms]
-  `(%assert-no-nlx (quote ~forms) (lambda [] ~@forms)))
 
 (defoperator "flet*" [functions #* body]
   (setv form `(progn ~@body))
@@ -103,20 +94,6 @@
                clause
                `[~clause.car.car (destructuring-bind ~clause.car.cdr (cdr ~value) ~@(elements clause.cdr))]))
        ~@(if (and clauses (is (. (get clauses -1) car) True)) [] [`[t (error "destructure-case failed: ~S" ~value)]]))))
-
-(defoperator "pop-if!" [predicate place]
-  `(setf ~place (delete-if ~predicate ~place :count 1)))
-
-(defoperator with-file-cache [variable file value #* body]
-  "`variable` is the value of the form `value`, computed again only when the file has changed."
-  `(let [[~variable (%file-value ~file (lambda [] ~value))]] ~@body))
-
-(defoperator with-lock-held [spec #* body]
-  "`((lock &key whostate) form...)`; `whostate` is for people who look at the original's threads."
-  `(%with-lock-held ~spec.car (lambda [] ~@body)))
-
-(defoperator with-hash-table-locked [spec #* body]
-  `(%with-hash-table-locked ~spec.car (lambda [] ~@body)))
 
 (defoperator with-synchronization-barrier [spec #* body]
   "`((variable n &key name recyclable) form...)`: `variable` is a new barrier, which is broken when the form is left."

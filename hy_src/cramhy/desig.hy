@@ -2,13 +2,13 @@
 
 How the pairs of a designator become the form of its description is a function of the runtime, `designators.syntax`."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *)
 
 (setv package "CRAM-DESIGNATORS")
 
 (defn designator-form [form]
-  (import cramhy_runtime.designators.syntax [expand])
+  (import cramhy_runtime.languages.commonlisp.faces.designators.syntax [expand])
   (expand form))
 
 (defoperator a [type #* pairs]
@@ -19,9 +19,6 @@ How the pairs of a designator become the form of its description is a function o
 
 (defoperator all [type #* pairs]
   (designator-form (lisp-list (sym "CRAM-DESIGNATORS::ALL") type #* pairs)))
-
-(defoperator register-designator-class [type class-name]
-  `(%register-designator-class (quote ~type) (quote ~class-name)))
 
 (defoperator with-desig-props [properties designator #* body]
   (setv variable (gensym "DESIGNATOR"))
@@ -36,24 +33,8 @@ How the pairs of a designator become the form of its description is a function o
      (register-equate-callback ~first ~second)
      (unwind-protect (progn ~@body) (unregister-equate-callback ~first ~second))))
 
-(defoperator register-location-generator [priority function [documentation None]]
-  `(%register-location-generator ~priority (quote ~function) ~documentation))
-
-(defoperator register-location-validation-function [priority function [documentation None]]
-  `(%register-location-validation-function ~priority (quote ~function) ~documentation))
-
-(defoperator with-designator-solution-filter [filter #* body]
-  `(%with-designator-solution-filter ~filter (lambda [] ~@body)))
-
-(defoperator "cram-designator-properties::def-desig-package" [name #* options]
-  `(%define-designator-package (quote ~name) (quote ~options)))
-
 (defoperator "cram-language-designator-support::with-designators" [definitions #* body]
   (setv names (lfor definition (elements definitions) definition.car) form `(progn ~@body))
   (for [#(name type properties) (reversed (elements definitions))]
     (setv form `(let [[~name (%create-designator (quote ~name) ~type ~properties)]] ~form)))
   `(%with-designators-node (quote ~(list-from names)) (lambda [] ~form)))
-
-(defoperator "cram-language-designator-support::with-equate-fluent" [spec #* body]
-  (setv #(designator name) spec)
-  `(%with-equate-fluent ~designator (quote ~name) (lambda [~name] ~@body)))

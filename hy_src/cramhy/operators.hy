@@ -2,13 +2,17 @@
 
 An operator gets the forms of its call as they were read, and returns a form made by quasiquote, in which unqualified symbols
 are those of Common Lisp or else of the Lisp package named by the file's `package`; `%name` belongs to CRAMHY, where the
-runtime's helpers are, and `pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable."
+runtime's helpers are, and `pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable.
 
-(import cramhy_runtime.lisp.evaluation.macros [define-operator malformed]
-        cramhy_runtime.lisp.data [Cons Keyword Symbol :as LispSymbol list-from lisp-list]
-        cramhy_runtime.lisp.conditions [CompileError error program-error]
-        cramhy_runtime.lisp.evaluation.lambda_lists [gensym]
-        cramhy_runtime.lisp.packages [sym is-symbol symbol-name])
+A file requires `defoperator` within `eval-when-compile`. When a compiled file requires something, Hy looks at the source of every frame
+of the stack, which takes 5 ms, and the prompt loads a dozen of these files."
+
+(import cramhy_runtime.languages.commonlisp.syntax.body_parts [body-parts]
+        cramhy_runtime.languages.commonlisp.syntax.operator_macros [define-operator malformed]
+        cramhy_runtime.ground.data [Cons Keyword Symbol :as LispSymbol list-from lisp-list]
+        cramhy_runtime.ground.conditions [CompileError error program-error]
+        cramhy_runtime.languages.commonlisp.syntax.lambda_lists [gensym]
+        cramhy_runtime.ground.packages [sym is-symbol symbol-name])
 
 (defmacro defoperator [name parameters #* body]
   "Define the macro `name` of the Lisp package that the variable `package` names.
@@ -36,9 +40,8 @@ runtime's helpers are, and `pkg::name` to that package. Lists in brackets are li
 
 (defn documentation-and-body [body]
   "(list of the doc string or of nothing, declarations, other forms) of the body of a function."
-  (setv documentation (if (and (> (len body) 1) (isinstance (get body 0) str)) [(get body 0)] []))
-  (setv #(declarations forms) (split-declarations (cut body (len documentation) None)))
-  #(documentation declarations forms))
+  (setv #(documentation declarations forms) (body-parts body))
+  #((if (is documentation None) [] [documentation]) declarations forms))
 
 (defn keyword-options [operator options known]
   "The options `:key form ...` of an operator as a dictionary of forms by the names of the keys."

@@ -1,14 +1,14 @@
 "The macros of plans as trees of named steps: tags, nodes of the task tree, plan functions and goals (cpl.md 7, 8).
 
-What they mean is in `cramhy_runtime.cpl`: `tags.py`, `tree.py`, `plans.py`. A body is quoted beside its function, because the
-task tree and `expand-plan` show it."
+What they mean is in `cramhy_runtime.cpl`: `tree/tags.py`, `tree/task_tree.py`, `forms/plans.py`. A body is quoted beside its
+function, because the task tree and `expand-plan` show it."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.lisp.conditions [SimpleStyleWarning style-warn]
-        cramhy_runtime.lisp.evaluation.compilation-unit [current :as compilation-unit]
-        cramhy_runtime.cpl.tags [check-tag is-tag-name]
-        cramhy_runtime.cpl.walker [tag-names])
+        cramhy_runtime.ground.conditions [SimpleStyleWarning style-warn]
+        cramhy_runtime.languages.commonlisp.compiler.compilation-unit [current :as compilation-unit]
+        cramhy_runtime.cpl.tree.tags [check-tag is-tag-name]
+        cramhy_runtime.languages.commonlisp.faces.cpl.walker [tag-names])
 
 (setv package "CRAM-LANGUAGE-IMPLEMENTATION")
 

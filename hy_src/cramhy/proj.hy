@@ -1,6 +1,6 @@
 "The macros of CRAM-PROJECTION (projection-and-events.md, part A)."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *)
 
 (setv package "CRAM-PROJECTION")
@@ -28,9 +28,3 @@
   `(progn
      (defvar ~name)
      (%define-special-projection-variable (quote ~name) (lambda [] ~initializer))))
-
-(defoperator with-projection-environment [name #* body]
-  `(%with-projection-environment (quote ~name) (lambda [] ~@body)))
-
-(defoperator with-partially-ordered-clock-disabled [clock #* body]
-  `(%with-partially-ordered-clock-disabled ~clock (lambda [] ~@body)))

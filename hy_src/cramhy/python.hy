@@ -1,8 +1,8 @@
 "The macros of PYTHON (nickname PY): importing modules, chains of attributes and methods, Python's `for` and `with`."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.lisp.conditions [program-error])
+        cramhy_runtime.ground.conditions [program-error])
 
 (setv package "PYTHON")
 

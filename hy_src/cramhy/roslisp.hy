@@ -3,9 +3,9 @@
 Topics of log lines and field paths are not evaluated, so they become constants here; what they mean stands in
 `cramhy_runtime.ros`."
 
-(require cramhy.operators [defoperator])
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.lisp.condition_types [shown])
+        cramhy_runtime.ground.condition_types [shown])
 
 (setv package "ROSLISP")
 
@@ -130,9 +130,6 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 ;; ------------------------------------------------------------------------------------------------------------ 9: time
 
-(defoperator "roslisp-utils::loop-at-most-every" [duration #* body]
-  `(block nil (%loop-at-most-every ~duration (lambda [] ~@body))))
-
 (defoperator "roslisp-utils::spin-until" [test increment #* body]
   (setv #(step timeout) (if (listp increment) increment [increment None]))
   `(block nil (%ros-spin-until (lambda [] ~test) ~step ~timeout (lambda [] ~@body))))
@@ -174,6 +171,3 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 (defoperator "roslisp-utilities::register-ros-init-function" [name [rank 0]]
   `(%register-init-function (quote ~name) (quote ~rank)))
-
-(defoperator "roslisp-utilities::register-ros-cleanup-function" [name]
-  `(%register-cleanup-function (quote ~name)))

@@ -5,14 +5,17 @@ no test waits on the wall clock and none hears of another's tasks; the turtlesim
 The fixture ``virtual_time`` gives a test a kernel of its own, on either back end (docs/testing.md). Nothing is loaded before a test
 imports a Lisp system, asks for one of the fixtures, or a Lisp file of tests is collected:
 one named ``test*``, ``*-test`` or ``*-tests`` or in a folder ``tests``, that defines tests of lisp-unit or FiveAM. It is loaded with
-the system of which it is a part. A ``.asd`` file is collected when it is named on the command line.
+the system of which it is a part. A ``.asd`` file is collected when it is named on the command line. A file ``test_*.hy`` that stays Hy
+is collected as pytest's own modules are: its functions ``(defn test-... [])`` are tests.
 """
 
 from __future__ import annotations
 
 import importlib.abc
+import importlib.machinery
 import importlib.util
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -23,34 +26,54 @@ class _SystemsOnDemand(importlib.abc.MetaPathFinder):
     """Makes the image when a module is imported that Python does not know; then Lisp systems are found."""
 
     def find_spec(self, name, path=None, target=None):
-        if path is not None or "." in name or name.startswith("_") or "cramhy_runtime.image" in sys.modules:
+        if path is not None or "." in name or name.startswith("_") or "cramhy_runtime.session" in sys.modules:
             return None
-        from cramhy_runtime.lisp.systems import systems
+        from cramhy_runtime.languages.commonlisp.systems import systems
 
-        if systems.find_asd(name.replace("_", "-")) is None:
+        find = getattr(systems, "find_asd", None)  # missing while that module is being imported, and looks for a module of another system
+        if find is None or find(name.replace("_", "-")) is None:
             return None
-        from cramhy_runtime import image
+        from cramhy_runtime.session import fresh_start
 
-        image.fresh_start()
+        fresh_start()
         return importlib.util.find_spec(name)
 
 
+class _HyStaysHy(importlib.abc.MetaPathFinder):
+    """Finds modules in Hy before pytest does, which rewrites the assertions of a test file, or of a plugin, as Python."""
+
+    def find_spec(self, name, path=None, target=None):
+        if "hy" not in sys.modules:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path)
+        return spec if spec is not None and str(spec.origin).endswith(".hy") else None
+
+
 def pytest_addoption(parser):
-    parser.addoption("--lisp-limit", type=float, default=60.0, metavar="SECONDS",
-                     help="end a test of lisp-unit or FiveAM that takes longer")
+    parser.addoption(
+        "--lisp-limit", type=float, default=60.0, metavar="SECONDS", help="end a test of lisp-unit or FiveAM that takes longer (60)"
+    )
+
+    parser.addoption(
+        "--cramhy-time", choices=["virtual", "wall"], help="the time of each test; it counts before the variable CRAMHY_TIME (virtual)"
+    )
 
 
 def pytest_configure(config):
+    if config.getoption("--cramhy-time"):
+        os.environ["CRAMHY_TIME"] = config.getoption("--cramhy-time")
+    sys.meta_path.insert(0, _HyStaysHy())
     sys.meta_path.append(_SystemsOnDemand())
 
 
 @pytest.fixture
 def cramhy():
-    """A fresh `Session` in virtual time; ``cramhy.evaluate_text("(+ 1 2)")``."""
+    """A fresh `Session`, in virtual time unless ``--cramhy-time`` or CRAMHY_TIME says otherwise; ``cramhy.evaluate_text("(+ 1 2)")``."""
     from cramhy_runtime import kernel
     from cramhy_runtime.repl.session import Session
+    from cramhy_runtime.session import time_setting
 
-    yield Session(time="virtual")
+    yield Session(time=time_setting.decide())
     kernel.stop()
 
 
@@ -70,12 +93,13 @@ def virtual_time(request):
 
 @pytest.fixture(autouse=True)
 def _fresh_kernel(request):
-    if "cramhy_runtime.image" not in sys.modules or "cramhy" in request.fixturenames or "session" in request.fixturenames:
+    if "cramhy_runtime.session" not in sys.modules or "cramhy" in request.fixturenames or "session" in request.fixturenames:
         yield
         return
-    from cramhy_runtime import image, kernel
+    from cramhy_runtime import kernel
+    from cramhy_runtime.session import fresh_start
 
-    image.fresh_start()
+    fresh_start()
     yield
     kernel.stop()
 
@@ -86,23 +110,51 @@ def _fresh_kernel(request):
 def pytest_collect_file(file_path, parent):
     if file_path.suffix not in (".lisp", ".hy", ".asd"):
         return None
+    if _has_tests_in_hy(file_path):
+        import hy  # noqa: F401  teaches Python to import it
+
+        return pytest.Module.from_parent(parent, path=file_path)
     if not parent.session.isinitpath(file_path):
-        from cramhy_runtime.lisp.systems import unit_tests
+        from cramhy_runtime.languages.commonlisp.systems import unit_tests
 
         if not unit_tests.looks_like_tests(file_path):
             return None
     return LispFile.from_parent(parent, path=file_path)
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """A module that imports a Lisp system needs a kernel, and a Lisp file that was collected before has ended its own."""
+    if isinstance(collector, pytest.Module) and "cramhy_runtime.session" in sys.modules:
+        from cramhy_runtime import kernel
+        from cramhy_runtime.session import fresh_start
+
+        if kernel.active() is None:
+            fresh_start()
+    return (yield)
+
+
+def _has_tests_in_hy(path):
+    """Whether a file has test functions of pytest, in plain Hy."""
+    if path.suffix != ".hy" or not path.name.startswith("test_"):
+        return False
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return False
+    return re.search(r"^\(defn (\[.*\] )?test[-_]", text, re.M) is not None and not re.search(r"^\((in-package|defpackage)\b", text, re.M)
+
+
 class LispFile(pytest.File):
     """A file with tests of lisp-unit or FiveAM, or the definition of a system that has some."""
 
     def collect(self):
-        from cramhy_runtime import image, kernel
-        from cramhy_runtime.lisp.systems import unit_tests
-        from cramhy_runtime.lisp.conditions import Condition
+        from cramhy_runtime import kernel
+        from cramhy_runtime.session import fresh_start
+        from cramhy_runtime.languages.commonlisp.systems import unit_tests
+        from cramhy_runtime.ground.conditions import Condition
 
-        image.fresh_start()
+        fresh_start()
         try:
             tests = unit_tests.load_asd_tests(self.path) if self.path.suffix == ".asd" else unit_tests.load_tests(self.path)
         except (Exception, Condition) as problem:
@@ -120,11 +172,12 @@ class LispItem(pytest.Item):
         self.test = test
 
     def runtest(self):
-        from cramhy_runtime import image, kernel
-        from cramhy_runtime.lisp.systems import unit_tests
+        from cramhy_runtime import kernel
+        from cramhy_runtime.session import fresh_start
+        from cramhy_runtime.languages.commonlisp.systems import unit_tests
 
-        unit_tests.limit = self.config.getoption("--lisp-limit")
-        image.fresh_start()
+        unit_tests.limit_tests(self.config.getoption("--lisp-limit"))
+        fresh_start()
         try:
             outcome = self.test.run()
         finally:
@@ -136,7 +189,9 @@ class LispItem(pytest.Item):
 
     def repr_failure(self, excinfo):
         if isinstance(excinfo.value, ChecksFailed):
-            return "\n\n".join(map(_shown, excinfo.value.failures))
+            from cramhy_runtime.languages.commonlisp.systems import test_reports
+
+            return "\n\n".join(map(test_reports.shown, excinfo.value.failures))
         return _explained(excinfo.value)
 
     def reportinfo(self):
@@ -152,16 +207,9 @@ class ChecksFailed(Exception):
         self.failures = failures
 
 
-def _shown(failure):
-    from cramhy_runtime.lisp.evaluation.places_in_source import describe, excerpt
-
-    place = [f"  at {describe(failure.place)}", excerpt(failure.place)] if failure.place else []
-    return os.linesep.join([failure.text, *place])
-
-
 def _explained(problem):
     """What, where and why, as at the REPL; a Python error of the plugin itself keeps its Python text."""
-    from cramhy_runtime.lisp.tools.advice import explanation
+    from cramhy_runtime.languages.commonlisp.tools.advice import explanation
     from cramhy_runtime.repl.session import condition_of
 
     return explanation(condition_of(problem))

@@ -29,10 +29,13 @@ def test_a_request_to_cancel_that_overtakes_its_goal(lisp):
 
 
 def test_cancelling_all_goals_before_a_time(lisp):
-    lisp(SENT + """(publish-msg *goals* (:id :goal_id) "early" (:stamp :goal_id) (ros-time) (:order :goal) 9)
+    lisp(
+        SENT
+        + """(publish-msg *goals* (:id :goal_id) "early" (:stamp :goal_id) (ros-time) (:order :goal) 9)
                    (wait-duration 1.5)
                    (publish-msg *cancels* :stamp (- (ros-time) 1)) (wait-duration 1)
-                   (publish-msg *goals* (:id :goal_id) "late" (:stamp :goal_id) (ros-time) (:order :goal) 1)""")
+                   (publish-msg *goals* (:id :goal_id) "late" (:stamp :goal_id) (ros-time) (:order :goal) 1)"""
+    )
     assert lisp("(wait-duration 3) *results*") == "(2 3)"
 
 
@@ -46,16 +49,20 @@ def test_a_client_of_a_node_that_has_ended(lisp):
 def test_a_goal_that_cannot_be_sent_is_not_tracked(lisp):
     lisp("(both)")
     assert lisp.error("(actionlib-lisp:send-goal *client* (actionlib-lisp:make-action-goal-msg *client* :order 1.5))") == (
-        "The value\n  1.5\nis not of type\n  INTEGER")
+        "The value\n  1.5\nis not of type\n  INTEGER"
+    )
     assert lisp.error("(actionlib-lisp:state *client*)") == "The client tracks no goal."
 
 
-@pytest.mark.parametrize("told", [
-    """(publish-msg (advertise "count/status" "actionlib_msgs/GoalStatusArray")
+@pytest.mark.parametrize(
+    "told",
+    [
+        """(publish-msg (advertise "count/status" "actionlib_msgs/GoalStatusArray")
          :status_list (vector (make-message "actionlib_msgs/GoalStatus" (:id :goal_id) (actionlib-lisp:goal-id *client*) :status 200)))""",
-    """(publish-msg (advertise "count/result" "actionlib_tutorials/FibonacciActionResult")
+        """(publish-msg (advertise "count/result" "actionlib_tutorials/FibonacciActionResult")
          (:id :goal_id :status) (actionlib-lisp:goal-id *client*) (:status :status) 200)""",
-])
+    ],
+)
 def test_a_state_that_there_is_not_loses_the_goal(lisp, told, capsys):
     lisp(f"(client) (actionlib-lisp:send-goal *client* (goal 1)) {told}")
     assert lisp("(list (actionlib-lisp:wait-for-result *client* 20) (actionlib-lisp:state *client*))") == "(T :LOST)"
@@ -65,15 +72,16 @@ def test_a_state_that_there_is_not_loses_the_goal(lisp, told, capsys):
 @pytest.mark.parametrize("seed", range(6))
 def test_in_whatever_order_the_messages_are_looked_at(seed):
     from cramhy_runtime import kernel
-    from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-    from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
     from cramhy_runtime.repl.session import Session
     from lisp_text import LispText
     from tests_of_actions import PRELUDE
 
     lisp = LispText(Session(time="virtual", turtlesim=False, seed=seed, time_limit=3600), PRELUDE.format(name=f"ACTION-SEED-{seed}"))
     try:
-        assert lisp("""(both)
+        assert (
+            lisp("""(both)
                        (note (actionlib-lisp:send-goal-and-wait *client* (goal 2) 0 0))
                        (progn (actionlib-lisp:send-goal *client* (goal 5)) (actionlib-lisp:cancel-goal *client*))
                        (actionlib-lisp:wait-for-result *client* 0)
@@ -82,7 +90,9 @@ def test_in_whatever_order_the_messages_are_looked_at(seed):
                        (actionlib-lisp:wait-for-result *client* 0)
                        (note (actionlib-lisp:state *client*))
                        (note (nth-value 1 (actionlib:call-goal *client* (goal 1))))
-                       (list (first *notes*) (and (second *notes*) t) (cddr *notes*))""") == "(:SUCCEEDED T (:SUCCEEDED :SUCCEEDED))"
+                       (list (first *notes*) (and (second *notes*) t) (cddr *notes*))""")
+            == "(:SUCCEEDED T (:SUCCEEDED :SUCCEEDED))"
+        )
     finally:
         PACKAGE.value = COMMON_LISP_USER
         kernel.stop()
@@ -95,15 +105,18 @@ def test_a_second_server_of_an_action_would_do_its_goals_twice(lisp):
     assert lisp('(start-ros-node "m") (both) (actionlib:call-goal *client* (goal 1)) (actionlib-lisp:state *client*)') == ":SUCCEEDED"
 
 
-@pytest.mark.parametrize("text, value, type_", [
-    ('(actionlib-lisp:make-simple-action-client nil "actionlib_tutorials/FibonacciAction")', "NIL", "STRING"),
-    ('(start-action-server 4 "actionlib_tutorials/FibonacciAction" #\'count-up :separate-thread t)', "4", "STRING"),
-    ('(start-action-server "x" "actionlib_tutorials/FibonacciAction" 4 :separate-thread t)', "4", "FUNCTION"),
-    ('(client) (actionlib-lisp:send-goal *client* (goal 1) :done-cb 4)', "4", "FUNCTION"),
-    ('(client) (actionlib:call-goal *client* (goal 1) :feedback-cb 4)', "4", "FUNCTION"),
-    ('(client) (actionlib:call-goal *client* (goal 1) :timeout "soon")', '"soon"', "(OR NULL REAL)"),
-    ('(client) (actionlib-lisp:wait-for-server *client* "soon")', '"soon"', "(OR NULL REAL)"),
-])
+@pytest.mark.parametrize(
+    "text, value, type_",
+    [
+        ('(actionlib-lisp:make-simple-action-client nil "actionlib_tutorials/FibonacciAction")', "NIL", "STRING"),
+        ('(start-action-server 4 "actionlib_tutorials/FibonacciAction" #\'count-up :separate-thread t)', "4", "STRING"),
+        ('(start-action-server "x" "actionlib_tutorials/FibonacciAction" 4 :separate-thread t)', "4", "FUNCTION"),
+        ("(client) (actionlib-lisp:send-goal *client* (goal 1) :done-cb 4)", "4", "FUNCTION"),
+        ("(client) (actionlib:call-goal *client* (goal 1) :feedback-cb 4)", "4", "FUNCTION"),
+        ('(client) (actionlib:call-goal *client* (goal 1) :timeout "soon")', '"soon"', "(OR NULL REAL)"),
+        ('(client) (actionlib-lisp:wait-for-server *client* "soon")', '"soon"', "(OR NULL REAL)"),
+    ],
+)
 def test_what_an_action_is_made_of(lisp, text, value, type_):
     assert lisp.error(text, "type-error") == f"The value\n  {value}\nis not of type\n  {type_}"
 

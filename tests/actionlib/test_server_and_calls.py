@@ -25,17 +25,23 @@ def test_a_call_that_takes_too_long_is_cancelled(call):
 
 
 def test_feedback_is_signalled_and_called_back(call):
-    assert call("""(let (seen)
+    assert (
+        call("""(let (seen)
                      (handler-bind ((actionlib:feedback-signal (lambda (s) (push (sequence-of (actionlib:feedback s)) seen))))
                        (call 2 :feedback-cb (lambda (f) (note (sequence-of f)))))
-                     (list seen *notes*))""") == "((#(2) #(1)) (#(1) #(2)))"
+                     (list seen *notes*))""")
+        == "((#(2) #(1)) (#(1) #(2)))"
+    )
 
 
 def test_a_handler_of_feedback_may_abort_the_goal(call):
-    assert call("""(handler-bind ((actionlib:feedback-signal
+    assert (
+        call("""(handler-bind ((actionlib:feedback-signal
                                     (lambda (s) (when (equalp (sequence-of (actionlib:feedback s)) #(2))
                                                   (invoke-restart 'actionlib:abort-goal)))))
-                     (call 10 :result-timeout 5))""") == "(#(4) :PREEMPTED)"  # the server looks once a second
+                     (call 10 :result-timeout 5))""")
+        == "(#(4) :PREEMPTED)"
+    )  # the server looks once a second
 
 
 def test_a_silent_server_is_an_error(call):
@@ -47,12 +53,16 @@ def test_a_silent_server_is_an_error(call):
         node.unadvertise(name)
     assert call("""(let ((start (ros-time)))
                      (handler-case (call 3) (actionlib:server-lost (e) (list (format nil "~a" e) (round (- (ros-time) start))))))""") == (
-        '("Client lost connection to server." 2)')
+        '("Client lost connection to server." 2)'
+    )
 
 
 def test_evaporation_of_a_call_cancels_its_goal(call):
-    assert call("""(top-level (pursue (wait-duration 1.5) (call 10)))
-                   (wait-duration 3) (actionlib-lisp:state *client*)""") == ":PREEMPTED"
+    assert (
+        call("""(top-level (pursue (wait-duration 1.5) (call 10)))
+                   (wait-duration 3) (actionlib-lisp:state *client*)""")
+        == ":PREEMPTED"
+    )
 
 
 def test_falling_off_the_end_aborts_the_goal_and_is_logged(call, capsys):
@@ -62,18 +72,24 @@ def test_falling_off_the_end_aborts_the_goal_and_is_logged(call, capsys):
 
 
 def test_an_error_aborts_the_goal_and_is_told(call, capsys):
-    assert call("""(subscribe "count/result" "actionlib_tutorials/FibonacciActionResult"
+    assert (
+        call("""(subscribe "count/result" "actionlib_tutorials/FibonacciActionResult"
                      (lambda (m) (note (actionlib_msgs-msg:text (actionlib_tutorials-msg:status m)))))
-                   (call 14)""") == "(#() :ABORTED)"
+                   (call 14)""")
+        == "(#() :ABORTED)"
+    )
     assert call("*notes*") == '("no 14")'
     assert "[(ACTIONLIB) ERROR]" in (text := capsys.readouterr().out) and "Error in the exec callback of count: no 14" in text
 
 
 def test_a_newer_goal_preempts_the_one_that_is_worked_on(lisp):
     lisp("(both)" + CALL)
-    assert lisp("""(defvar *first* *client*) (client) (actionlib-lisp:wait-for-server *client*)
+    assert (
+        lisp("""(defvar *first* *client*) (client) (actionlib-lisp:wait-for-server *client*)
                    (actionlib-lisp:send-goal *first* (goal 10)) (wait-duration 1.5)
-                   (list (call 1) (actionlib-lisp:state *first*))""") == "((#(1 1) :SUCCEEDED) :PREEMPTED)"
+                   (list (call 1) (actionlib-lisp:state *first*))""")
+        == "((#(1 1) :SUCCEEDED) :PREEMPTED)"
+    )
 
 
 def test_the_server_reports_four_times_a_second_and_forgets_after_ten_seconds(call):
@@ -93,17 +109,23 @@ def test_what_belongs_into_a_callback_is_an_error_elsewhere(lisp):
 
 
 def test_a_server_in_ones_own_task_ends_with_the_node(lisp):
-    assert lisp("""(cpl:top-level (cpl:par (start-action-server "count" "actionlib_tutorials/FibonacciAction" #'count-up)
+    assert (
+        lisp("""(cpl:top-level (cpl:par (start-action-server "count" "actionlib_tutorials/FibonacciAction" #'count-up)
                                            (progn (client) (actionlib-lisp:wait-for-server *client*)
                                                   (note (actionlib-lisp:send-goal-and-wait *client* (goal 1) 0 0))
                                                   (shutdown-ros-node))))
-                   *notes*""") == "(:SUCCEEDED)"
+                   *notes*""")
+        == "(:SUCCEEDED)"
+    )
 
 
 def test_when_the_node_ends_a_goal_that_is_worked_on_ends_too(lisp):
-    assert lisp("""(both) (actionlib-lisp:send-goal *client* (goal 1000) :done-cb (lambda (s r) (note (list s r))))
+    assert (
+        lisp("""(both) (actionlib-lisp:send-goal *client* (goal 1000) :done-cb (lambda (s r) (note (list s r))))
                    (wait-duration 1.5) (shutdown-ros-node) (start-ros-node "m") (wait-duration 10)
-                   (list (actionlib-lisp:state *client*) *notes*)""") == "(:LOST ((:LOST NIL)))"
+                   (list (actionlib-lisp:state *client*) *notes*)""")
+        == "(:LOST ((:LOST NIL)))"
+    )
 
 
 def test_a_plan_in_the_callback_may_have_branches(lisp, capsys):
@@ -149,17 +171,22 @@ def test_a_shape_server_in_lisp_drives_the_turtle(lisp):
 
     start_turtlesim()
     lisp(SHAPES)
-    lisp("(wait-duration 0.1) (defvar *start* (with-fields (x y) *pose* (list x y)))"
-         "(defvar *far* 0) (defvar *times* 0)"
-         '(subscribe "turtle1/pose" "turtlesim/Pose" (lambda (m) (with-fields (x y) m'
-         "  (setf *far* (max *far* (+ (abs (- x (first *start*))) (abs (- y (second *start*)))))))))")
+    lisp(
+        "(wait-duration 0.1) (defvar *start* (with-fields (x y) *pose* (list x y)))"
+        "(defvar *far* 0) (defvar *times* 0)"
+        '(subscribe "turtle1/pose" "turtlesim/Pose" (lambda (m) (with-fields (x y) m'
+        "  (setf *far* (max *far* (+ (abs (- x (first *start*))) (abs (- y (second *start*)))))))))"
+    )
     assert lisp("(shape 4 1.5)") == "(:SUCCEEDED 1571 1061)"
     assert lisp("(< 3.5 *far* 4.8)") == "T"  # the opposite corner of a square of 2.12 m
     assert lisp("(shape 2 1.0)") == "(:ABORTED 0 0)"
-    assert lisp("""(progn (actionlib-lisp:send-goal *client* (actionlib:make-action-goal *client* :edges 5 :radius 1.0))
+    assert (
+        lisp("""(progn (actionlib-lisp:send-goal *client* (actionlib:make-action-goal *client* :edges 5 :radius 1.0))
                           (wait-duration 2.0) (actionlib-lisp:cancel-goal *client*) (actionlib-lisp:wait-for-result *client* 0)
                           (wait-duration 1.1)
-                          (list (actionlib-lisp:state *client*) (turtlesim-msg:linear_velocity *pose*)))""") == "(:PREEMPTED 0.0d0)"
+                          (list (actionlib-lisp:state *client*) (turtlesim-msg:linear_velocity *pose*)))""")
+        == "(:PREEMPTED 0.0d0)"
+    )
 
 
 def test_a_file_that_was_compiled_before_makes_the_packages_too(tmp_path):
@@ -167,8 +194,7 @@ def test_a_file_that_was_compiled_before_makes_the_packages_too(tmp_path):
     import sys
 
     (tmp_path / "acts.lisp").write_text(
-        "(defun done () (actionlib:succeed-current :sequence #(1)))\n"
-        '(handler-case (done) (error (e) (format t "~a~%" e)))\n'
+        '(defun done () (actionlib:succeed-current :sequence #(1)))\n(handler-case (done) (error (e) (format t "~a~%" e)))\n'
     )
     for _ in range(2):
         run = [sys.executable, "-m", "cramhy_runtime.cli", "run", str(tmp_path / "acts.lisp"), "--time", "virtual"]
@@ -179,13 +205,15 @@ def test_naming_a_package_or_loading_a_system_makes_them():
     import subprocess
     import sys
 
-    program = ("from cramhy_runtime import image; image.boot()\n"
-               "from cramhy_runtime.lisp import packages\n"
-               "from cramhy_runtime.lisp.systems import systems\n"
-               "import sys\n"
-               "assert 'cramhy_runtime.actionlib.client' not in sys.modules\n"
-               "systems.load_system('actionlib-lisp')\n"
-               "assert packages.find_package('ACTIONLIB').lookup('CALL-GOAL')[1] == 'external'\n"
-               "assert packages.find_package('ACTIONLIB-LISP').lookup('CANCEL-AT-BEFORE-TIME')[1] == 'external'\n"
-               "print('made')")
+    program = (
+        "from cramhy_runtime.session import boot; boot()\n"
+        "from cramhy_runtime.ground import packages\n"
+        "from cramhy_runtime.languages.commonlisp.systems import systems\n"
+        "import sys\n"
+        "assert 'cramhy_runtime.actionlib.client' not in sys.modules\n"
+        "systems.load_system('actionlib-lisp')\n"
+        "assert packages.find_package('ACTIONLIB').lookup('CALL-GOAL')[1] == 'external'\n"
+        "assert packages.find_package('ACTIONLIB-LISP').lookup('CANCEL-AT-BEFORE-TIME')[1] == 'external'\n"
+        "print('made')"
+    )
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120).stdout == "made\n"

@@ -20,14 +20,14 @@ def test_nothing_is_there_before_somebody_asks(session):
 
 
 def test_afterwards_nothing_is_left(session):
-    from cramhy_runtime.cpl import past_plans
+    from cramhy_runtime.cpl.tree import finished_plans
 
     chronicle.start()
     chronicle.stop()
     assert chronicler.there() is None and "/cramhy" not in graph.active().nodes
-    assert not kernel.active()._watchers and past_plans.observers == ()
+    assert not kernel.active()._watchers and finished_plans.observers.value == ()
     session.evaluate_text("(top-level (par (sleep 1)))")
-    assert past_plans.newest.record is None
+    assert finished_plans.newest.value.record is None
 
 
 def test_starting_twice_is_starting_once(session):
@@ -69,7 +69,7 @@ def test_a_page_is_told_of_the_newest_only_of_many_that_live_for_no_time(session
 
 
 def test_merged_messages_lead_to_the_same_as_all_messages(session, looker, period):
-    from cramhy_runtime.chronicle.sums import State
+    from cramhy_runtime.chronicle.merge import State
 
     looker.open_board()
     types = {"tasks": "cramhy_msgs/TaskTree", "fluents": "cramhy_msgs/Fluents", "world": "cramhy_msgs/World"}
@@ -177,16 +177,31 @@ def test_where_a_step_ended_is_told_though_nothing_else_has_changed(session, loo
     assert [pace.stamp for pace in heard if pace.paused][-1] == 0.5
 
 
-@pytest.mark.parametrize("service, kind, request_, text", [
-    ("set_pace", "SetPace", {"speed": -1.0},
-     "A speed is a number of plan seconds per second, or 0, as fast as the machine computes, but not -1."),
-    ("set_pace", "SetPace", {"speed": None},
-     "A speed is a number of plan seconds per second, or 0, as fast as the machine computes, but not nan."),
-    ("step", "Step", {"seconds": 0.0}, "A step takes a time above zero, in seconds, but not 0.0."),
-    ("seek", "Seek", {"stamp": 0.0},
-     "Time goes one way in a session with plans. What was before is told by /cramhy/get_history; a recording (--record, cramhy replay) can "
-     "be sought through."),
-])
+@pytest.mark.parametrize(
+    "service, kind, request_, text",
+    [
+        (
+            "set_pace",
+            "SetPace",
+            {"speed": -1.0},
+            "A speed is a number of plan seconds per second, or 0, as fast as the machine computes, but not -1.",
+        ),
+        (
+            "set_pace",
+            "SetPace",
+            {"speed": None},
+            "A speed is a number of plan seconds per second, or 0, as fast as the machine computes, but not nan.",
+        ),
+        ("step", "Step", {"seconds": 0.0}, "A step takes a time above zero, in seconds, but not 0.0."),
+        (
+            "seek",
+            "Seek",
+            {"stamp": 0.0},
+            "Time goes one way in a session with plans. /cramhy/get_history tells what was before; a recording (--record, cramhy replay) can "
+            "be sought through.",
+        ),
+    ],
+)
 def test_what_cannot_be_is_refused_and_nothing_is_lost(session, looker, service, kind, request_, text):
     looker.open_board()
     made = from_json(service_type_exact(f"cramhy_msgs/{kind}").request, request_)

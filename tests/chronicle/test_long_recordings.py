@@ -8,7 +8,7 @@ import pytest
 
 from cramhy_runtime.chronicle.chunk_index import PackedIndexes, pack_indexes
 from cramhy_runtime.chronicle.history import Packed
-from cramhy_runtime.chronicle.sums import FluentLists, State, TaskTrees
+from cramhy_runtime.chronicle.merge import FluentLists, State, TaskTrees
 from cramhy_runtime.ros.message_json import to_json
 from cramhy_runtime.ros.messages import message_class_exact
 

@@ -8,18 +8,29 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime import cpl, image, kernel
+from cramhy_runtime import cpl, kernel
+from cramhy_runtime.session import boot
 from cramhy_runtime.chronicle import chronicler, fluents
-from cramhy_runtime.cpl.following import follow
+from cramhy_runtime.cpl.tasks.task_observers import follow
 
 DEAD = {"SUCCEEDED", "FAILED", "EVAPORATED"}
 FOLLOWS = {"RUNNING": {"RUNNING", "SUSPENDED"} | DEAD, "SUSPENDED": {"SUSPENDED", "RUNNING"} | DEAD}
 
-leaves = st.one_of(st.just(("nothing",)), st.tuples(st.just("sleep"), st.sampled_from([0, 0.25, 1, 2])), st.just(("fail",)),
-                   st.tuples(st.just("set"), st.integers(0, 3)), st.tuples(st.just("wait"), st.integers(0, 3)),
-                   st.tuples(st.just("pause"), st.sampled_from([0, 0.5])))
-plans = st.recursive(leaves, lambda inner: st.one_of(
-    *[st.tuples(st.just(form), st.lists(inner, min_size=1, max_size=3)) for form in ("seq", "par", "pursue", "try_all")]), max_leaves=14)
+leaves = st.one_of(
+    st.just(("nothing",)),
+    st.tuples(st.just("sleep"), st.sampled_from([0, 0.25, 1, 2])),
+    st.just(("fail",)),
+    st.tuples(st.just("set"), st.integers(0, 3)),
+    st.tuples(st.just("wait"), st.integers(0, 3)),
+    st.tuples(st.just("pause"), st.sampled_from([0, 0.5])),
+)
+plans = st.recursive(
+    leaves,
+    lambda inner: st.one_of(
+        *[st.tuples(st.just(form), st.lists(inner, min_size=1, max_size=3)) for form in ("seq", "par", "pursue", "try_all")]
+    ),
+    max_leaves=14,
+)
 
 
 def run(plan, fluent):
@@ -47,7 +58,7 @@ def run(plan, fluent):
 def looked_at(plan, backend, seed):
     """(all tasks that there were, what was told of tasks in order)."""
     kernel.start(backend=backend, seed=seed, time_limit=1000)
-    image.boot()
+    boot()
     told, tasks = [], []
     here = chronicler.active()
     here.listeners.append(lambda kind, message: told.extend(message.tasks if kind == "tasks" else ()))

@@ -84,7 +84,7 @@ def test_a_file_cut_off_at_any_byte_is_read_as_far_as_whole_chunks_go(recorded, 
         assert str(problem).startswith(str(folder / "y.mcap"))
         return
     messages = list(found.messages())
-    assert messages == whole[:len(messages)]
+    assert messages == whole[: len(messages)]
     if complete:
         last = complete[-1].message_end_time / 1e9 - 1292688669.674
         assert len(messages) >= len([message for message in whole if message[0] < last - 1e-3])
@@ -134,15 +134,17 @@ def test_any_bytes_behind_the_magic_ones_are_the_declared_error_or_a_recording(t
         read_bytes(tmp_path_factory.getbasetemp(), b"\x89MCAP0\r\n" + junk)
 
 
-NO_MCAP = ("{0} is no recording: it does not begin as files of the format MCAP do. What cramhy records with --record x.mcap can be "
-           "replayed.")
+NO_MCAP = "{0} is no recording: it does not begin as files of the format MCAP do. What cramhy records with --record x.mcap can be replayed."
 
 
-@pytest.mark.parametrize("content, text", [
-    (b"", NO_MCAP),
-    (b"#ROSBAG V2.0\n", NO_MCAP),
-    (b"\x89MCAP0\r\n", "{0} is no recording that could be read: it is cut off before its first message."),
-])
+@pytest.mark.parametrize(
+    "content, text",
+    [
+        (b"", NO_MCAP),
+        (b"#ROSBAG V2.0\n", NO_MCAP),
+        (b"\x89MCAP0\r\n", "{0} is no recording that could be read: it is cut off before its first message."),
+    ],
+)
 def test_what_is_no_recording_is_told(tmp_path, content, text):
     with pytest.raises(RecordingError) as problem:
         read_bytes(tmp_path, content)
@@ -181,10 +183,13 @@ def test_messages_that_are_no_json_are_left_out(tmp_path):
     assert list(read_bytes(tmp_path, foreign(data=b"[" * 100_000)).messages()) == []
 
 
-@pytest.mark.parametrize("options, why", [
-    ({"encoding": "ros1", "schema": "ros1msg"}, "its messages are encoded as ros1, not as JSON"),
-    ({"name": ""}, "it does not say what type its messages have"),
-])
+@pytest.mark.parametrize(
+    "options, why",
+    [
+        ({"encoding": "ros1", "schema": "ros1msg"}, "its messages are encoded as ros1, not as JSON"),
+        ({"name": ""}, "it does not say what type its messages have"),
+    ],
+)
 def test_a_recording_of_messages_that_nobody_can_read_here_says_why(tmp_path, options, why):
     with pytest.raises(RecordingError) as problem:
         read_bytes(tmp_path, foreign(**options))

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from image_as_it_was import image_as_it_was
+from cramhy_runtime.session import Image
 
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import chronicler, recorder
@@ -48,8 +48,9 @@ def messages_of(path, topic):
 def test_every_pose_that_somebody_saw_is_there_with_its_time(session, tmp_path):
     seen = []
     node = graph.active().node("onlooker", hidden=True)
-    node.subscribe("/turtle1/pose", message_class_exact("turtlesim/Pose"),
-                   lambda pose: seen.append((EPOCH + round(kernel.now() * 1e9), to_json(pose))))
+    node.subscribe(
+        "/turtle1/pose", message_class_exact("turtlesim/Pose"), lambda pose: seen.append((EPOCH + round(kernel.now() * 1e9), to_json(pose)))
+    )
     with chronicle.record(tmp_path / "x.mcap"):
         session.evaluate_text(DRIVE)
     assert len(seen) > 180
@@ -142,9 +143,9 @@ def test_a_recording_of_a_session_that_is_over_can_be_closed_when_another_one_is
     for name in ("a", "b"):
         tasks = [task for _, tree in messages_of(tmp_path / f"{name}.mcap", "/cramhy/tasks") for task in tree["tasks"]]
         assert [task["state"] for task in tasks].count("SUCCEEDED") == 3
-    from cramhy_runtime.cpl import past_plans
+    from cramhy_runtime.cpl.tree import finished_plans
 
-    assert past_plans.observers == ()
+    assert finished_plans.observers.value == ()
 
 
 def test_two_recordings_at_once_and_a_page_beside_them(session, tmp_path):
@@ -228,8 +229,12 @@ SHOW = """
 
 def test_the_same_seed_gives_the_same_bytes_and_recording_does_not_change_the_run(tmp_path):
     told = []
-    for name, seed, end, backend in (("a", 1, "close", "threads"), ("b", 1, "close", "greenlet"), ("c", 2, "close", "threads"),
-                                     ("d", 1, "unseen", "threads")):
+    for name, seed, end, backend in (
+        ("a", 1, "close", "threads"),
+        ("b", 1, "close", "greenlet"),
+        ("c", 2, "close", "threads"),
+        ("d", 1, "unseen", "threads"),
+    ):
         assert run_script(tmp_path / name, seed, end, backend, told) == 0
     contents = [(tmp_path / name).read_bytes() for name in "abc"]
     assert contents[0] == contents[1] != contents[2]
@@ -240,8 +245,10 @@ def test_the_same_seed_gives_the_same_bytes_and_recording_does_not_change_the_ru
 def test_a_process_that_is_killed_leaves_a_file_that_can_be_read(tmp_path):
     assert run_script(tmp_path / "x.mcap", end="kill") == -signal.SIGKILL
     found = chronicle.read(tmp_path / "x.mcap")
-    assert found.cut == (f"The recording {tmp_path / 'x.mcap'} is damaged or cut off, as when the process that wrote it was killed; "
-                         "what comes before that is there.")
+    assert found.cut == (
+        f"The recording {tmp_path / 'x.mcap'} is damaged or cut off, as when the process that wrote it was killed; "
+        "what comes before that is there."
+    )
     assert found.count > 100 and found.end >= 2
 
 
@@ -260,19 +267,31 @@ def test_a_full_disk_ends_the_recording_but_not_the_plan(session, tmp_path, monk
     assert made.closed and made.problem == "No space left on device"
     made.close()
     told = " ".join(capsys.readouterr().err.split())
-    assert told.count(f"The recording {tmp_path / 'x.mcap'} ends here: No space left on device. Make room on that disk, or choose "
-                      "another place. The plan goes on.") == 1
+    assert (
+        told.count(
+            f"The recording {tmp_path / 'x.mcap'} ends here: No space left on device. Make room on that disk, or choose "
+            "another place. The plan goes on."
+        )
+        == 1
+    )
     assert not session.evaluate_text("(sleep 1)")[0]
 
 
-@pytest.mark.parametrize("path, text", [
-    ("nowhere/x.mcap", "The recording {0}/nowhere/x.mcap cannot be written: No such file or directory. Make its folder first, or choose "
-                       "another one."),
-    ("", "The recording {0} cannot be written: Is a directory. Choose the name of a file."),
-    pytest.param("/dev/full", "The recording /dev/full cannot be written: No space left on device. Make room on that disk, "
-                 "or choose another place.",
-                 marks=pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no disk that is always full")),
-])
+@pytest.mark.parametrize(
+    "path, text",
+    [
+        (
+            "nowhere/x.mcap",
+            "The recording {0}/nowhere/x.mcap cannot be written: No such file or directory. Make its folder first, or choose another one.",
+        ),
+        ("", "The recording {0} cannot be written: Is a directory. Choose the name of a file."),
+        pytest.param(
+            "/dev/full",
+            "The recording /dev/full cannot be written: No space left on device. Make room on that disk, or choose another place.",
+            marks=pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no disk that is always full"),
+        ),
+    ],
+)
 def test_a_file_that_cannot_be_written_is_told_at_once(session, tmp_path, path, text):
     with pytest.raises(RecordingError) as problem:
         chronicle.record(tmp_path / path)
@@ -283,8 +302,9 @@ def test_a_file_that_cannot_be_written_is_told_at_once(session, tmp_path, path, 
 def test_without_a_session_nothing_can_be_recorded(tmp_path):
     with kernel.aside(), pytest.raises(RecordingError) as problem:
         chronicle.record(tmp_path / "x.mcap")
-    assert str(problem.value) == (f"Nothing can be recorded in {tmp_path / 'x.mcap'}: no session runs. Start one first, by the REPL or "
-                                  "kernel.start().")
+    assert str(problem.value) == (
+        f"Nothing can be recorded in {tmp_path / 'x.mcap'}: no session runs. Start one first, by the REPL or kernel.start()."
+    )
 
 
 def test_without_mcap_it_is_told_how_to_get_it(session, tmp_path, monkeypatch):
@@ -304,15 +324,15 @@ def test_the_lecture_is_recorded_whole(tmp_path):
         import lectures
     finally:
         sys.path.pop(0)
-    session, seen = Session(time="virtual", seed=3), []
-    try:
+    seen = []
+    with Image(as_now=True):
+        session = Session(time="virtual", seed=3)
         graph.active().node("onlooker", hidden=True).subscribe(
-            "/turtle1/pose", message_class_exact("turtlesim/Pose"), lambda pose: seen.append(to_json(pose)))
-        with image_as_it_was(), chronicle.record(tmp_path / "x.mcap"):
+            "/turtle1/pose", message_class_exact("turtlesim/Pose"), lambda pose: seen.append(to_json(pose))
+        )
+        with chronicle.record(tmp_path / "x.mcap"):
             for form in lectures.LECTURE_38:
                 session.evaluate_text(form)
-    finally:
-        kernel.stop()
     path = tmp_path / "x.mcap"
     assert [data for _, data in messages_of(path, "/turtle1/pose")] == seen and len(seen) > 600
     modules = [data["modules"] for _, data in messages_of(path, "/cramhy/process_modules")]

@@ -7,7 +7,7 @@ import pytest
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import player as players
 from cramhy_runtime.chronicle.recordings import RecordingError
-from cramhy_runtime.chronicle.sums import TOPICS, State
+from cramhy_runtime.chronicle.merge import TOPICS, State
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.ros import graph, services
 from cramhy_runtime.ros.message_json import to_json
@@ -59,8 +59,9 @@ class Audience:
         player.board.next = -1.0
         node = graph.active().node("audience", hidden=True)
         for topic, kind in chronicle.read(path).topics.items():
-            node.subscribe(topic, message_class_exact(kind),
-                           lambda message, topic=topic: self.heard.append((player.position, topic, to_json(message))))
+            node.subscribe(
+                topic, message_class_exact(kind), lambda message, topic=topic: self.heard.append((player.position, topic, to_json(message)))
+            )
 
     def of(self, topic):
         return [message for _, heard, message in self.heard if heard == topic]
@@ -221,11 +222,14 @@ def test_another_replay_takes_the_place_of_the_first(fresh, path):
     assert not first._timer.active
 
 
-@pytest.mark.parametrize("act, text", [
-    (lambda player: player.seek(float("nan")), "The time to go to is not a number."),
-    (lambda player: player.step(-1), "A step takes a time above zero, in seconds, but not -1."),
-    (lambda player: player.set_pace(False, -2.0), "A speed is a number above zero, in recorded seconds per second, but not -2."),
-])
+@pytest.mark.parametrize(
+    "act, text",
+    [
+        (lambda player: player.seek(float("nan")), "The time to go to is not a number."),
+        (lambda player: player.step(-1), "A step takes a time above zero, in seconds, but not -1."),
+        (lambda player: player.set_pace(False, -2.0), "A speed is a number above zero, in recorded seconds per second, but not -2."),
+    ],
+)
 def test_what_cannot_be_is_told(fresh, path, act, text):
     player, _ = replayed(path)
     with pytest.raises(ValueError) as problem:
@@ -238,7 +242,7 @@ def test_what_cannot_be_is_told(fresh, path, act, text):
 def test_of_a_cut_off_recording_the_rest_is_replayed_with_a_warning(fresh, path, tmp_path, capsys):
     cut = tmp_path / "cut.mcap"
     content = path.read_bytes()
-    cut.write_bytes(content[:len(content) * 3 // 4])
+    cut.write_bytes(content[: len(content) * 3 // 4])
     player, audience = replayed(cut)
     kernel.sleep(10)
     assert player.ended and audience.of("/turtle1/pose")
@@ -266,8 +270,9 @@ def test_a_topic_of_a_type_that_is_not_known_is_left_out_with_a_warning(fresh, t
 def replayed_of_known(path):
     heard = []
     made = chronicle.replay(path)
-    graph.active().node("audience", hidden=True).subscribe("/words", message_class_exact("std_msgs/String"),
-                                                           lambda message: heard.append(message.data))
+    graph.active().node("audience", hidden=True).subscribe(
+        "/words", message_class_exact("std_msgs/String"), lambda message: heard.append(message.data)
+    )
     return made, heard
 
 
@@ -275,8 +280,9 @@ def test_a_session_that_is_watched_itself_is_no_place_for_a_replay(fresh, path):
     chronicle.start()
     with pytest.raises(RecordingError) as problem:
         chronicle.replay(path)
-    assert str(problem.value) == (f"{path} cannot be replayed in a session that is watched or recorded itself. Use a session of its own: "
-                                  f"cramhy replay {path}")
+    assert str(problem.value) == (
+        f"{path} cannot be replayed in a session that is watched or recorded itself. Use a session of its own: cramhy replay {path}"
+    )
 
 
 def test_without_a_session_there_is_no_replay(path):

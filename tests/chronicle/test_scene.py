@@ -17,8 +17,8 @@ PLAN = """(progn (roslisp:start-ros-node "n") (sleep 0.1)
     (roslisp:publish pub (roslisp:make-message "geometry_msgs/Twist" (x linear) 2 (z angular) 1)))
   (sleep 1.5) ~a
   (sleep 0.1))"""
-CLEAR = "(roslisp:call-service \"/clear\" 'std_srvs-srv:Empty)"
-KILL = "(roslisp:call-service \"/kill\" 'turtlesim-srv:Kill :name \"bob\")"
+CLEAR = '(roslisp:call-service "/clear" \'std_srvs-srv:Empty)'
+KILL = '(roslisp:call-service "/kill" \'turtlesim-srv:Kill :name "bob")'
 
 
 def recorded(session, path, last=""):
@@ -30,7 +30,7 @@ def recorded(session, path, last=""):
     with open(path, "rb") as file:
         found = [(schema, channel.topic, json.loads(message.data)) for schema, channel, message in make_reader(file).iter_messages()]
     updates = [data for _, topic, data in found if topic == scene.TOPIC]
-    (kind, ) = {(schema.name, schema.data) for schema, topic, _ in found if topic == scene.TOPIC}
+    (kind,) = {(schema.name, schema.data) for schema, topic, _ in found if topic == scene.TOPIC}
     return kind, updates, [data for _, topic, data in found if topic == "/cramhy/world"]
 
 
@@ -65,7 +65,7 @@ def test_every_line_and_the_last_places_are_there(session, tmp_path):
     lines = [(a["x"], a["y"], b["x"], b["y"]) for a, b in zip(points[::2], points[1::2])]
     assert lines == drawn and len(drawn) > 50
     for turtle in worlds[-1]["turtles"]:
-        (arrow, ) = entities[f"turtle {turtle['name']}"]["arrows"]
+        (arrow,) = entities[f"turtle {turtle['name']}"]["arrows"]
         assert arrow["pose"]["position"] == {"x": turtle["x"], "y": turtle["y"], "z": 0.1}
     assert {name.split()[0] for name in entities} == {"paper", "turtle", "ink"}
 

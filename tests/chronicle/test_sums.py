@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.chronicle.sums import PIECE, WorldState
+from cramhy_runtime.chronicle.merge import PIECE, WorldState
 from cramhy_runtime.ros.messages import message_class_exact
 
 
@@ -12,8 +12,9 @@ def worlds(count, clears=1, radius=2.0):
     """So many messages, in each of which a turtle draws one more line of a circle of 500 lines."""
     world, stroke = message_class_exact("cramhy_msgs/World"), message_class_exact("cramhy_msgs/Stroke")
     points = [(5 + radius * math.cos(step / 500 * math.tau), 5 + radius * math.sin(step / 500 * math.tau)) for step in range(count + 1)]
-    return [world(stamp=float(index), clears=clears, strokes=[stroke(*points[index], *points[index + 1], 1, 2, 3, 4)])
-            for index in range(count)]
+    return [
+        world(stamp=float(index), clears=clears, strokes=[stroke(*points[index], *points[index + 1], 1, 2, 3, 4)]) for index in range(count)
+    ]
 
 
 def added(state, messages):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.chronicle.sums import TOPICS
+from cramhy_runtime.chronicle.merge import TOPICS
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 
 pytest.importorskip("mcap")

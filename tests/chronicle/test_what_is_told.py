@@ -35,7 +35,8 @@ def test_what_a_task_waits_for_is_told_while_it_does(session, looker):
     assert [(task.name, task.state, task.waits_for, task.place) for task in first.tasks] == [
         ("[TOP-LEVEL]", "RUNNING", "the branches of PAR", "<repl>:3:3"),
         ("[PAR-CHILD-#1/2]", "RUNNING", "the time 1 s (sleep 1)", "<repl>:3:8"),
-        ("[PAR-CHILD-#2/2]", "RUNNING", "the time 2 s (sleep 2)", "<repl>:4:15")]
+        ("[PAR-CHILD-#2/2]", "RUNNING", "the time 2 s (sleep 2)", "<repl>:4:15"),
+    ]
     assert all(math.isnan(task.ended) for task in first.tasks)
 
 
@@ -57,12 +58,16 @@ def test_every_task_that_began_ended(session, looker):
 
 
 def test_a_failure_is_told_with_its_text_and_place(session, looker):
-    session.evaluate_text("""(top-level (with-failure-handling ((simple-plan-failure (f) f (return)))
-      (par (sleep 1) (fail "no ~a" "luck"))))""", "<repl>")
+    session.evaluate_text(
+        """(top-level (with-failure-handling ((simple-plan-failure (f) f (return)))
+      (par (sleep 1) (fail "no ~a" "luck"))))""",
+        "<repl>",
+    )
     kernel.sleep(1)
     failed = [task for task in looker.tasks() if task.state == "FAILED"]
     assert [(task.name, task.result, task.place) for task in failed] == [
-        ("[PAR-CHILD-#2/2]", "SIMPLE-PLAN-FAILURE, no luck", "<repl>:2:22")]
+        ("[PAR-CHILD-#2/2]", "SIMPLE-PLAN-FAILURE, no luck", "<repl>:2:22")
+    ]
     assert states(looker, "PAR-CHILD-#1/2")[-1] == "EVAPORATED"
 
 
@@ -126,8 +131,12 @@ def test_fluents_are_told_when_they_change_with_their_value_as_text_and_number(s
       (progn (defparameter *level* (make-fluent :name "level" :value 1))
              (sleep 1) (setf (value *level*) 2.5) (sleep 1)
              (setf (value *level*) :high) (sleep 1) (setf (value *level*) :high) (sleep 1))""")
-    seen = [(message.stamp, fluent.name, fluent.value) for message in looker.told["fluents"] for fluent in message.fluents
-            if fluent.name == "level"]
+    seen = [
+        (message.stamp, fluent.name, fluent.value)
+        for message in looker.told["fluents"]
+        for fluent in message.fluents
+        if fluent.name == "level"
+    ]
     numbers = [fluent.number for message in looker.told["fluents"] for fluent in message.fluents if fluent.name == "level"]
     assert seen == [(0.0, "level", "1"), (1.0, "level", "2.5"), (2.0, "level", ":HIGH")]
     assert numbers[:2] == [1.0, 2.5] and math.isnan(numbers[2])
@@ -167,9 +176,9 @@ def test_a_fluent_that_is_only_garbage_is_not_told_to_who_begins_to_look(session
 
 def test_only_fluents_that_were_told_are_told_to_be_gone(session, looker, monkeypatch):
     monkeypatch.setattr(fluents, "MOST", 10)
-    session.evaluate_text("(defparameter *many* (loop for i below 30 collect (make-fluent :name (format nil \"many-~a\" i) :value i)))")
+    session.evaluate_text('(defparameter *many* (loop for i below 30 collect (make-fluent :name (format nil "many-~a" i) :value i)))')
     session.evaluate_text("(sleep 1)")
-    session.evaluate_text("(defparameter *more* (loop for i below 10 collect (make-fluent :name \"more\")))")
+    session.evaluate_text('(defparameter *more* (loop for i below 10 collect (make-fluent :name "more")))')
     session.evaluate_text("(sleep 1)")
     told = [fluent.id for message in looker.told["fluents"] for fluent in message.fluents]
     gone = [gone for message in looker.told["fluents"] for gone in message.removed]
@@ -187,11 +196,49 @@ def test_process_modules_are_told_with_what_they_execute_and_their_queue(session
     session.evaluate_text("(cpm:def-process-module waiter (motion) (sleep (desig:desig-prop-value motion :duration)))")
     session.evaluate_text(MODULES)
     kernel.sleep(1)
-    seen = [[(module.name, module.state, module.executes, list(module.queue)) for module in message.modules]
-            for message in looker.told["modules"]]
+    seen = [
+        [(module.name, module.state, module.executes, list(module.queue)) for module in message.modules]
+        for message in looker.told["modules"]
+    ]
     one, two = "#<A MOTION (TYPE WAITING) (DURATION 2)>", "#<A MOTION (TYPE WAITING) (DURATION 1)>"
     assert seen == [[("WAITER", "RUNNING", one, [])], [("WAITER", "RUNNING", one, [two])], [("WAITER", "RUNNING", two, [])], []]
     assert "[WAITER]" in {task.name for task in looker.tasks()}
+
+
+def test_fluents_of_process_modules_are_told_apart_from_those_of_the_program(session, looker):
+    session.evaluate_text("(cpm:def-process-module waiter (motion) (sleep (desig:desig-prop-value motion :duration)))")
+    session.evaluate_text('(defparameter *mine* (make-fluent :name "waiter-status" :value 1))')
+    session.evaluate_text(MODULES)
+    told = {fluent.name: fluent.internal is True for message in looker.told["fluents"] for fluent in message.fluents}
+    assert told["waiter-status"] is False
+    assert {name: internal for name, internal in told.items() if name.startswith("WAITER-")} == dict.fromkeys(
+        (f"WAITER-{what}" for what in ("INPUT", "STATUS", "CANCEL", "CALLER", "RESULT")), True
+    )
+
+
+EARLIER = """(progn
+  (def-cram-function wall (n) (sleep n) n)
+  (def-top-level-cram-function walls () (par (wall 1) (wall 2)))
+  (walls) (top-level (wall 3))
+  (handler-case (top-level (wall 1) (fail 'simple-plan-failure)) (simple-plan-failure () nil)))"""
+
+
+def test_who_opens_the_board_late_is_told_of_the_plans_that_ended_and_recordings_are_not(session, looker):
+    looker.chronicler.listeners.clear()
+    chronicler.dismiss()  # so that nobody watches
+    session.evaluate_text(EARLIER)
+    late = type(looker)()
+    late.open_board()
+    told = late.call("/cramhy/get_state", "cramhy_msgs/GetState").tasks.tasks
+    names = [(task.name, task.state, task.ended - task.began) for task in told]
+    assert names[0] == ("[WALLS-TOP-LEVEL]", "SUCCEEDED", 2.0)
+    assert ("[REPLACEABLE-FUNCTION-WALL] (WALL 2), call 2", "SUCCEEDED", 2.0) in names
+    assert names[-2][:2] == ("[TOP-LEVEL]", "FAILED") and told[-2].result.startswith("SIMPLE-PLAN-FAILURE")
+    known = {task.id for task in told}
+    assert all(task.parent in known for task in told if task.parent) and told == sorted(told, key=lambda task: int(task.id))
+    session.evaluate_text("(top-level (sleep 1))")
+    kernel.sleep(1)
+    assert {task.name for task in late.tasks()} == {"[TOP-LEVEL]"} and len({task.id for task in late.tasks()}) == 1
 
 
 TURTLE = """(progn (roslisp:start-ros-node "driver") (sleep 1)
@@ -236,7 +283,7 @@ def test_what_goes_wrong_in_looking_ends_that_look_and_nothing_else(session, loo
     monkeypatch.setattr(looker.chronicler.sources["fluents"], "take", broken)
     session.evaluate_text(PAR)
     kernel.sleep(1)
-    assert "What happens to fluents can be told no more: RuntimeError: no eyes" in " ".join(capsys.readouterr().err.split())
+    assert "Changes of fluents can be told no more: RuntimeError: no eyes" in " ".join(capsys.readouterr().err.split())
     assert states(looker, "PAR-CHILD-#2/2")[-1] == "SUCCEEDED"
 
 
@@ -256,7 +303,7 @@ def test_texts_beyond_latin_come_out_as_they_were(session, looker):
 
 
 def test_looking_on_changes_nothing_that_the_program_prints(session, looker):
-    from cramhy_runtime.lisp.printer.printer import prin1_to_string
+    from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
     session.evaluate_text("(defclass thing () ())")
     session.evaluate_text("""(defparameter *thing* (make-fluent :name "thing" :value (make-instance 'thing)))""")
@@ -269,7 +316,7 @@ def test_looking_on_changes_nothing_that_the_program_prints(session, looker):
 
 
 def test_who_prints_while_somebody_looks_on_prints_as_ever(session, looker):
-    from cramhy_runtime.lisp.printer.printer import prin1_to_string
+    from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
     looker.chronicler.listeners.clear()  # so that nobody looks but who asks
     looker.open_board()

@@ -5,18 +5,19 @@ import itertools
 
 import pytest
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-from cramhy_runtime.lisp.printer.print_controls import PACKAGE
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime import kernel
+from cramhy_runtime.session import Image, boot
+from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
-image.boot()
+boot()
 
 
 @pytest.fixture(params=["threads", "greenlet"], autouse=True)
 def fresh_kernel(request):
-    yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
-    kernel.stop()
+    with Image(as_now=True):
+        yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
 
 
 class PlanText:

@@ -1,7 +1,7 @@
 """What tests of tasks and operators begin with: a plan, a task made by hand in it, and the statuses that a task goes through."""
 
 from cramhy_runtime import cpl
-from cramhy_runtime.cpl.tasks import Task
+from cramhy_runtime.cpl.tasks.tasks import Task
 
 
 def plan(body):

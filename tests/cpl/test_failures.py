@@ -5,8 +5,8 @@ from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import hooks
-from cramhy_runtime.lisp.conditions import Error, SimpleError, error, handler_bind, ignore_errors, restart_case
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, ignore_errors, restart_case
+from cramhy_runtime.ground.packages import sym
 
 
 def handling(*clauses, body):
@@ -56,8 +56,7 @@ def test_a_childs_cleanup_runs_before_the_parents_handler():
         finally:
             order.append("cleanup")
 
-    plan(lambda: handling((cpl.PlanFailure, lambda failure, retry: (order.append("handler"), retry.leave())),
-                          body=lambda: cpl.par(body)))
+    plan(lambda: handling((cpl.PlanFailure, lambda failure, retry: (order.append("handler"), retry.leave())), body=lambda: cpl.par(body)))
     assert order == ["cleanup", "handler"]
 
 
@@ -68,8 +67,9 @@ def test_a_handler_that_returns_declines_and_all_matching_clauses_then_outer_for
         return lambda failure, retry: seen.append((name, failure))
 
     def body():
-        return handling((cpl.SimplePlanFailure, note("first")), (Error, note("never")), (cpl.PlanFailure, note("second")),
-                        body=lambda: cpl.fail("x"))
+        return handling(
+            (cpl.SimplePlanFailure, note("first")), (Error, note("never")), (cpl.PlanFailure, note("second")), body=lambda: cpl.fail("x")
+        )
 
     plan(lambda: handling((cpl.PlanFailure, lambda failure, retry: (seen.append(("outer", failure)), retry.leave())), body=body))
     assert [name for name, _ in seen] == ["first", "second", "outer"]
@@ -126,8 +126,14 @@ def test_in_an_envelope_the_first_clause_for_the_error_comes_before_clauses_for_
         return lambda condition, retry: seen.append((name, type(condition).__name__))
 
     with pytest.raises(SimpleError):
-        plan(lambda: handling((cpl.PlanFailure, note("plan-failure")), (SimpleError, note("simple-error")), (Error, note("error")),
-                              body=lambda: cpl.par(lambda: error("x"))))
+        plan(
+            lambda: handling(
+                (cpl.PlanFailure, note("plan-failure")),
+                (SimpleError, note("simple-error")),
+                (Error, note("error")),
+                body=lambda: cpl.par(lambda: error("x")),
+            )
+        )
     assert seen == [("simple-error", "SimpleError"), ("plan-failure", "CommonLispErrorEnvelope")]
 
 
@@ -157,8 +163,7 @@ def test_python_errors_of_a_branch_are_errors_too():
 
 def test_fail_without_arguments_and_with_text_and_with_a_class():
     def caught(*arguments):
-        return plan(lambda: handling((cpl.PlanFailure, lambda failure, retry: retry.leave(failure)),
-                                     body=lambda: cpl.fail(*arguments)))
+        return plan(lambda: handling((cpl.PlanFailure, lambda failure, retry: retry.leave(failure)), body=lambda: cpl.fail(*arguments)))
 
     assert caught().format_control == "Plan failure."
     assert caught("a ~a", 1).format_arguments == (1,)
@@ -182,7 +187,7 @@ def test_restarts_of_a_task_can_be_used_by_its_handlers():
         return restart_case([(name, lambda value: value)], lambda: cpl.fail("x"))
 
     def handler(failure, retry):
-        from cramhy_runtime.lisp.conditions import invoke_restart
+        from cramhy_runtime.ground.conditions import invoke_restart
 
         invoke_restart(name, 42)
 
@@ -193,8 +198,11 @@ def test_the_hook_on_fail_gets_the_datum_before_any_handler():
     order = []
     hooks.on_fail.add(lambda datum: order.append(("hook", datum)), "test")
     try:
-        plan(lambda: handling((cpl.PlanFailure, lambda failure, retry: (order.append("handler"), retry.leave())),
-                              body=lambda: cpl.fail("text")))
+        plan(
+            lambda: handling(
+                (cpl.PlanFailure, lambda failure, retry: (order.append("handler"), retry.leave())), body=lambda: cpl.fail("text")
+            )
+        )
     finally:
         hooks.on_fail.remove("test")
     assert order == [("hook", "text"), "handler"]

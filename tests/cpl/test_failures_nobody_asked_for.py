@@ -8,7 +8,7 @@ from cramhy_runtime import cpl, kernel
 @pytest.fixture
 def told(monkeypatch):
     heard = []
-    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: heard.append((task.name, str(exception))))
+    monkeypatch.setattr(kernel.reports.installed.reporter, "unhandled", lambda task, exception: heard.append((task.name, str(exception))))
     return heard
 
 
@@ -31,10 +31,15 @@ def test_the_failure_of_a_task_that_nobody_asked_about_is_told_when_its_parent_e
     assert told == [("gripper", "stuck")]
 
 
-@pytest.mark.parametrize("ask", [
-    lambda task: cpl.with_failure_handling([(cpl.PlanFailure, lambda failure, retry: retry.leave())], lambda retry: cpl.join_task(task)),
-    lambda task: cpl.wait_for(cpl.fl_funcall(lambda now: now is cpl.FAILED or None, task.status_fluent)),
-])
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda task: cpl.with_failure_handling(
+            [(cpl.PlanFailure, lambda failure, retry: retry.leave())], lambda retry: cpl.join_task(task)
+        ),
+        lambda task: cpl.wait_for(cpl.fl_funcall(lambda now: now is cpl.FAILED or None, task.status_fluent)),
+    ],
+)
 def test_who_asked_has_been_told(told, ask):
     def plan():
         task = failing()
@@ -51,7 +56,7 @@ def test_a_failure_that_a_form_waits_for_is_told_once_by_the_form(told):
 
 
 def test_in_lisp_the_readers_count_as_asking(told):
-    from cramhy_runtime.cpl import task_readers
+    from cramhy_runtime.cpl.tasks import task_readers
 
     def plan():
         tasks = [failing(), failing(), failing()]

@@ -3,8 +3,8 @@
 import pytest
 
 from cramhy_runtime import cpl
-from cramhy_runtime.lisp.condition_types import Condition
-from cramhy_runtime.lisp.tools.advice import explanation
+from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl.session import Session, condition_of
 
 
@@ -29,7 +29,7 @@ def told(session):
 
 @pytest.fixture
 def answer(session):
-    from cramhy_runtime.lisp.printer.printer import prin1_to_string
+    from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
     return lambda text: prin1_to_string(session.evaluate_text(text, "<repl test>")[0])
 
@@ -37,15 +37,22 @@ def answer(session):
 def test_a_net_over_a_wrong_value_says_which_net_it_is_and_over_what(told):
     text = told("(defvar *speed* (make-fluent :name 'speed))\n(let ((limit (make-fluent :value 3 :name 'limit)))\n  (< *speed* limit))")
     lines = text.splitlines()
-    assert [line.strip() for line in lines[:-1]] == ["The value", "NIL", "is not of type", "REAL", "at <repl test>:3:3",
-                                                     "(< *speed* limit))", "^"]
+    assert [line.strip() for line in lines[:-1]] == [
+        "The value",
+        "NIL",
+        "is not of type",
+        "REAL",
+        "at <repl test>:3:3",
+        "(< *speed* limit))",
+        "^",
+    ]
     assert lines[-1].startswith("  while the net FN-FL<")
     assert lines[-1].endswith(" over the fluents SPEED and LIMIT was made: its first value is computed at once")
 
 
 def test_an_assignment_that_a_net_cannot_take_is_the_place_of_the_error(told, answer):
     answer("(defparameter *f* (make-fluent :name 'f :value 2)) (defparameter *n* (< *f* 3)) (defparameter *m* (not *f*)) 1")
-    lines = told("(progn\n  (setf (value *f*) \"fast\"))").splitlines()
+    lines = told('(progn\n  (setf (value *f*) "fast"))').splitlines()
     assert "  at <repl test>:2:3" in lines
     assert lines[-1].endswith(" over the fluent F, which keeps its old value, was computed anew")
     assert answer("(list (value *f*) (value *n*) (value *m*))") == '("fast" T NIL)'
@@ -96,38 +103,50 @@ def test_an_exit_taken_by_one_callback_does_not_hide_the_error_of_another(told):
 
 
 def test_a_callback_may_leave_for_a_block_around_the_assignment(answer):
-    assert answer("""(let ((f (make-fluent :value 1)))
+    assert (
+        answer("""(let ((f (make-fluent :value 1)))
                        (list (block out (register-update-callback f 'leave (lambda (x) (return-from out (list :left x))))
                                         (setf (value f) 2))
-                             (value f)))""") == "((:LEFT 2) 2)"
+                             (value f)))""")
+        == "((:LEFT 2) 2)"
+    )
 
 
 def test_a_callback_that_fails_in_a_branch_fails_the_branch_and_the_tree_is_closed_in_order(answer):
-    assert answer("""(let ((f (make-fluent :value 1)) (log nil))
+    assert (
+        answer("""(let ((f (make-fluent :value 1)) (log nil))
                        (register-update-callback f 'refuse (lambda (x) (fail "Not ~a." x)))
                        (list (top-level
                                (with-failure-handling ((simple-plan-failure (e) (push :handled log) (return (princ-to-string e))))
                                  (par (unwind-protect (sleep 10) (push :sibling log))
                                       (unwind-protect (progn (sleep 1) (setf (value f) 2)) (push :own log)))))
-                             (reverse log) (value f)))""") == '("Not 2." (:OWN :SIBLING :HANDLED) 2)'
+                             (reverse log) (value f)))""")
+        == '("Not 2." (:OWN :SIBLING :HANDLED) 2)'
+    )
 
 
 def test_a_failure_of_a_callback_is_handled_around_the_assignment_before_anything_unwinds(answer):
-    assert answer("""(let ((f (make-fluent :value 1)) (log nil))
+    assert (
+        answer("""(let ((f (make-fluent :value 1)) (log nil))
                        (register-update-callback f 'refuse (lambda (x) (unwind-protect (fail "Not ~a." x) (push :unwound log))))
                        (list (top-level
                                (with-failure-handling ((plan-failure (e) (declare (ignore e)) (push :handled log) (return :kept)))
                                  (setf (value f) 2)))
-                             (reverse log)))""") == "(:KEPT (:HANDLED :UNWOUND))"
+                             (reverse log)))""")
+        == "(:KEPT (:HANDLED :UNWOUND))"
+    )
 
 
 def test_requests_to_end_wait_for_the_callbacks_and_for_the_functions_of_nets(answer):
     """Scheduling is disabled while a fluent tells its observers, so that none of them is left without the news."""
-    assert answer("""(let* ((f (make-fluent :value 0)) (log nil)
+    assert (
+        answer("""(let* ((f (make-fluent :value 0)) (log nil)
                             (net (fl-funcall (lambda (x) (when (> x 0) (sleep 2)) (* 10 x)) f)))
                        (register-update-callback f 'slow (lambda (x) (sleep 2) (push x log)))
                        (top-level (pursue (progn (setf (value f) 1) (sleep 0.1) (push :never log)) (sleep 1)))
-                       (list log (value net)))""") == "((1) 10)"
+                       (list log (value net)))""")
+        == "((1) 10)"
+    )
 
 
 def test_a_fluent_that_changes_itself_for_ever_is_an_error_and_the_session_goes_on(told, answer):
@@ -180,8 +199,16 @@ def test_wrong_arguments_have_the_texts_of_the_original_and_a_place(told, form, 
     assert rest.splitlines()[1] == f"    {form}" and rest.splitlines()[2].endswith("^")
 
 
-@pytest.mark.parametrize("form", ["(pulse 3)", "(register-update-callback 3 'a #'car)", "(get-update-callback 3 'a)",
-                                  "(remove-update-callback 3 'a)", "(setf (value (not (make-fluent))) 4)"])
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(pulse 3)",
+        "(register-update-callback 3 'a #'car)",
+        "(get-update-callback 3 'a)",
+        "(remove-update-callback 3 'a)",
+        "(setf (value (not (make-fluent))) 4)",
+    ],
+)
 def test_what_is_no_fluent_has_no_applicable_method(told, form):
     assert " ".join(told(form).split()).startswith("There is no applicable method for the generic function")
 
@@ -205,19 +232,24 @@ def test_the_tests_take_two_arguments(told, form, given, operator):
 
 
 def test_a_wait_ignores_every_argument_that_it_does_not_know(answer):
-    assert answer("(wait-for (make-fluent :value 1) :colour :red \"a\" 3 'b 4)") == "1"
+    assert answer('(wait-for (make-fluent :value 1) :colour :red "a" 3 \'b 4)') == "1"
 
 
 def test_make_fluent_and_parameters_are_described_as_in_the_original(answer):
-    assert answer("""(progn (def-cpl-parameter *pace* 3 "How fast")
+    assert (
+        answer("""(progn (def-cpl-parameter *pace* 3 "How fast")
                        (list (documentation '*pace* 'variable)
                              (integerp (search "(CLASS 'VALUE-FLUENT)" (with-output-to-string (s) (describe 'make-fluent s))))))
-                  """) == '("How fast" T)'
+                  """)
+        == '("How fast" T)'
+    )
 
 
 def test_a_value_fluent_shows_its_value_readably(answer):
-    assert answer("(list (make-fluent :name 'foo :value 3) (make-fluent :name \"str\" :value \"x\"))") == \
-        '(#<FLUENT FOO [3]> #<FLUENT str ["x"]>)'
+    assert (
+        answer('(list (make-fluent :name \'foo :value 3) (make-fluent :name "str" :value "x"))')
+        == '(#<FLUENT FOO [3]> #<FLUENT str ["x"]>)'
+    )
 
 
 def test_from_python_the_error_is_the_one_that_was_raised():

@@ -7,11 +7,12 @@ import operator
 import pytest
 
 from cramhy_runtime import cpl
-from cramhy_runtime.cpl.fluents import CachedNet
+from cramhy_runtime.cpl.fluents.fluents import CachedNet
 
 
-@pytest.mark.parametrize("function", [operator.lt, operator.le, operator.gt, operator.ge, operator.add, operator.sub, operator.mul,
-                                      operator.truediv])
+@pytest.mark.parametrize(
+    "function", [operator.lt, operator.le, operator.gt, operator.ge, operator.add, operator.sub, operator.mul, operator.truediv]
+)
 @pytest.mark.parametrize(("first", "second"), [(1, 2), (2, 2), (3.0, 2)])
 def test_an_operator_makes_a_net_of_either_side(function, first, second):
     expected = function(first, second)
@@ -50,7 +51,8 @@ def test_whether_a_fluent_is_true_cannot_be_asked(ask):
     text = str(caught.value)
     assert text.startswith("The fluent ") and text.endswith(
         " was asked whether it is true, by if, while, and, or, not, or a comparison like 1 < f < 3. That would be the fluent itself, "
-        "which is always there. Write f.value for its value now, cpl.wait_for(f) to wait, f & g, f | g, ~f to combine fluents.")
+        "which is always there. Write f.value for its value now, cpl.wait_for(f) to wait, f & g, f | g, ~f to combine fluents."
+    )
 
 
 def test_one_waits_for_a_net_as_for_any_fluent():

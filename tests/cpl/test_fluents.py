@@ -5,14 +5,14 @@ import gc
 import pytest
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import fluent_operators as op
-from cramhy_runtime.cpl.fluents import CachedNet, get_update_callback
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.streams.streams import StringOutputStream
-from cramhy_runtime.lisp.tools.describing import describe
+from cramhy_runtime.cpl.fluents import operators as op
+from cramhy_runtime.cpl.fluents.fluents import CachedNet, get_update_callback
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
+from cramhy_runtime.languages.commonlisp.tools.describing import describe
 
 
 def collected(fluent):
@@ -322,8 +322,9 @@ def test_a_timed_wait_keeps_its_time_however_often_the_fluent_pulses():
             cpl.sleep(0.1)
             cpl.pulse(fluent)
 
-    result = cpl.top_level(lambda: cpl.par(lambda: (cpl.wait_for(cpl.pulsed(fluent), timeout=0),
-                                                    cpl.wait_for(fluent, timeout=1.0), kernel.now()), pulsing))
+    result = cpl.top_level(
+        lambda: cpl.par(lambda: (cpl.wait_for(cpl.pulsed(fluent), timeout=0), cpl.wait_for(fluent, timeout=1.0), kernel.now()), pulsing)
+    )
     assert result == (None, None, 1.0)
 
 

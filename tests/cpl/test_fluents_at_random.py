@@ -11,9 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cramhy_runtime import cpl
-from cramhy_runtime.cpl import fluent_operators as op
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.cpl.fluents import operators as op
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.packages import keyword
 
 SMALL = st.integers(-2, 3)
 PLACE = st.integers(0, 11)
@@ -162,14 +162,24 @@ class World:
 
     def do_apply(self, first, second):
         a, b = self.at(first), self.at(second)
-        self.make(cpl.fl_apply(lambda lead, rest: add(lead, *rest), a.real, lisp_list(b.real, 1)), "net", (a, b),
-                  function=lambda lead, rest: add(lead, rest, 1))
+        self.make(
+            cpl.fl_apply(lambda lead, rest: add(lead, *rest), a.real, lisp_list(b.real, 1)),
+            "net",
+            (a, b),
+            function=lambda lead, rest: add(lead, rest, 1),
+        )
 
     def do_pulsed(self, place, mode):
         pair = self.at(place)
         count = pair.model.pulses
-        self.make(cpl.pulsed(pair.real, handle_missed_pulses=keyword(mode)), "pulsed", (pair,), mode=mode, seen=count,
-                  processed=count if mode == "NEVER" else 0)
+        self.make(
+            cpl.pulsed(pair.real, handle_missed_pulses=keyword(mode)),
+            "pulsed",
+            (pair,),
+            mode=mode,
+            seen=count,
+            processed=count if mode == "NEVER" else 0,
+        )
 
     def do_changed(self, place):
         pair = self.at(place)

@@ -1,10 +1,10 @@
 """Who follows a plan hears of each of its tasks that starts, and of each change of status of those that it observes."""
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import past_plans
-from cramhy_runtime.cpl.following import follow, unfollow
-from cramhy_runtime.cpl.tasks import RECORD
-from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.cpl.tree import finished_plans
+from cramhy_runtime.cpl.tasks.task_observers import follow, unfollow
+from cramhy_runtime.cpl.tasks.tasks import RECORD
+from cramhy_runtime.ground.dynamic import binding
 
 
 class Follower:
@@ -30,11 +30,11 @@ class Follower:
 
 def followed(body):
     follower = Follower()
-    past_plans.observe(follower)
+    finished_plans.observe(follower)
     try:
         cpl.top_level(body)
     finally:
-        past_plans.observe_no_more(follower)
+        finished_plans.observe_no_more(follower)
     return follower
 
 
@@ -61,7 +61,7 @@ def test_who_joins_a_task_is_woken_beside_a_follower():
 def test_a_plan_that_is_recorded_and_followed_keeps_its_record():
     with binding(RECORD, True):
         follower = followed(par)
-    assert len(past_plans.newest.record) == 3 and len(follower.started) == 3  # the root is in the record, too
+    assert len(finished_plans.newest.value.record) == 3 and len(follower.started) == 3  # the root is in the record, too
 
 
 def test_a_plan_can_be_followed_from_its_middle():

@@ -7,15 +7,18 @@ import pytest
 from small_plans import plan, started, statuses_of
 
 from cramhy_runtime import cpl, kernel, testing
-from cramhy_runtime.cpl import operators, tree, watching
+from cramhy_runtime.cpl.forms import operators
+from cramhy_runtime.cpl.tree import task_tree as tree
+from cramhy_runtime.cpl.tasks import parallel_children as watching
 from cramhy_runtime.cpl.statuses import EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
-from cramhy_runtime.cpl.tasks import Task
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.cpl.tasks.tasks import Task
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.packages import sym
 
 
 def test_a_request_to_suspend_in_without_scheduling_is_obeyed_once():
     """Both the request and the end of ``without-scheduling`` lead to obeying; the second came while the first was at it."""
+
     def body():
         child = started(lambda: (cpl.without_scheduling(lambda: cpl.sleep(1)), cpl.sleep(1)))
         seen = statuses_of(child)
@@ -43,6 +46,7 @@ def test_who_is_ended_while_it_waits_for_the_suspension_wakes_the_task():
 
 def test_who_wakes_a_task_does_not_wait_for_ever_when_another_suspends_it_again_at_once():
     """Between its wake-up and its next step the task is still suspended, and a new request keeps it there."""
+
     def body():
         child = started(lambda: cpl.sleep(1))
         cpl.sleep(0.5)
@@ -74,6 +78,7 @@ def test_a_second_interrupt_leaves_nobody_in_a_protected_region():
 
 def test_who_suspended_the_task_around_it_comes_down_with_it():
     """The branch, woken by another, wakes its parent on its way out, and the parent, which was ended, waits for the branch's death."""
+
     def body():
         branches = []
 
@@ -186,6 +191,7 @@ def test_a_wake_up_that_comes_while_a_task_is_suspended_before_it_parks_is_not_l
 
 def test_two_branches_may_call_the_same_plan_function_at_once():
     """The second call came when the task of the first was started but had not begun, and took it for its own."""
+
     def call(number):
         return tree.with_task_tree_node(lisp_list(sym("CPL-USER::STEP")), lambda: (cpl.sleep(1), number)[1])
 

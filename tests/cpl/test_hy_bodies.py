@@ -57,7 +57,7 @@ def test_whenever_is_left_by_break():
     (top-level
       (par
         (do (setv total 0)
-            (whenever (pulsed count :handle-missed-pulses "ALWAYS")
+            (whenever [(pulsed count :handle-missed-pulses :always)]
               (+= total 1)
               (when (= total 3) (break)))
             (note total))
@@ -129,7 +129,7 @@ def test_without_scheduling_a_request_waits():
 
 
 def test_a_malformed_ordering_is_told_with_how_to_write_it():
-    with pytest.raises(Exception, match=r"Malformed ordering constraint .*write \(:order before after\)"):
+    with pytest.raises(Exception, match=r"is malformed(.|\n)*It is written \(partial-order \[step...\] \(:order before after\)...\)"):
         run("(top-level (partial-order [1 2] (:order a)))")
 
 

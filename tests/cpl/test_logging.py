@@ -4,9 +4,9 @@ import pytest
 
 from cramhy_runtime import cpl
 from cramhy_runtime.cpl import logging
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.data import list_from
-from cramhy_runtime.lisp.streams.streams import StringOutputStream
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.repl.session import Session
 
 
@@ -90,15 +90,19 @@ PLANS = {
     "TRY-ALL": ('(try-all (fail "x") 2)', "branches: 2"),
     "WITH-TAGS": ("(with-tags (:tag grasp 1))", "((TAGGED GRASP))"),
     "WITH-PARALLEL-CHILDS": ('(cpl-impl::with-parallel-childs "X" (a b c) (1) (when b a c (return)))', ":SUCCEEDED"),
-    "JOIN-TASK": ("(join-task (make-instance 'task :name \"joined\" :thread-fun (lambda () 1)))", '#<TASK "joined"'),
-    "SEND-EVENT": ('(evaporate (make-instance \'task :name "gone" :thread-fun (lambda () (sleep 9))) :reason "late")',
-                   '#<EVENT :EVAPORATE "late"> to gone'),
+    "JOIN-TASK": ('(join-task (make-instance \'task :name "joined" :thread-fun (lambda () 1)))', '#<TASK "joined"'),
+    "SEND-EVENT": (
+        '(evaporate (make-instance \'task :name "gone" :thread-fun (lambda () (sleep 9))) :reason "late")',
+        '#<EVENT :EVAPORATE "late"> to gone',
+    ),
     "RECEIVE-EVENT": ("(pursue (sleep 1) (sleep 9))", "#<EVENT :EVAPORATE>"),
     "TEARDOWN": ("(pursue (sleep 1) (sleep 9))", "[PURSUE-CHILD-#2/2]"),
     "ON-SUSPENSION": ("(with-tags (par (:tag a (on-suspension 1 (sleep 5))) (progn (sleep 1) (with-task-suspended (a) 1))))", "1 handler"),
     "EVENT-LOOP": ("(with-tags (par (:tag a (sleep 5)) (progn (sleep 1) (with-task-suspended (a) 1))))", "waiting for the wake-up"),
-    "PROPAGATE-EVENT": ("(with-tags (par (:tag a (par (sleep 5))) (progn (sleep 1) (with-task-suspended (a) (sleep 1)))))",
-                        "#<EVENT :SUSPEND> to [PAR-CHILD-#1/1]"),
+    "PROPAGATE-EVENT": (
+        "(with-tags (par (:tag a (par (sleep 5))) (progn (sleep 1) (with-task-suspended (a) (sleep 1)))))",
+        "#<EVENT :SUSPEND> to [PAR-CHILD-#1/1]",
+    ),
 }
 
 
@@ -122,7 +126,7 @@ def test_equal_runs_log_equal_lines_in_virtual_time(lisp, log):
     logging.log_set(logging.tag_list(name for name in logging.TAGS if name not in ("REGISTER-CHILD", "CHANGE-STATUS", "FINISH")))
 
     def run():
-        lisp("(top-level (par (sleep 1) (pursue (sleep 2) (sleep 3)) (try-in-order (fail \"x\") 1)))")
+        lisp('(top-level (par (sleep 1) (pursue (sleep 2) (sleep 3)) (try-in-order (fail "x") 1)))')
         return events(log.text())
 
     assert run()[0] == run()[0] and len(run()) > 5
@@ -142,8 +146,8 @@ def test_new_tags_come_after_those_there_are(lisp, log):
 
 def test_without_a_stream_of_its_own_the_log_goes_to_the_trace_output(lisp, log):
     logging.LOG_OUTPUT.value = None
-    text, = lisp('''(with-output-to-string (*trace-output*)
-                      (cpl-impl:log-set '(:debug)) (cpl-impl:log-event (:display "here") (:tags :debug)))''')
+    (text,) = lisp("""(with-output-to-string (*trace-output*)
+                      (cpl-impl:log-set '(:debug)) (cpl-impl:log-event (:display "here") (:tags :debug)))""")
     assert str(text).endswith("; here\n")
 
 

@@ -4,8 +4,8 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import CompositeFailure, PlanFailure, SimplePlanFailure
-from cramhy_runtime.lisp.conditions import handler_bind, muffle_warning, types
-from cramhy_runtime.lisp.tools.advice import explanation, hint_for
+from cramhy_runtime.ground.conditions import handler_bind, muffle_warning, types
+from cramhy_runtime.languages.commonlisp.tools.advice import explanation, hint_for
 
 
 def failing(text, after=0):
@@ -116,8 +116,10 @@ def test_what_try_all_is_made_to_ignore_is_no_warning():
 
 def test_who_handles_a_failure_has_handled_what_came_along():
     def plan():
-        return cpl.with_failure_handling([(SimplePlanFailure, lambda failure, retry: retry.leave(texts(failure)))],
-                                         lambda retry: cpl.par(failing_in_cleanup("the brake is stuck"), failing("bumped", after=1)))
+        return cpl.with_failure_handling(
+            [(SimplePlanFailure, lambda failure, retry: retry.leave(texts(failure)))],
+            lambda retry: cpl.par(failing_in_cleanup("the brake is stuck"), failing("bumped", after=1)),
+        )
 
     assert warnings_of(plan) == ([], ["the brake is stuck"])
     assert kernel.now() == 1.0

@@ -4,11 +4,12 @@ import pytest
 from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import operators, tags
+from cramhy_runtime.cpl.forms import operators
+from cramhy_runtime.cpl.tree import tags
 from cramhy_runtime.cpl.statuses import DEAD, EVAPORATED, FAILED, SUCCEEDED
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, lisp_list, python_list
-from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list, python_list
+from cramhy_runtime.ground.packages import keyword
 
 
 def after(seconds, value=None):
@@ -204,8 +205,14 @@ def test_try_in_order_lists_failures_in_order_and_composites_stay_nested():
 
 def test_outer_handlers_do_not_see_what_try_in_order_takes():
     seen = []
-    assert plan(lambda: cpl.with_failure_handling([(cpl.PlanFailure, lambda failure, retry: seen.append(failure))],
-                                                  lambda retry: cpl.try_in_order(failing("x"), lambda: 1))) == 1
+    assert (
+        plan(
+            lambda: cpl.with_failure_handling(
+                [(cpl.PlanFailure, lambda failure, retry: seen.append(failure))], lambda retry: cpl.try_in_order(failing("x"), lambda: 1)
+            )
+        )
+        == 1
+    )
     assert seen == []
 
 
@@ -344,7 +351,8 @@ def test_a_return_across_a_branch_is_a_control_error_that_says_what_to_do():
         plan(lambda: cpl.par(branch))
     assert problem.value.format_control == (
         "A branch of a plan tried to leave a form around it, by RETURN-FROM, RETURN, GO or THROW. Every branch has a stack of its "
-        "own, so only its values can leave it: let the branch return a value, or FAIL and handle the failure outside.")
+        "own, so only its values can leave it: let the branch return a value, or FAIL and handle the failure outside."
+    )
 
 
 def test_everything_below_a_top_level_that_is_left_is_dead():
@@ -361,20 +369,36 @@ def test_everything_below_a_top_level_that_is_left_is_dead():
     assert task[0].status is EVAPORATED and kernel.now() == 1 and SUCCEEDED in DEAD
 
 
-@pytest.mark.parametrize("form", [
-    "(top-level {0})", "(top-level (seq 1 {0}))", "(top-level (par {0} 1))", "(top-level (pursue (sleep 9) {0}))",
-    "(top-level (try-all (fail) {0}))", "(top-level (try-in-order (fail) {0}))", "(top-level (try-each-in-order (x '(1)) x {0}))",
-    "(top-level (par-loop (x '(1 2)) x {0}))", "(top-level (partial-order ({0} 1)))", "(top-level (with-tags (:tag a {0})))",
-    "(top-level (with-task () {0}))", "(top-level (with-task-tree-node (:path-part '(a)) {0}))",
-    "(top-level (with-policy timeout-policy (9) {0}))",
-    "(top-level (with-failure-handling ((plan-failure (e) (return))) {0}))", "(top-level (with-retry-counters ((c 1)) {0}))",
-    "(top-level (on-suspension (note 1) {0}))", "(top-level (retry-after-suspension {0}))", "(top-level (without-scheduling {0}))",
-    "(top-level (let ((task (make-instance 'task :thread-fun (lambda () {0})))) (join-task task)))",
-    "(named-top-level (:name lecture) {0})", "(progn (def-cram-function f () {0}) (top-level (f)))",
-    "(progn (def-top-level-cram-function f () {0}) (f))", "(progn (declare-goal g ()) (def-goal (g) {0}) (top-level (g)))",
-    "(top-level (with-parallel-childs nil (running done failed) ({0}) (when done (return (result (first done))))))",
-    "(top-level (with-task-suspended ((make-instance 'task :thread-fun (lambda () (sleep 9)))) {0}))",
-])
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(top-level {0})",
+        "(top-level (seq 1 {0}))",
+        "(top-level (par {0} 1))",
+        "(top-level (pursue (sleep 9) {0}))",
+        "(top-level (try-all (fail) {0}))",
+        "(top-level (try-in-order (fail) {0}))",
+        "(top-level (try-each-in-order (x '(1)) x {0}))",
+        "(top-level (par-loop (x '(1 2)) x {0}))",
+        "(top-level (partial-order ({0} 1)))",
+        "(top-level (with-tags (:tag a {0})))",
+        "(top-level (with-task () {0}))",
+        "(top-level (with-task-tree-node (:path-part '(a)) {0}))",
+        "(top-level (with-policy timeout-policy (9) {0}))",
+        "(top-level (with-failure-handling ((plan-failure (e) (return))) {0}))",
+        "(top-level (with-retry-counters ((c 1)) {0}))",
+        "(top-level (on-suspension (note 1) {0}))",
+        "(top-level (retry-after-suspension {0}))",
+        "(top-level (without-scheduling {0}))",
+        "(top-level (let ((task (make-instance 'task :thread-fun (lambda () {0})))) (join-task task)))",
+        "(named-top-level (:name lecture) {0})",
+        "(progn (def-cram-function f () {0}) (top-level (f)))",
+        "(progn (def-top-level-cram-function f () {0}) (f))",
+        "(progn (declare-goal g ()) (def-goal (g) {0}) (top-level (g)))",
+        "(top-level (with-parallel-childs nil (running done failed) ({0}) (when done (return (result (first done))))))",
+        "(top-level (with-task-suspended ((make-instance 'task :thread-fun (lambda () (sleep 9)))) {0}))",
+    ],
+)
 def test_every_form_passes_all_values_through(plan_text, form):
     assert plan_text(form.format("(values 1 nil :three)")) == "1 ; NIL ; :THREE"
     assert plan_text(form.format("(values)")) == ""
@@ -389,11 +413,18 @@ def test_no_exit_leaves_a_branch_silently(plan_text, form, branch):
     assert "A branch of a plan tried to leave a form around it" in shown or "attempt to THROW to a tag that does not exist: OUT" in shown
 
 
-@pytest.mark.parametrize("form", [
-    "(with-failure-handling () {})", "(with-failure-handling ((plan-failure (e) {})) (fail))", "(try-in-order {})",
-    "(try-each-in-order (x '(1)) {})", "(whenever ((make-fluent :value t)) {})", "(cut:lazy-dolist (x '(1)) {})",
-    "(with-parallel-childs nil (running done failed) (1) {})",
-])
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(with-failure-handling () {})",
+        "(with-failure-handling ((plan-failure (e) {})) (fail))",
+        "(try-in-order {})",
+        "(try-each-in-order (x '(1)) {})",
+        "(whenever ((make-fluent :value t)) {})",
+        "(cut:lazy-dolist (x '(1)) {})",
+        "(with-parallel-childs nil (running done failed) (1) {})",
+    ],
+)
 def test_return_means_the_innermost_block_named_nil_in_every_form_that_has_one(plan_text, form):
     assert plan_text("(top-level (list (block nil (list " + form.format("(return (values :inner 2))") + ") :after)))") == "(:AFTER)"
     assert plan_text("(top-level (multiple-value-list " + form.format("(return (values :inner 2))") + "))") == "(:INNER 2)"
@@ -433,8 +464,10 @@ def test_in_whatever_order_tasks_run_a_constrained_step_does_not_begin_while_its
     def body():
         tasks, step = steps_with_tags(log, "A", "B")
         other = tags.make_tag_task(keyword("C"))
-        cpl.par(lambda: cpl.partial_order([step("B", 0), step("A", 50)], [(tasks["A"], tasks["B"])]),
-                lambda: tags.execute_tag(other, failing("over", 1)))
+        cpl.par(
+            lambda: cpl.partial_order([step("B", 0), step("A", 50)], [(tasks["A"], tasks["B"])]),
+            lambda: tags.execute_tag(other, failing("over", 1)),
+        )
 
     failure_of(body)
     assert log == []

@@ -58,12 +58,6 @@ def test_the_example_is_a_script():
     assert (done.stdout, done.stderr) == (STORY, "")
 
 
-def test_the_example_of_the_readme_runs():
-    section = (ROOT / "README.md").read_text().partition("## Plans in Python")[2]
-    with kernel.aside():
-        exec(re.search(r"```python\n(.*?)```", section, re.S)[1], {})
-
-
 def examples():
     """Each block of Python on the page, with the block of what it prints, if there is one below it."""
     return re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", PAGE.read_text(), re.S)
@@ -75,14 +69,3 @@ def test_the_examples_of_the_page_run_and_print_what_stands_there():
     with kernel.aside():
         for code, output in examples():
             assert printed(exec, code, names) == output, code
-
-
-@pytest.mark.parametrize("arguments", [["--strict", EXAMPLE], [ROOT / "src" / "cramhy_runtime" / "cpl" / "__init__.py", *(
-    ROOT / "src" / "cramhy_runtime" / "cpl" / f"{module}.py" for module in (
-        "attempts", "blocks", "border", "branch_blocks", "fluent_notation", "plan_run", "python_forms", "steps"))]])
-def test_types_fit(arguments, tmp_path):
-    pytest.importorskip("mypy")  # of the extra [dev], at one version: another may see more
-    done = subprocess.run([sys.executable, "-m", "mypy", "--explicit-package-bases", "--follow-imports=silent", "--ignore-missing-imports",
-                           "--cache-dir", str(tmp_path), *map(str, arguments)], capture_output=True, text=True, cwd=ROOT,
-                          env={**os.environ, "MYPYPATH": "src"})
-    assert done.stdout.startswith("Success"), done.stdout + done.stderr

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.lisp.conditions import Error
+from cramhy_runtime.ground.conditions import Error
 
 
 class Stuck(cpl.PlanFailure):
@@ -41,6 +41,7 @@ def log():
 
 def in_plan(function):
     """The test runs as a plan."""
+
     def test(log):
         before = len(kernel.active().tasks)
         with cpl.plan() as root:

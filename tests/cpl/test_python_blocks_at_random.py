@@ -24,8 +24,17 @@ class Program:
     def body(self, depth):
         """A function that does something, drawn beforehand, so that the schedule has no part in it."""
         lots = self.lots
-        kinds = ["sleep", "sleep", "fail", "error"] + ["par", "pursue", "try_all", "timeout", "move on", "functions", "task", "attempts",
-                                                       "undisturbed"] * (3 if depth else 0)
+        kinds = ["sleep", "sleep", "fail", "error"] + [
+            "par",
+            "pursue",
+            "try_all",
+            "timeout",
+            "move on",
+            "functions",
+            "task",
+            "attempts",
+            "undisturbed",
+        ] * (3 if depth else 0)
         kind, seconds, cleanup = lots.choice(kinds), lots.randint(0, 6) / 2, lots.randint(0, 3) / 4
         parts = [self.body(depth - 1) for _ in range(lots.randint(1, 3))] if depth else []
         own = self.body(depth - 1) if depth and lots.random() < 0.5 else None

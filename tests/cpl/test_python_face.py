@@ -10,8 +10,8 @@ from functools import partial
 import pytest
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import MultipleValues
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import MultipleValues
 
 
 class Stuck(cpl.PlanFailure):
@@ -71,8 +71,18 @@ def test_run_without_a_kernel_starts_one_in_virtual_time_and_stops_it():
 
 
 @pytest.mark.parametrize("way", ["run", "plan"])
-@pytest.mark.parametrize("problem", [Stuck("a"), ValueError("b"), KeyError("c"), ZeroDivisionError("d"), RecursionError("e"),
-                                     TypeError("f() missing 1 required positional argument: 'x'"), KeyboardInterrupt()])
+@pytest.mark.parametrize(
+    "problem",
+    [
+        Stuck("a"),
+        ValueError("b"),
+        KeyError("c"),
+        ZeroDivisionError("d"),
+        RecursionError("e"),
+        TypeError("f() missing 1 required positional argument: 'x'"),
+        KeyboardInterrupt(),
+    ],
+)
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_what_a_plan_fails_with_is_the_object_that_was_raised(way, problem, depth):
     body = raising(problem)
@@ -108,8 +118,9 @@ def test_a_kernel_of_its_own_is_not_for_tasks_of_another():
             problems.append(str(problem))
 
     kernel.spawn(task).join()
-    assert problems == ["A kernel cannot be started by a task of another one. Leave out the options of the plan, so that it uses this "
-                        "kernel."]
+    assert problems == [
+        "A kernel cannot be started by a task of another one. Leave out the options of the plan, so that it uses this kernel."
+    ]
 
 
 def test_everything_below_a_plan_block_is_dead_when_it_is_left():
@@ -182,10 +193,19 @@ def test_an_interrupt_ends_the_plan_and_is_pythons():
 # -------------------------------------------------------------------------------------------------------------- exceptions
 
 
-@pytest.mark.parametrize("form", [
-    cpl.par, cpl.pursue, lambda branch: cpl.par_loop([1], lambda _: branch()), lambda branch: cpl.partial_order([branch], []),
-    cpl.with_task, lambda branch: cpl.plan_function(branch)(), lambda branch: cpl.tag("step").run(branch),
-    lambda branch: cpl.join_task(cpl.Task(branch).execute())])
+@pytest.mark.parametrize(
+    "form",
+    [
+        cpl.par,
+        cpl.pursue,
+        lambda branch: cpl.par_loop([1], lambda _: branch()),
+        lambda branch: cpl.partial_order([branch], []),
+        cpl.with_task,
+        lambda branch: cpl.plan_function(branch)(),
+        lambda branch: cpl.tag("step").run(branch),
+        lambda branch: cpl.join_task(cpl.Task(branch).execute()),
+    ],
+)
 def test_an_exception_of_a_branch_is_caught_around_the_form(form):
     problem = ValueError("x")
     with cpl.plan(), pytest.raises(ValueError) as caught:
@@ -203,7 +223,8 @@ def test_within_the_plan_language_the_same_exception_counts_as_a_failure():
         assert cpl.try_in_order(lambda: cpl.par(raising(ValueError("x"))), lambda: "second") == "second"
         with pytest.raises(ValueError):
             cpl.handling({cpl.PlanFailure: note, ValueError: note, (KeyError, TypeError): note})(
-                lambda: cpl.par(lambda: cpl.par(raising(ValueError("y")))))()
+                lambda: cpl.par(lambda: cpl.par(raising(ValueError("y"))))
+            )()
 
     cpl.run(main)
     assert [type(failure) for failure in seen] == [ValueError, cpl.CommonLispErrorEnvelope]
@@ -245,8 +266,9 @@ def test_a_failure_class_of_python_has_text_and_attributes():
         cpl.run(lambda: cpl.fail(cpl.TimedOut, seconds=4))
 
 
-@pytest.mark.parametrize(("arguments", "text"), [
-    ((), "Plan failure."), (("100% of ~ 3",), "100% of ~ 3"), (("~a of ~a", 1, 2), "1 of 2"), (("~",), "~")])
+@pytest.mark.parametrize(
+    ("arguments", "text"), [((), "Plan failure."), (("100% of ~ 3",), "100% of ~ 3"), (("~a of ~a", 1, 2), "1 of 2"), (("~",), "~")]
+)
 def test_a_failure_may_be_a_text(arguments, text):
     with pytest.raises(cpl.PlanFailure) as caught:
         cpl.run(lambda: cpl.fail(*arguments))
@@ -255,8 +277,9 @@ def test_a_failure_may_be_a_text(arguments, text):
 
 @pytest.mark.parametrize("problem", [ValueError("x"), ValueError])
 def test_fail_takes_no_exceptions_of_python(problem):
-    with pytest.raises(Error, match="which is no plan failure. Write `raise` for an exception of Python; for fail, derive the class "
-                                    "from cpl.PlanFailure."):
+    with pytest.raises(
+        Error, match="which is no plan failure. Write `raise` for an exception of Python; for fail, derive the class from cpl.PlanFailure."
+    ):
         cpl.run(lambda: cpl.fail(problem))
 
 
@@ -269,8 +292,11 @@ def test_raise_is_as_good_as_fail_for_handlers_and_branches():
 
     def main():
         handled = cpl.handling({Stuck: handler})
-        return (handled(raising(Stuck("here")))(), handled(lambda: cpl.par(raising(Stuck("branch"))))(),
-                cpl.try_in_order(raising(Stuck("order")), lambda: "second"))
+        return (
+            handled(raising(Stuck("here")))(),
+            handled(lambda: cpl.par(raising(Stuck("branch"))))(),
+            cpl.try_in_order(raising(Stuck("order")), lambda: "second"),
+        )
 
     assert cpl.run(main) == ("handled", "handled", "second") and order == ["here", "branch"]
 
@@ -301,8 +327,11 @@ def test_the_failure_of_the_last_attempt_is_raised_and_others_at_once():
                 tries.append(1)
                 raise problem
 
-    for problem, on, count in [(Stuck("a"), cpl.PlanFailure, 2), (ValueError("b"), cpl.PlanFailure, 1),
-                               (ValueError("c"), (Stuck, ValueError), 2)]:
+    for problem, on, count in [
+        (Stuck("a"), cpl.PlanFailure, 2),
+        (ValueError("b"), cpl.PlanFailure, 1),
+        (ValueError("c"), (Stuck, ValueError), 2),
+    ]:
         tries.clear()
         with pytest.raises(type(problem)):
             cpl.run(main, problem, on)
@@ -499,9 +528,13 @@ def test_tags_can_be_ordered_before_they_run():
 
 def test_a_policy_guards_a_block():
     battery, events = cpl.make_fluent(value=10), []
-    guard = cpl.make_policy("battery", init=lambda store, least: True, check=lambda store, least: battery.value < least,
-                            recover=lambda store, least: events.append("recover"),
-                            clean_up=lambda store, least: events.append("clean up"))
+    guard = cpl.make_policy(
+        "battery",
+        init=lambda store, least: True,
+        check=lambda store, least: battery.value < least,
+        recover=lambda store, least: events.append("recover"),
+        clean_up=lambda store, least: events.append("clean up"),
+    )
 
     def main():
         with cpl.policy(guard, 3):

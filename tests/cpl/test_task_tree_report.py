@@ -2,15 +2,14 @@
 
 import io
 import re
-from pathlib import Path
 
 import pytest
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import tasks, tree_report
+from cramhy_runtime.cpl.tasks import tasks
+from cramhy_runtime.cpl.tree import tree_report
 from cramhy_runtime.repl.session import Interruption, Session
 
-README = Path(__file__).parents[2] / "README.md"
 
 DRIVE = "(def-cram-function drive (x y) (par (sleep x) (wait-for (make-fluent :name 'arrived)) y))"
 RUNNING = """\
@@ -67,8 +66,10 @@ def test_goals_are_shown_as_they_were_called(lisp):
     lisp("(declare-goal at-place (?place ?how))")
     lisp("(def-goal (at-place (:table ?side) ?how) (sleep 1))")
     lisp("(defvar *goals* nil)")
-    lisp("(top-level (par (let ((side :left)) (at-place (list :table side) :fast))"
-         " (progn (sleep 0.5) (setf *goals* (with-output-to-string (*standard-output*) (describe-task-tree))))))")
+    lisp(
+        "(top-level (par (let ((side :left)) (at-place (list :table side) :fast))"
+        " (progn (sleep 0.5) (setf *goals* (with-output-to-string (*standard-output*) (describe-task-tree))))))"
+    )
     assert "[GOAL-AT-PLACE] (GOAL (AT-PLACE (:TABLE :LEFT) :FAST))  running for 0.5 s" in lisp("*goals*")[0]
 
 
@@ -78,12 +79,15 @@ def test_a_thread_that_a_task_spawned_stands_below_it(lisp):
   (cut:spawn-thread "listener"
     (lambda () (sleep 9)))
   (par (sleep 3) (seq (sleep 1) (setf *seen* (with-output-to-string (*standard-output*) (describe-task-tree))))))""")
-    assert lisp.numberless(lisp("*seen*")[0]) == """\
+    assert (
+        lisp.numberless(lisp("*seen*")[0])
+        == """\
 [TOP-LEVEL]  running for 1 s, waits for the branches of PAR at <repl 1>:5:3
 ├─ [PAR-CHILD-#1/2]  running for 1 s, waits for the time 3 s (sleep 3) at <repl 1>:5:8
 ├─ [PAR-CHILD-#2/2]  running for 1 s, prints this
 └─ thread listener  running, waits for the time 9 s (sleep 9) at <repl 1>:4:16
 """
+    )
 
 
 def test_dead_tasks_are_left_out_on_demand_and_depth_says_what_it_hides():
@@ -135,28 +139,34 @@ def test_a_task_in_its_cleanup_says_so():
 
 def test_a_named_plan_that_has_ended_is_described_from_its_tree(lisp):
     lisp("(def-cram-function drive (x y) (sleep x) y)")
-    lisp("(def-top-level-cram-function lecture (x) (drive x 2) (par 1 (drive 3 '(4 5))) (fail \"no grasp\"))")
+    lisp('(def-top-level-cram-function lecture (x) (drive x 2) (par 1 (drive 3 \'(4 5))) (fail "no grasp"))')
     lisp("(handler-case (lecture 1) (plan-failure () nil))")
-    assert lisp.report("(describe-task-tree 'lecture)") == """\
+    assert (
+        lisp.report("(describe-task-tree 'lecture)")
+        == """\
 [LECTURE-TOP-LEVEL]  failed after 4 s: SIMPLE-PLAN-FAILURE, no grasp at <repl 2>:1:79
 └─ [REPLACEABLE-FUNCTION-LECTURE] (TOP-LEVEL LECTURE)  failed after 4 s: SIMPLE-PLAN-FAILURE, no grasp at <repl 2>:1:79
    ├─ [REPLACEABLE-FUNCTION-DRIVE] (DRIVE 1 2)  succeeded after 1 s: 2
    └─ [PAR-CHILD-#2/2]  succeeded after 3 s: (4 5)
       └─ [REPLACEABLE-FUNCTION-DRIVE] (DRIVE 3 (4 5)), call 2  succeeded after 3 s: (4 5)
 """
+    )
 
 
 def test_a_recorded_plan_shows_all_its_dead_branches_and_why_they_failed(lisp):
     lisp("""(let ((*record-task-tree* t))
   (handler-case (top-level (par (sleep 9) (seq (sleep 1) (fail "no grasp")) (progn)))
     (plan-failure () nil)))""")
-    assert lisp.report() == """\
+    assert (
+        lisp.report()
+        == """\
 No plan runs now. The last one that was recorded:
 [TOP-LEVEL]  failed after 1 s: SIMPLE-PLAN-FAILURE, no grasp at <repl 1>:2:58
 ├─ [PAR-CHILD-#1/3]  evaporated after 1 s
 ├─ [PAR-CHILD-#2/3]  failed after 1 s: SIMPLE-PLAN-FAILURE, no grasp at <repl 1>:2:58
 └─ [PAR-CHILD-#3/3]  succeeded after 0 s: NIL
 """
+    )
 
 
 def test_without_a_plan_it_says_what_would_be_kept(lisp):
@@ -168,28 +178,40 @@ def test_without_a_plan_it_says_what_would_be_kept(lisp):
 def test_after_a_deadlock_the_plan_is_shown_as_it_was(lisp):
     with pytest.raises(kernel.Deadlock):
         lisp("(top-level (par (sleep 3) (wait-for (make-fluent :name 'never))))")
-    assert lisp.report("(describe-task-tree :depth 1)") == """\
+    assert (
+        lisp.report("(describe-task-tree :depth 1)")
+        == """\
 No plan runs now. The last one when nothing could happen any more, at 3 s:
 [TOP-LEVEL]  running for 3 s, waits for the branches of PAR at <repl 1>:1:12
 └─ [PAR-CHILD-#2/2]  running for 3 s, waits for the fluent #<FLUENT NEVER [NIL]> at <repl 1>:1:27
 """
+    )
 
 
 def test_after_ctrl_c_the_plan_is_shown_as_it_was(lisp):
     kernel.call_at(2.0, kernel.interrupt)
     with pytest.raises(Interruption):
         lisp("(top-level (sleep 5))")
-    assert lisp.report() == """\
+    assert (
+        lisp.report()
+        == """\
 No plan runs now. The last one when it was interrupted, at 2 s:
 [TOP-LEVEL]  running for 2 s, waits for the time 5 s (sleep 5) at <repl 1>:1:12
 """
+    )
 
 
-@pytest.mark.parametrize(("form", "text"), [
-    ("(describe-task-tree 'nobody)", "There is no task tree of NOBODY. What is described is a task, a task tree, or the name of a "
-                                     "top-level that has run; nil is for all that runs now."),
-    ("(describe-task-tree :depth -1)", "The depth of a report is a number of levels, 0 or more, not -1."),
-])
+@pytest.mark.parametrize(
+    ("form", "text"),
+    [
+        (
+            "(describe-task-tree 'nobody)",
+            "There is no task tree of NOBODY. What is described is a task, a task tree, or the name of a "
+            "top-level that has run; nil is for all that runs now.",
+        ),
+        ("(describe-task-tree :depth -1)", "The depth of a report is a number of levels, 0 or more, not -1."),
+    ],
+)
 def test_what_cannot_be_described_is_an_error_that_says_what_can(lisp, form, text):
     assert lisp(f"(handler-case {form} (error (e) (princ-to-string e)))") == [text]
 
@@ -223,7 +245,7 @@ def test_it_takes_no_pulse_and_changes_no_name():
 
 
 def test_a_value_that_cannot_be_printed_does_not_break_the_report(lisp):
-    lisp("(defclass shy () ()) (defmethod print-object ((x shy) stream) (error \"no\"))")
+    lisp('(defclass shy () ()) (defmethod print-object ((x shy) stream) (error "no"))')
     lisp("(let ((*record-task-tree* t)) (top-level (make-instance 'shy)))")
     assert "succeeded after 0 s: (cannot be printed: " in lisp.report()
 
@@ -257,11 +279,3 @@ def test_a_terminal_gets_colours_when_rich_is_there(monkeypatch):
 def test_plans_are_not_kept_unless_recording_is_on():
     cpl.top_level(lambda: cpl.par(lambda: 1, lambda: 2))
     assert not tasks.recorded and tree_report.living_plans() == []
-
-
-def test_the_example_of_the_readme(lisp):
-    form, answer = re.search(r"```lisp\nCPL-USER> (\(top-level.*?)\n(\[TOP-LEVEL\].*?)```", README.read_text(), re.S).groups()
-    lisp("(defvar *out* (make-string-output-stream))")
-    lisp.session.texts = 0
-    lisp(form.replace("(describe-task-tree)", "(describe-task-tree :stream *out*)"))
-    assert lisp.numberless(lisp("(get-output-stream-string *out*)")[0]) == answer

@@ -6,13 +6,15 @@ import weakref
 import pytest
 from small_plans import plan, started, statuses_of
 
+from cramhy_runtime.cpl.failures import handling
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import task_variables, tasks
+from cramhy_runtime.cpl import task_variables
+from cramhy_runtime.cpl.tasks import tasks
 from cramhy_runtime.cpl.statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
-from cramhy_runtime.cpl.tasks import Task
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, Symbol
-from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.cpl.tasks.tasks import Task
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, Symbol
+from cramhy_runtime.ground.dynamic import binding
 
 
 def test_a_status_goes_from_running_to_exactly_one_dead_state():
@@ -74,8 +76,9 @@ def test_evaporating_a_task_ends_all_below_it_children_first_and_then_its_cleanu
             order.append(name)
 
     def body():
-        parent = started(lambda: worker("parent", lambda: cpl.par(
-            lambda: worker("child", lambda: cpl.pursue(lambda: worker("grandchild"))))))
+        parent = started(
+            lambda: worker("parent", lambda: cpl.par(lambda: worker("child", lambda: cpl.pursue(lambda: worker("grandchild")))))
+        )
         cpl.sleep(1)
         cpl.evaporate(parent)
         return parent.status
@@ -306,7 +309,7 @@ def test_with_task_suspended_wakes_the_task_though_its_body_fails():
     def body():
         task = started(lambda: cpl.sleep(3))
         cpl.sleep(1)
-        _, failure = cpl.failures.attempt(lambda: cpl.with_task_suspended(task, lambda: cpl.fail("x")))
+        _, failure = handling.attempt(lambda: cpl.with_task_suspended(task, lambda: cpl.fail("x")))
         return failure.format_control, task.status
 
     assert plan(body) == ("x", RUNNING)
@@ -347,7 +350,7 @@ def test_joining_a_failed_task_signals_the_very_same_condition():
 
     def body():
         task = started(lambda: cpl.fail(failure))
-        _, caught = cpl.failures.attempt(lambda: cpl.join_task(task))
+        _, caught = handling.attempt(lambda: cpl.join_task(task))
         return caught
 
     assert plan(body) is failure
@@ -369,8 +372,9 @@ def test_wrong_use_of_tasks_says_what_is_wrong(call, text):
 
 
 def test_making_a_task_from_lisp_starts_it():
-    from cramhy_runtime.lisp.objects.classes import find_class_or_error, make_instance
-    from cramhy_runtime.lisp.packages import keyword, sym
+    from cramhy_runtime.languages.commonlisp.objects.classes import find_class_or_error
+    from cramhy_runtime.languages.commonlisp.objects.instances import make_instance
+    from cramhy_runtime.ground.packages import keyword, sym
 
     def made(*more):
         return make_instance(find_class_or_error(sym("CPL::TASK")), keyword("NAME"), "x", keyword("THREAD-FUN"), lambda: 42, *more)

@@ -4,13 +4,14 @@ import pytest
 from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import plans, policies, tags, tree
-from cramhy_runtime.cpl.failures import attempt
+from cramhy_runtime.cpl.forms import plans, policies
+from cramhy_runtime.cpl.tree import tags, task_tree as tree
+from cramhy_runtime.cpl.failures.handling import attempt
 from cramhy_runtime.cpl.statuses import CREATED, SUCCEEDED
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import Cons, lisp_list
-from cramhy_runtime.lisp.packages import intern, sym
-from cramhy_runtime.lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import Cons, lisp_list
+from cramhy_runtime.ground.packages import intern, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import princ_to_string
 
 
 def user(name):
@@ -35,8 +36,7 @@ def test_a_tag_is_a_created_task_before_and_dead_after_and_repetition_makes_a_ne
         third, _ = run_tag(second)
         return before, again is first, first.status, value, [princ_to_string(task.path) for task in (first, second, third)]
 
-    assert plan(body) == (CREATED, True, SUCCEEDED, "values",
-                          ["((TAGGED A))", "((TAGGED A CALL 2))", "((TAGGED A CALL 3))"])
+    assert plan(body) == (CREATED, True, SUCCEEDED, "values", ["((TAGGED A))", "((TAGGED A CALL 2))", "((TAGGED A CALL 3))"])
 
 
 def test_a_sub_task_named_by_its_path_is_the_task_of_the_tag():
@@ -138,8 +138,14 @@ def policy(log, check=None, init=None, recover=None):
 
         return clause
 
-    return policies.make_policy(user("POLICY"), lisp_list(user("TIME")), init=note("init", init), check=check and note("check", check),
-                                recover=note("recover", recover), clean_up=note("clean-up"))
+    return policies.make_policy(
+        user("POLICY"),
+        lisp_list(user("TIME")),
+        init=note("init", init),
+        check=check and note("check", check),
+        recover=note("recover", recover),
+        clean_up=note("clean-up"),
+    )
 
 
 def under(watched, body, *arguments):
@@ -199,8 +205,11 @@ def test_a_timeout_ends_a_longer_body_and_its_condition_can_be_handled_in_a_pare
 
     assert plan(lambda: timed(1)) == "in time"
     start = kernel.now()
-    caught = plan(lambda: cpl.with_failure_handling([(cpl.PolicyCheckConditionMet, lambda condition, retry: retry.leave("too late"))],
-                                                    lambda retry: cpl.par(lambda: timed(10))))
+    caught = plan(
+        lambda: cpl.with_failure_handling(
+            [(cpl.PolicyCheckConditionMet, lambda condition, retry: retry.leave("too late"))], lambda retry: cpl.par(lambda: timed(10))
+        )
+    )
     assert caught == "too late" and kernel.now() - start == pytest.approx(2)
 
 

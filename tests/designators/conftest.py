@@ -3,15 +3,17 @@
 import itertools
 import re
 
+
 import pytest
-from image_as_it_was import image_as_it_was
+from cramhy_runtime.session import Image
 from lisp_text import LispLine
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.data import all_values
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.data import all_values
 from cramhy_runtime.repl.session import Session
 
-image.boot()
+boot()
 
 PRELUDE = """
 (defpackage {name} (:use :common-lisp :cram-prolog :desig :cpl-desig-supp :cut))
@@ -28,15 +30,9 @@ _numbers = itertools.count(1)
 
 @pytest.fixture(params=["threads", "greenlet"], autouse=True)
 def fresh_kernel(request):
-    yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
-    kernel.stop()
-
-
-@pytest.fixture
-def no_rules_left():
-    """Fact groups, generators, validators, types and create functions that a test defines are forgotten."""
-    with image_as_it_was():
-        yield
+    with Image(as_now=True):
+        yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
+        kernel.stop()
 
 
 class Lisp(LispLine):
@@ -47,12 +43,14 @@ class Lisp(LispLine):
     """
 
     def __init__(self, backend, time_limit=3600):
-        super().__init__(Session(time="virtual", turtlesim=False, backend=backend, time_limit=time_limit),
-                         PRELUDE.format(name=f"DESIGNATORS-{next(_numbers)}"))
+        super().__init__(
+            Session(time="virtual", turtlesim=False, backend=backend, time_limit=time_limit),
+            PRELUDE.format(name=f"DESIGNATORS-{next(_numbers)}"),
+        )
 
     def text(self, form):
         """The string that ``form`` returns, as it is."""
-        value, = all_values(self.session.evaluate_text(form)[-1])
+        (value,) = all_values(self.session.evaluate_text(form)[-1])
         return value
 
     def error(self, text):
@@ -61,5 +59,5 @@ class Lisp(LispLine):
 
 
 @pytest.fixture
-def lisp(request, no_rules_left):
+def lisp(request):
     return Lisp(request.getfixturevalue("fresh_kernel").backend.name)

@@ -1,9 +1,9 @@
 """Short names for the tests of designators: Lisp data from Python."""
 
 from cramhy_runtime import designators as desig
-from cramhy_runtime.lisp.data import Cons, lisp_list
-from cramhy_runtime.lisp.packages import intern, keyword, sym
-from cramhy_runtime.prolog.facts import define_fact_group, remove_fact_group
+from cramhy_runtime.ground.data import Cons, lisp_list
+from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
 
 
 def user(name):

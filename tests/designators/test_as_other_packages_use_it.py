@@ -33,7 +33,8 @@ def test_poses_of_locations(poses):
     assert poses("(list (designator-pose *a*) (designator-distance *a* *b*))") == "(NIL NIL)"
     assert poses("(list (reference *a*) (reference *b*))") == "(#S(POINT :X 1) #S(POINT :X 4))"
     assert poses("(list (designator-pose *a*) (designator-distance *a* *b*) (eq (slot-value *a* 'desig::current-solution) 1))") == (
-        "(#S(POINT :X 1) 3 T)")
+        "(#S(POINT :X 1) 3 T)"
+    )
 
 
 def test_near_solutions_count_as_equal(poses):
@@ -79,12 +80,14 @@ def test_a_package_of_property_names(lisp):
     lisp("""(desig-props:def-desig-package legacy-props (:use :common-lisp) (:export #:fetch) (:desig-properties #:knob #:colour))""")
     assert lisp("(eq 'legacy-props::knob 'desig-props:knob)") == "T"
     assert lisp("(desig-prop-value (make-designator :object '((desig-props:knob 1))) 'legacy-props::knob)") == "1"
-    assert lisp("(nth-value 1 (find-symbol \"FETCH\" :legacy-props))") == ":EXTERNAL"
+    assert lisp('(nth-value 1 (find-symbol "FETCH" :legacy-props))') == ":EXTERNAL"
 
 
-@pytest.mark.parametrize("form", ["(desig-prop-value (a motion) 'knob)", "(desig-prop-values (a motion) 'knob)",
-                                  "(prolog `(desig-prop ,(a motion) (knob ?v)))"])
+@pytest.mark.parametrize(
+    "form", ["(desig-prop-value (a motion) 'knob)", "(desig-prop-values (a motion) 'knob)", "(prolog `(desig-prop ,(a motion) (knob ?v)))"]
+)
 def test_a_property_name_that_is_no_keyword_is_warned_of(lisp, form):
     assert lisp(f"(handler-case {form} (simple-warning (w) (princ-to-string w)))") == (
         '"Designator property KNOB has not been declared properly. This may cause problems. To fix it, use the macro DEF-DESIG-PACKAGE and '
-        'declare the symbol as a designator property."')
+        'declare the symbol as a designator property."'
+    )

@@ -10,9 +10,9 @@ import pytest
          "Write the bare name of the function, without #': what it names is looked up at each use."),
         ("(register-location-validation-function 5 #'car)", "The name of a function is wanted, not #'CAR.",
          "Write the bare name of the function, without #': what it names is looked up at each use."),
-        ('(register-location-generator "5" gen)', 'The priority of GEN is no integer: "5".',
+        ('(register-location-generator "5" gen)', 'The priority of GEN is not an integer: "5".',
          "The priority comes first, then the name of the function. Lower priorities are asked earlier."),
-        ("(register-location-validation-function 1.5 gen)", "The priority of GEN is no integer: 1.5.",
+        ("(register-location-validation-function 1.5 gen)", "The priority of GEN is not an integer: 1.5.",
          "The priority comes first, then the name of the function. Lower priorities are asked earlier."),
         ("(validate-location-designator-solution (a motion) 1)", "The value #<A MOTION> is not of type LOCATION-DESIGNATOR", None),
         ("(a motion (type . driving))", "The description of a designator contains a dotted list: (TYPE . DRIVING). Write lists as (element "
@@ -37,17 +37,13 @@ def test_errors(lisp, form, text, hint):
 
 
 WARNINGS = {
-    "(a motion (speed (+ 1 ?x)))":
-        "; caught STYLE-WARNING:\n;   The value of speed is the list (+ 1 ?x): only ?variables in a designator are evaluated. To use what "
-        "the call returns, write\n;     (let ((?speed (+ 1 ?x))) ... (speed ?speed) ...).\n",
-    "(a motion (type 'driving))":
-        "; caught STYLE-WARNING:\n;   The value of type is the list (quote driving). What stands in a designator is not evaluated, and "
-        "needs no quote.\n",
-    "(a motion (test #'car))":
-        "; caught STYLE-WARNING:\n;   The value of test is the list #'car: only ?variables in a designator are evaluated. To use what the "
-        "call returns, write\n;     (let ((?test #'car)) ... (test ?test) ...).\n",
-    '(a motion (type driving) (name "X") (name "X"))':
-        '; caught STYLE-WARNING:\n;   The property (name "X") is there twice.\n',
+    "(a motion (speed (+ 1 ?x)))": "; caught STYLE-WARNING:\n;   The value of speed is the list (+ 1 ?x): only ?variables in a designator are evaluated. To use what "
+    "the call returns, write\n;     (let ((?speed (+ 1 ?x))) ... (speed ?speed) ...).\n",
+    "(a motion (type 'driving))": "; caught STYLE-WARNING:\n;   The value of type is the list (quote driving). The parts of a designator are not evaluated, and "
+    "need no quote.\n",
+    "(a motion (test #'car))": "; caught STYLE-WARNING:\n;   The value of test is the list #'car: only ?variables in a designator are evaluated. To use what the "
+    "call returns, write\n;     (let ((?test #'car)) ... (test ?test) ...).\n",
+    '(a motion (type driving) (name "X") (name "X"))': '; caught STYLE-WARNING:\n;   The property (name "X") is there twice.\n',
 }
 
 
@@ -102,9 +98,10 @@ def test_a_validator_that_raises_is_named_and_sees_the_same_candidate_again(lisp
 def test_a_generator_that_gives_no_list(lisp, value):
     lisp(f"(defun gen (d) (declare (ignore d)) {value}) (register-location-generator 5 gen)")
     shown = {"#'car": "#<FUNCTION CAR>", "t": "T"}.get(value, value)
-    assert lisp.error("(reference (a location))") == f"The location generator GEN gave {shown}, which is no list."
+    assert lisp.error("(reference (a location))") == f"The location generator GEN gave {shown}, which is not a list."
     assert lisp.hint("(reference (a location))").startswith(
-        "A generator returns a list of candidates, lazy or not: (list candidate) for a single one, nil for none.")
+        "A generator returns a list of candidates, lazy or not: (list candidate) for a single one, nil for none."
+    )
 
 
 def test_a_generator_that_nobody_defined(lisp):
@@ -114,8 +111,10 @@ def test_a_generator_that_nobody_defined(lisp):
     assert lisp.error("(reference (a location))") == "Unable to resolve designator `#<A LOCATION>'"
 
 
-@pytest.mark.parametrize("generator, validator", [("(loop)", ":accept"), ("(lazy-list ((i 0)) (cont i (1+ i)))", ":reject"),
-                                                  ("(lazy-list ((i 0)) (next (1+ i)))", ":accept")])
+@pytest.mark.parametrize(
+    "generator, validator",
+    [("(loop)", ":accept"), ("(lazy-list ((i 0)) (cont i (1+ i)))", ":reject"), ("(lazy-list ((i 0)) (next (1+ i)))", ":accept")],
+)
 def test_a_search_without_end_can_be_evaporated_and_begun_anew(lisp, generator, validator):
     lisp(f"""(defun gen (d) (declare (ignore d)) {generator}) (register-location-generator 5 gen)
              (defun val (d s) (declare (ignore d s)) {validator}) (register-location-validation-function 5 val)
@@ -123,7 +122,8 @@ def test_a_search_without_end_can_be_evaporated_and_begun_anew(lisp, generator, 
              (defvar *d* (a location))""")
     try:
         assert lisp("(cpl:top-level (cpl:pursue (progn (note :searching) (reference *d*)) (progn (cpl:sleep 0) :enough)) *notes*)") == (
-            "(:SEARCHING)")
+            "(:SEARCHING)"
+        )
         assert lisp("(defun gen (d) (declare (ignore d)) (list 1)) (defun val (d s) (declare (ignore d s)) :accept) (reference *d*)") == "1"
     finally:
         lisp("(setf *location-generator-max-retries* 30)")
@@ -134,7 +134,8 @@ def test_a_value_that_cannot_be_printed_hides_no_error(lisp):
             (defvar *d* (let ((?b (make-instance 'broken))) (a motion (type driving) (thing ?b) (things (1 ?b)) (speed 5))))""")
     assert lisp.text("(handler-case (reference *d*) (designator-error (e) (princ-to-string e)))") == (
         "Cannot resolve motion designator #<A MOTION\n    (TYPE DRIVING)\n    (THING #<error printing a BROKEN: not printable>)\n"
-        "    (THINGS #<error printing a CONS: not printable>)\n    (SPEED 5)>.")
+        "    (THINGS #<error printing a CONS: not printable>)\n    (SPEED 5)>."
+    )
 
 
 def test_a_description_that_is_no_list(lisp):
@@ -150,7 +151,8 @@ def test_a_designator_class_of_ones_own(lisp):
             (defmethod initialize-instance :after ((d tool-designator) &key) (note (props d)))
             (defmethod resolve-designator ((d tool-designator) role) (list :tool (sharp d) role))""")
     assert lisp("(let ((d (a tool (type knife)))) (list (type-of d) (sharp d) (reference d) (effective d) *notes*))") == (
-        "(TOOL-DESIGNATOR :VERY (:TOOL :VERY NIL) T (((:TYPE :KNIFE))))")
+        "(TOOL-DESIGNATOR :VERY (:TOOL :VERY NIL) T (((:TYPE :KNIFE))))"
+    )
     assert lisp.text("(prin1-to-string (copy-designator (all tools (type saw))))") == "#<A TOOL\n    (TYPE SAW)>"
     assert lisp("(list (typep (a tool) 'designator-id-mixin) (typep (make-instance 'designator) 'equate-notification-mixin))") == "(T NIL)"
     assert lisp("(type-of (extend-designator-properties (a tool (type saw)) '((:n 1))))") == "TOOL-DESIGNATOR"
@@ -160,7 +162,8 @@ def test_readers_are_open_to_classes_of_ones_own(lisp):
     lisp("""(defclass happening () ((at :initarg :at :reader timestamp) (text :initform "x" :reader description)))
             (defvar *h* (make-instance 'happening :at 7))""")
     assert lisp("(list (timestamp *h*) (description *h*) (timestamp (a motion)) (description (a motion (n 1))))") == (
-        '(7 "x" NIL ((:N 1)))')
+        '(7 "x" NIL ((:N 1)))'
+    )
 
 
 def test_predicates_with_a_time_give_each_member_of_the_chain_once(lisp):
@@ -177,10 +180,12 @@ def test_other_predicates(lisp):
     assert lisp("(list (answers `(desig-location-prop ,*d* ?p)) (answers `(desig-location-prop ,*m* ?p)))") == "((((?P . :P))) NIL)"
     assert lisp("(answers `(designator ?c ?d ,*m*))") == "(((?C . :MOTION) (?D (:N 1))))"
     assert lisp("(answers '(and (designator :motion ((:n 2)) ?d) (desig-prop ?d (:n ?n)) (desig-class ?d ?c)))").endswith(
-        "(?N . 2) (?C . :MOTION)))")
+        "(?N . 2) (?C . :MOTION)))"
+    )
     assert lisp("(answers '(designator ?unbound ((:n 2)) ?d))") == "NIL"
     assert lisp("(answers '(designator :nonsense ((:n 2)) ?d))") == "NIL"  # with a warning, as with lisp-fun
     assert lisp("(answers `(and (desig-value ,*m* ?v) (effective-designator ,*m*)))") == "NIL"
     assert lisp("(answers `(and (newest-effective-designator ,*m* ?e) (current-designator ,*m* ,*m*) (equated-desigs ,*m* ?o)))") == (
-        "(((?E) (?O)))")
+        "(((?E) (?O)))"
+    )
     assert lisp("(length (answers `(and (designator ?x) (== ?x ,*m*))))") == "1"

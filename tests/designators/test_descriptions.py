@@ -3,12 +3,13 @@
 import pytest
 
 from cramhy_runtime import designators as desig
-from cramhy_runtime.designators import classes, equating, syntax
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import keyword, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.designators import classes, equating
+from cramhy_runtime.languages.commonlisp.faces.designators import syntax
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 
 from .support import lisp, make, python, user
 
@@ -18,13 +19,15 @@ def form(*pairs):
 
 
 def test_constants_become_keywords_and_stay_otherwise():
-    assert python(form(["type", "driving"], ["speed", 5], ["name", "'x"])) == [
-        "QUOTE", [["TYPE", "DRIVING"], ["SPEED", 5], ["NAME", "x"]]]
+    assert python(form(["type", "driving"], ["speed", 5], ["name", "'x"])) == ["QUOTE", [["TYPE", "DRIVING"], ["SPEED", 5], ["NAME", "x"]]]
 
 
 def test_a_variable_is_evaluated_where_the_form_stands():
     assert python(form(["speed", "?speed"], ["goal", ["?x", 1, "left"]])) == [
-        "LIST", ["LIST", "SPEED", "?SPEED"], ["LIST", "GOAL", ["LIST", "?X", 1, "LEFT"]]]
+        "LIST",
+        ["LIST", "SPEED", "?SPEED"],
+        ["LIST", "GOAL", ["LIST", "?X", 1, "LEFT"]],
+    ]
 
 
 def test_a_nested_designator_is_a_form_whatever_package_its_operator_is_from():
@@ -46,7 +49,7 @@ def test_all_takes_the_plural_and_sets_the_quantifier():
 
 
 def test_a_dotted_list_is_an_error():
-    from cramhy_runtime.lisp.data import Cons
+    from cramhy_runtime.ground.data import Cons
 
     with pytest.raises(Error) as problem:
         syntax.description_form(lisp_list(Cons(user("A-KEY"), 5)))
@@ -66,7 +69,8 @@ def test_a_designator_is_printed_over_several_lines():
     assert princ_to_string(outer) == "#<A OBJECT\n    (TYPE BOTTLE)\n    (AT #<A LOCATION\n    (NAME x)>)>"
     assert prin1_to_string(make("motion")) == "#<A MOTION>"
     assert prin1_to_string(make("motion", [":l", [1, [2, ":three"]]], [":none", None])) == (
-        "#<A MOTION\n    (L (1 (2 :THREE)))\n    (NONE NIL)>")
+        "#<A MOTION\n    (L (1 (2 :THREE)))\n    (NONE NIL)>"
+    )
 
 
 def test_in_a_list_it_begins_a_line():
@@ -147,11 +151,14 @@ def test_the_newest_effective_designator():
 
 def test_the_living_designators_are_found_in_the_order_of_their_making(lisp):
     """A run must not depend on the addresses of its objects."""
-    assert lisp("""(let* ((made (loop for n below 200 collect (make-designator :motion `((:ordered ,n)))))
+    assert (
+        lisp("""(let* ((made (loop for n below 200 collect (make-designator :motion `((:ordered ,n)))))
                                (number (lambda (d) (ignore-errors (desig-prop-value d :ordered))))
                                (numbers (lambda (found) (remove nil (mapcar number found)))))
                           (setf made (remove-if (lambda (d) (evenp (desig-prop-value d :ordered))) made))
                           (let ((expected (loop for n from 1 below 200 by 2 collect n)))
                             (list (equal expected (remove-if #'evenp (funcall numbers (get-all-designators))))
                                   (equal expected (remove-if #'evenp (funcall numbers (mapcar (lambda (bdgs) (cdr (first bdgs)))
-                                                                   (cut:force-ll (prolog:prolog '(designator ?d))))))))))""") == "(T T)"
+                                                                   (cut:force-ll (prolog:prolog '(designator ?d))))))))))""")
+        == "(T T)"
+    )

@@ -8,31 +8,45 @@ from hypothesis import strategies as st
 
 import pytest
 
-from cramhy_runtime import image, kernel
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
 from cramhy_runtime.designators import classes, equating, protocol
-from cramhy_runtime.lisp.condition_types import Condition
-from cramhy_runtime.lisp.data import Cons, DoubleFloat, lisp_list, list_from
-from cramhy_runtime.lisp.packages import intern, keyword, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
-from cramhy_runtime.prolog.facts import define_fact_group, remove_fact_group
+from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list, list_from
+from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
 from cramhy_runtime.prolog.query import ask
-from cramhy_runtime.prolog.terms import Var
+from cramhy_runtime.prolog.terms.terms import Var
 
-image.boot()
+boot()
 KINDS = ("MOTION", "ACTION", "LOCATION", "OBJECT", "HUMAN")
 KEYS = st.sampled_from(["TYPE", "SPEED", "ANGLE", "AT"])
-atoms = st.one_of(st.none(), st.just(True), st.integers(-9, 9), st.floats(allow_nan=False), st.text(max_size=3),
-                  st.builds(keyword, st.sampled_from(["DRIVING", "MOVING", "x y", ""])), st.builds(lambda: intern("?X", "CRAM-USER")),
-                  st.builds(lambda: intern("WORD", "CRAM-USER")), st.just(DoubleFloat(1.5)), st.just(len))
+atoms = st.one_of(
+    st.none(),
+    st.just(True),
+    st.integers(-9, 9),
+    st.floats(allow_nan=False),
+    st.text(max_size=3),
+    st.builds(keyword, st.sampled_from(["DRIVING", "MOVING", "x y", ""])),
+    st.builds(lambda: intern("?X", "CRAM-USER")),
+    st.builds(lambda: intern("WORD", "CRAM-USER")),
+    st.just(DoubleFloat(1.5)),
+    st.just(len),
+)
 
 
 def location_at(thing):
     return classes.make_designator(keyword("LOCATION"), lisp_list(lisp_list(keyword("AT"), thing)))
 
 
-values = st.recursive(atoms, lambda inner: st.one_of(
-    st.lists(inner, max_size=3).map(list_from), st.tuples(inner, inner).map(lambda pair: Cons(*pair)), inner.map(location_at)),
-    max_leaves=6)
+values = st.recursive(
+    atoms,
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3).map(list_from), st.tuples(inner, inner).map(lambda pair: Cons(*pair)), inner.map(location_at)
+    ),
+    max_leaves=6,
+)
 pairs = st.builds(lambda key, value: lisp_list(keyword(key), value), KEYS, values)
 descriptions = st.one_of(st.lists(pairs, max_size=4).map(list_from), st.lists(st.one_of(pairs, values), max_size=4).map(list_from), values)
 
@@ -72,10 +86,17 @@ def driving():
     for name in ("MOTION-GROUNDING", "ACTION-GROUNDING", "LOCATION-GROUNDING"):
         functor = sym(f"DESIG::{name}")
         groups.append(intern(f"RANDOM-{name}", "CRAM-USER"))
-        define_fact_group(groups[-1], lisp_list(functor), lisp_list(
-            lisp_list(lisp_list(functor, d, lisp_list(intern("DRIVE", "CRAM-USER"), s)),
-                      lisp_list(prop, d, lisp_list(keyword("TYPE"), keyword("DRIVING"))),
-                      lisp_list(prop, d, lisp_list(keyword("SPEED"), s)))))
+        define_fact_group(
+            groups[-1],
+            lisp_list(functor),
+            lisp_list(
+                lisp_list(
+                    lisp_list(functor, d, lisp_list(intern("DRIVE", "CRAM-USER"), s)),
+                    lisp_list(prop, d, lisp_list(keyword("TYPE"), keyword("DRIVING"))),
+                    lisp_list(prop, d, lisp_list(keyword("SPEED"), s)),
+                )
+            ),
+        )
     yield
     for group in groups:
         remove_fact_group(group)
@@ -99,15 +120,21 @@ forms = st.recursive(WORDS, lambda inner: st.lists(inner, max_size=4).map(lambda
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.sampled_from(["a", "an", "all"]), st.sampled_from(["motion", '"motion"', "objects", "(x)", "5", "nil", ""]),
-       st.lists(forms, max_size=3))
+@given(
+    st.sampled_from(["a", "an", "all"]),
+    st.sampled_from(["motion", '"motion"', "objects", "(x)", "5", "nil", ""]),
+    st.lists(forms, max_size=3),
+)
 def test_any_text_is_a_designator_or_a_lisp_error(operator, kind, parts):
     from cramhy_runtime.repl.session import Session, condition_of
 
     session = Session(time="virtual", turtlesim=False, backend="greenlet")
     try:
-        value, = session.evaluate_text(f"(let ((desig::?x 1)) (declare (ignorable desig::?x)) (desig:{operator} {kind} {' '.join(parts)}))"
-                                       .replace(" ?x", " desig::?x").replace("(?x", "(desig::?x"))
+        (value,) = session.evaluate_text(
+            f"(let ((desig::?x 1)) (declare (ignorable desig::?x)) (desig:{operator} {kind} {' '.join(parts)}))".replace(
+                " ?x", " desig::?x"
+            ).replace("(?x", "(desig::?x")
+        )
         assert isinstance(value, classes.Designator)
     except Condition as condition:
         text = princ_to_string(condition_of(condition))

@@ -29,12 +29,11 @@ from cramhy_runtime.designators import (
     replace,
     solutions,
 )
-from cramhy_runtime.lisp.condition_types import SimpleError
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.prolog import P, V, explain, fact_group, findall, kw
 
-pytestmark = pytest.mark.usefixtures("no_rules_left")
 NAME = __name__.replace("_", "-")
 
 
@@ -73,7 +72,9 @@ def place(function):
 def test_a_designator_is_made_and_read_by_its_properties():
     cup = Object(type=kw.cup, color="red")
     motion = Motion(type=kw.driving, speed=1.5, to=[1, (2, 3)], of=cup, pen_on=True, in_=3)
-    assert repr(motion) == """\
+    assert (
+        repr(motion)
+        == """\
 #<A MOTION
     (TYPE DRIVING)
     (SPEED 1.5)
@@ -83,9 +84,24 @@ def test_a_designator_is_made_and_read_by_its_properties():
     (COLOR "red")>)
     (PEN-ON T)
     (IN 3)>"""
+    )
     assert (motion.type, motion.speed, motion.to, motion.of, motion.pen_on, motion["in"]) == (kw.driving, 1.5, [1, [2, 3]], cup, True, 3)
     assert motion["speed"] == motion[kw.speed] == 1.5 and "speed" in motion and "angle" not in motion
     assert {"type", "speed", "pen_on"} <= set(dir(motion))
+
+
+def test_a_type_may_be_declared_in_a_module_whose_annotations_are_no_texts():
+    declared = {"Motion": Motion}
+    program = """
+class Leaping(Motion):
+    height: float
+    to: "Later"
+    careful: bool = False
+"""
+    exec(compile(program, "leaping.py", "exec", dont_inherit=True), declared)
+    leaping = declared["Leaping"]
+    assert (list(leaping.fields), leaping.defaults, leaping.required) == (["height", "to", "careful"], {"careful": False}, ["height", "to"])
+    assert properties(leaping(height=1.5, to="there")) == [("type", kw.leaping), ("height", 1.5), ("to", "there"), ("careful", False)]
 
 
 def test_order_and_repeated_keys_are_kept():
@@ -100,8 +116,16 @@ def test_they_are_equal_by_identity():
     assert one != other and len({one, other, one}) == 2
 
 
-@pytest.mark.parametrize("kind, cls", [(Motion, desig.MotionDesignator), (Action, desig.ActionDesignator), (Object, desig.ObjectDesignator),
-                                       (Location, desig.LocationDesignator), (Human, desig.HumanDesignator)])
+@pytest.mark.parametrize(
+    "kind, cls",
+    [
+        (Motion, desig.MotionDesignator),
+        (Action, desig.ActionDesignator),
+        (Object, desig.ObjectDesignator),
+        (Location, desig.LocationDesignator),
+        (Human, desig.HumanDesignator),
+    ],
+)
 def test_each_kind_makes_plain_designators(kind, cls):
     made = kind(name="walter")
     assert made.__class__ is cls and isinstance(made, kind) and made.name == "walter"
@@ -127,8 +151,10 @@ def test_a_class_declares_a_type_with_its_properties():
 
 
 def test_a_description_from_lisp_of_that_type_is_one_too():
-    motion = desig.make_designator(keyword("MOTION"), lisp_list(lisp_list(kw.type, kw.driving), lisp_list(kw.speed, 3),
-                                                                lisp_list(kw.careful, None), lisp_list(kw.path, None)))
+    motion = desig.make_designator(
+        keyword("MOTION"),
+        lisp_list(lisp_list(kw.type, kw.driving), lisp_list(kw.speed, 3), lisp_list(kw.careful, None), lisp_list(kw.path, None)),
+    )
     assert isinstance(motion, Driving) and motion.angle == 0.0 and motion.careful is False and motion.path == []
     match motion:
         case DrivingBackwards():
@@ -180,8 +206,7 @@ def test_a_grounding_may_give_any_object_and_none_is_not_mine():
 
 
 def test_an_action_grounding_gives_the_plan_function_and_its_arguments():
-    def fetch(thing, arm=None):
-        ...
+    def fetch(thing, arm=None): ...
 
     @action_grounding(Fetching)
     def grounding(action):
@@ -192,7 +217,7 @@ def test_an_action_grounding_gives_the_plan_function_and_its_arguments():
     assert list(solutions(Fetching(object=cup))) == [[fetch, cup, kw.left], [fetch]]
 
 
-def test_it_counts_as_one_of_the_rules(no_rules_left):
+def test_it_counts_as_one_of_the_rules():
     with fact_group("in prolog", extends=[P.motion_grounding]) as group:
         group.rule(P.motion_grounding(V.m, ["by-rule", V.speed]), P.desig_prop(V.m, [kw.speed, V.speed]))
 
@@ -209,6 +234,7 @@ def test_it_counts_as_one_of_the_rules(no_rules_left):
 
 def test_a_second_definition_of_the_name_replaces_the_first():
     for answer in ("old", "new"):
+
         @motion_grounding(Driving)
         def drive(motion, answer=answer):
             return answer
@@ -305,34 +331,58 @@ def test_a_grounding_may_wait_in_a_plan():
 # ---------------------------------------------------------------------------------------------------------------------- errors
 
 
-@pytest.mark.parametrize("mistake, kind, text", [
-    (lambda: Driving(speed=1).sped, AttributeError, "This motion has no property 'sped'. Did you mean 'speed'?"),
-    (lambda: Motion(type=kw.driving).colour, AttributeError, "This motion has no property 'colour'. It has: type."),
-    (lambda: Object()["colour"], KeyError, "\"This object has no property 'colour'. It has: none.\""),
-    (lambda: Driving(sped=1), TypeError, "Driving has no property 'sped'. Did you mean 'speed'?"),
-    (lambda: Fetching(), TypeError, "Fetching needs the property 'object'."),
-    (lambda: Motion(type="driving"), TypeError,
-     "The type of a designator is a keyword: Motion(type=kw.driving). A string is never the same as it."),
-    (lambda: Object(data=1), TypeError,
-     "A property of Object cannot be called 'data': designators have an attribute of that name. "
-     'Give it as a pair, Object(("data", value)), and read designator["data"].'),
-    (lambda: type(Motion)("Bad", (Motion,), {"__annotations__": {"parent": str}}), TypeError,
-     "A property of Bad cannot be called 'parent': designators have an attribute of that name. "
-     'Give it as a pair, Bad(("parent", value)), and read designator["parent"].'),
-    (lambda: type(Motion)("Bad", (Motion,), {}, type=3), TypeError,
-     'The type of Bad is to be a keyword or its name, not 3: class Bad(Motion, type="driving").'),
-    (lambda: type(Motion)("Bad", (Motion,), {"stop": lambda self: 1}), TypeError,
-     "Bad.stop would be a method, but what Bad(...) makes is a plain designator, which has properties only. "
-     "Write a function: def stop(designator): ..."),
-    (lambda: type(Motion)("Bad", (Motion,), {"angle": 0.0}), TypeError,
-     "Bad.angle has a value, but no type, and would be no property: angle: float = 0.0."),
-    (lambda: Motion(3), TypeError, '3 is no property. In front of the keyword arguments stand pairs: ("goal", value).'),
-    (lambda: reference("driving"), TypeError, "'driving' is no designator. Make one: Motion(type=kw.driving), Driving(speed=1.0)."),
-    (lambda: list(Motion()), TypeError, "'MotionDesignator' object is not iterable"),
-    (lambda: motion_grounding(Fetching), TypeError, "Fetching does not describe motions, which this decorator is for."),
-    (lambda: action_grounding(desig.ActionDesignator), TypeError,
-     "ActionDesignator is the class of all actions. Leave it out, or name a declared type."),
-])
+@pytest.mark.parametrize(
+    "mistake, kind, text",
+    [
+        (lambda: Driving(speed=1).sped, AttributeError, "This motion has no property 'sped'. Did you mean 'speed'?"),
+        (lambda: Motion(type=kw.driving).colour, AttributeError, "This motion has no property 'colour'. It has: type."),
+        (lambda: Object()["colour"], KeyError, "\"This object has no property 'colour'. It has: none.\""),
+        (lambda: Driving(sped=1), TypeError, "Driving has no property 'sped'. Did you mean 'speed'?"),
+        (lambda: Fetching(), TypeError, "Fetching needs the property 'object'."),
+        (
+            lambda: Motion(type="driving"),
+            TypeError,
+            "The type of a designator is a keyword: Motion(type=kw.driving). A string is never the same as it.",
+        ),
+        (
+            lambda: Object(data=1),
+            TypeError,
+            "A property of Object cannot be called 'data': designators have an attribute of that name. "
+            'Give it as a pair, Object(("data", value)), and read designator["data"].',
+        ),
+        (
+            lambda: type(Motion)("Bad", (Motion,), {"__annotations__": {"parent": str}}),
+            TypeError,
+            "A property of Bad cannot be called 'parent': designators have an attribute of that name. "
+            'Give it as a pair, Bad(("parent", value)), and read designator["parent"].',
+        ),
+        (
+            lambda: type(Motion)("Bad", (Motion,), {}, type=3),
+            TypeError,
+            'The type of Bad is to be a keyword or its name, not 3: class Bad(Motion, type="driving").',
+        ),
+        (
+            lambda: type(Motion)("Bad", (Motion,), {"stop": lambda self: 1}),
+            TypeError,
+            "Bad.stop would be a method, but what Bad(...) makes is a plain designator, which has properties only. "
+            "Write a function: def stop(designator): ...",
+        ),
+        (
+            lambda: type(Motion)("Bad", (Motion,), {"angle": 0.0}),
+            TypeError,
+            "Bad.angle has a value, but no type, and would be no property: angle: float = 0.0.",
+        ),
+        (lambda: Motion(3), TypeError, '3 is no property. In front of the keyword arguments stand pairs: ("goal", value).'),
+        (lambda: reference("driving"), TypeError, "'driving' is no designator. Make one: Motion(type=kw.driving), Driving(speed=1.0)."),
+        (lambda: list(Motion()), TypeError, "'MotionDesignator' object is not iterable"),
+        (lambda: motion_grounding(Fetching), TypeError, "Fetching does not describe motions, which this decorator is for."),
+        (
+            lambda: action_grounding(desig.ActionDesignator),
+            TypeError,
+            "ActionDesignator is the class of all actions. Leave it out, or name a declared type.",
+        ),
+    ],
+)
 def test_mistakes_say_what_to_write(mistake, kind, text):
     with pytest.raises(kind) as problem:
         mistake()
@@ -347,7 +397,9 @@ def test_why_a_designator_could_not_be_resolved_stands_below_the_traceback():
 
     with pytest.raises(DesignatorError) as problem:
         reference(Motion(type=kw.driving, sped=1))
-    assert "".join(traceback.format_exception_only(problem.value)).partition(": ")[2] == f"""\
+    assert (
+        "".join(traceback.format_exception_only(problem.value)).partition(": ")[2]
+        == f"""\
 Cannot resolve motion designator #<A MOTION
     (TYPE DRIVING)
     (SPED 1)>.
@@ -361,6 +413,7 @@ There is one clause, clause 1 of {NAME}.test-why-a-designator-could-not-be-resol
   with ?designator = #<a motion (type driving) (sped 1)>
 explain(designator) tries it again and tells all of it.
 """
+    )
     told = explain(Driving(speed=5))
     assert not told.holds and told.reason == "drive gave no solution" and "drive gave no solution." in str(told)
 
@@ -380,7 +433,8 @@ def test_what_a_grounding_raises_comes_out_with_the_designator_and_the_place():
     assert text_of(problem) == (
         "This motion has no property 'sped'. Did you mean 'speed'?\n"
         f"This happened in the motion grounding drive ({place(drive)}), "
-        "for #<A MOTION (TYPE DRIVING) (SPEED 1) (ANGLE 0.0) (PATH NIL) (CAREFUL NIL)>.")
+        "for #<A MOTION (TYPE DRIVING) (SPEED 1) (ANGLE 0.0) (PATH NIL) (CAREFUL NIL)>."
+    )
     with pytest.raises(ValueError) as problem:
         list(solutions(Action()))
     assert text_of(problem) == f"no idea\nThis happened in the action grounding later ({place(later)}), for #<A ACTION>."
@@ -403,12 +457,14 @@ def test_solutions_that_cannot_be():
         reference(Action())
     assert text_of(problem) == (
         "An action grounding gives a plan function and its arguments, (pick_up, cup), not ('fetch', #<A ACTION>).\n"
-        f"This happened in the action grounding said ({place(said)}), for #<A ACTION>.")
+        f"This happened in the action grounding said ({place(said)}), for #<A ACTION>."
+    )
     with pytest.raises(TypeError) as problem:
         reference(Location())
     assert text_of(problem).startswith(
         "A location generator yields candidates, or returns a list of them, not 'here'.\n"
-        f"This happened in the location generator one ({place(one)}), for #<A LOCATION>.")
+        f"This happened in the location generator one ({place(one)}), for #<A LOCATION>."
+    )
     forget(one)
 
     @location_generator
@@ -419,7 +475,8 @@ def test_solutions_that_cannot_be():
         reference(Location())
     assert text_of(problem).startswith(
         "A validator returns True, False, None or kw.maybe_reject, not 'yes'.\n"
-        f"This happened in the location validator perhaps ({place(perhaps)}), for #<A LOCATION>.")
+        f"This happened in the location validator perhaps ({place(perhaps)}), for #<A LOCATION>."
+    )
 
 
 def test_an_error_reads_the_same_where_no_kernel_runs():

@@ -2,17 +2,17 @@
 
 import pytest
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
-from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.lisp.evaluation.macros import ensure_loaded
-from cramhy_runtime.lisp.objects.generic import GenericFunction
-from cramhy_runtime.lisp.packages import COMMON_LISP, find_package
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.types.types import is_known_type
-from cramhy_runtime.prolog.database import functors
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
+from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
+from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.types.types import is_known_type
+from cramhy_runtime.prolog.engine.database import functors
 
-image.boot()
+boot()
 ensure_loaded()
 DESIG, PROPS, SUPPORT = (find_package(name) for name in ("DESIG", "DESIG-PROPS", "CPL-DESIG-SUPP"))
 
@@ -39,21 +39,41 @@ ONLY_SYMBOLS = """data desig action object location human accept-solution reject
 NOT_IN_THIS_VERSION = "the some next-different-solution *retries* desig-prop-function"
 
 LAMBDA_LISTS = {
-    "make-designator": "(CLASS DESCRIPTION &OPTIONAL PARENT)", "copy-designator": "(OLD-DESIGNATOR &KEY NEW-DESCRIPTION)",
-    "merge-desig-descriptions": "(DESIGNATOR NEW-DESCRIPTION)", "extend-designator-properties": "(DESIGNATOR PROPERTY-EXTENSION)",
+    "make-designator": "(CLASS DESCRIPTION &OPTIONAL PARENT)",
+    "copy-designator": "(OLD-DESIGNATOR &KEY NEW-DESCRIPTION)",
+    "merge-desig-descriptions": "(DESIGNATOR NEW-DESCRIPTION)",
+    "extend-designator-properties": "(DESIGNATOR PROPERTY-EXTENSION)",
     "update-designator-properties": "(NEW-PROPERTIES OLD-PROPERTIES)",
-    "make-effective-designator": "(PARENT &KEY NEW-PROPERTIES DATA-OBJECT TIMESTAMP)", "desig-prop-value": "(DESIG PROP-NAME)",
-    "desig-prop-values": "(DESIGNATOR PROPERTY-NAME)", "equate": "(PARENT SUCCESSOR)", "desig-equal": "(DESIG-1 DESIG-2)",
-    "first-desig": "(DESIG)", "current-desig": "(DESIG)", "newest-effective-designator": "(DESIG)", "get-equal-designators": "(D)",
-    "designator-solutions": "(DESIG &OPTIONAL FROM-ROOT)", "register-equate-callback": "(DESIGNATOR CALLBACK)",
-    "unregister-equate-callback": "(DESIGNATOR CALLBACK)", "reference": "(DESIG &OPTIONAL ROLE)", "resolve-designator": "(DESIG ROLE)",
-    "next-solution": "(DESIG)", "designator-solutions-equal": "(SOLUTION-1 SOLUTION-2)", "designator-pose": "(DESIG)",
-    "designator-distance": "(DESIG-1 DESIG-2)", "list-location-generators": "NIL", "list-location-validation-functions": "NIL",
-    "delete-location-generator-function": "(FUNCTION-NAME)", "delete-location-validation-function": "(FUNCTION-NAME)",
-    "enable-location-generator-function": "(FUNCTION-NAME)", "disable-location-generator-function": "(FUNCTION-NAME)",
-    "enable-location-validation-function": "(FUNCTION-NAME)", "disable-location-validation-function": "(FUNCTION-NAME)",
-    "validate-location-designator-solution": "(DESIGNATOR SOLUTION)", "next-filtered-designator-solution": "(DESIGNATOR FILTER)",
-    "loc-desig-location": "(LOC-DESIG)", "get-all-designators": "NIL",
+    "make-effective-designator": "(PARENT &KEY NEW-PROPERTIES DATA-OBJECT TIMESTAMP)",
+    "desig-prop-value": "(DESIG PROP-NAME)",
+    "desig-prop-values": "(DESIGNATOR PROPERTY-NAME)",
+    "equate": "(PARENT SUCCESSOR)",
+    "desig-equal": "(DESIG-1 DESIG-2)",
+    "first-desig": "(DESIG)",
+    "current-desig": "(DESIG)",
+    "newest-effective-designator": "(DESIG)",
+    "get-equal-designators": "(D)",
+    "designator-solutions": "(DESIG &OPTIONAL FROM-ROOT)",
+    "register-equate-callback": "(DESIGNATOR CALLBACK)",
+    "unregister-equate-callback": "(DESIGNATOR CALLBACK)",
+    "reference": "(DESIG &OPTIONAL ROLE)",
+    "resolve-designator": "(DESIG ROLE)",
+    "next-solution": "(DESIG)",
+    "designator-solutions-equal": "(SOLUTION-1 SOLUTION-2)",
+    "designator-pose": "(DESIG)",
+    "designator-distance": "(DESIG-1 DESIG-2)",
+    "list-location-generators": "NIL",
+    "list-location-validation-functions": "NIL",
+    "delete-location-generator-function": "(FUNCTION-NAME)",
+    "delete-location-validation-function": "(FUNCTION-NAME)",
+    "enable-location-generator-function": "(FUNCTION-NAME)",
+    "disable-location-generator-function": "(FUNCTION-NAME)",
+    "enable-location-validation-function": "(FUNCTION-NAME)",
+    "disable-location-validation-function": "(FUNCTION-NAME)",
+    "validate-location-designator-solution": "(DESIGNATOR SOLUTION)",
+    "next-filtered-designator-solution": "(DESIGNATOR FILTER)",
+    "loc-desig-location": "(LOC-DESIG)",
+    "get-all-designators": "NIL",
 }
 
 

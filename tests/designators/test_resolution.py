@@ -4,15 +4,17 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime import designators as desig
-from cramhy_runtime.designators import equating, language_support, locations
+from cramhy_runtime.designators import equating, locations
+from cramhy_runtime.languages.commonlisp.faces.designators import language_support
 from cramhy_runtime.designators.classes import DesignatorError
-from cramhy_runtime.lisp.conditions import Error, handler_bind, invoke_restart
-from cramhy_runtime.lisp.data import lisp_list, list_from
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
-from cramhy_runtime.lisp.streams.basic_streams import StringOutputStream
-from cramhy_runtime.lisp.streams.streams import TRACE_OUTPUT
-from cramhy_runtime.prolog import explanations, query, tracing
+from cramhy_runtime.ground.conditions import Error, handler_bind, invoke_restart
+from cramhy_runtime.ground.data import lisp_list, list_from
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.languages.commonlisp.streams.basic_streams import StringOutputStream
+from cramhy_runtime.languages.commonlisp.streams.streams import TRACE_OUTPUT
+from cramhy_runtime.prolog.explanations import explanations
+from cramhy_runtime.prolog import query, tracing
 from cramhy_runtime.utilities.lazy_lists import from_iterator
 
 from .support import facts, lisp, make, python, user
@@ -74,7 +76,9 @@ def hint_of(designator):
 
 
 def test_the_hint_tells_the_nearest_clause_and_what_it_misses(driving):
-    assert hint_of(make("motion", [":type", ":driving"])) == """\
+    assert (
+        hint_of(make("motion", [":type", ":driving"]))
+        == """\
 Of 2 clauses this one came furthest, clause 1 of driving:
   (motion-grounding ?desig (drive ?speed))
   holds  (desig-prop ?desig (:type :driving))
@@ -82,10 +86,13 @@ Of 2 clauses this one came furthest, clause 1 of driving:
            There is no property :speed.
   with ?desig = #<a motion (type driving)>
 (explain) tries it again and tells all of it."""
+    )
 
 
 def test_the_hint_names_a_property_that_is_misspelled(driving):
-    assert hint_of(make("motion", [":type", ":driving"], [":sped", 3])) == """\
+    assert (
+        hint_of(make("motion", [":type", ":driving"], [":sped", 3]))
+        == """\
 Of 2 clauses this one came furthest, clause 1 of driving:
   (motion-grounding ?desig (drive ?speed))
   holds  (desig-prop ?desig (:type :driving))
@@ -93,10 +100,13 @@ Of 2 clauses this one came furthest, clause 1 of driving:
            There is no property :speed, but :sped; is that misspelled?
   with ?desig = #<a motion (type driving) (sped 3)>
 (explain) tries it again and tells all of it."""
+    )
 
 
 def test_the_hint_names_a_type_that_is_misspelled_and_the_others_that_there_are(driving):
-    assert hint_of(make("motion", [":type", ":mvoing"], [":goal", 1])) == """\
+    assert (
+        hint_of(make("motion", [":type", ":mvoing"], [":goal", 1]))
+        == """\
 Of 2 clauses this one came furthest, clause 2 of driving:
   (motion-grounding ?desig (move ?goal))
   FAILS  (desig-prop ?desig (:type :moving))
@@ -106,25 +116,36 @@ Of 2 clauses this one came furthest, clause 2 of driving:
 As far came:
   clause 1: :type is :mvoing, not :driving
 (explain) tries it again and tells all of it."""
+    )
 
 
 def test_the_hint_says_that_a_property_has_one_value(driving):
     assert hint_of(make("motion", [":type", ":moving"], [":goal", 5, 5, 0])).splitlines()[4:5] == [
-        "           :goal has 3 values, and a property has one: (:goal (5 5 0))."]
-    assert hint_of(make("motion", [":type", ":moving"], [":goal"])).splitlines()[4:5] == [
-        "           :goal is without a value."]
+        "           :goal has 3 values, and a property has one: (:goal (5 5 0))."
+    ]
+    assert hint_of(make("motion", [":type", ":moving"], [":goal"])).splitlines()[4:5] == ["           :goal is without a value."]
 
 
 def test_the_hint_calls_nothing_a_second_time():
     calls = []
     user("SPEED-OF").function = lambda name: calls.append(name)
-    with facts("driving", ["desig::motion-grounding"], [
-            ["desig::motion-grounding", "?desig", ["drive", "?speed"]], ["desig::desig-prop", "?desig", [":how", "?how"]],
-            ["prolog::lisp-fun", "speed-of", "?how", "?speed"], ["prolog::bound", "?speed"], ["prolog::==", "?speed", "fast"]]):
+    with facts(
+        "driving",
+        ["desig::motion-grounding"],
+        [
+            ["desig::motion-grounding", "?desig", ["drive", "?speed"]],
+            ["desig::desig-prop", "?desig", [":how", "?how"]],
+            ["prolog::lisp-fun", "speed-of", "?how", "?speed"],
+            ["prolog::bound", "?speed"],
+            ["prolog::==", "?speed", "fast"],
+        ],
+    ):
         designator = make("motion", [":how", ":slowly"])
         hint = hint_of(designator)
         assert len(calls) == 1
-        assert hint == """\
+        assert (
+            hint
+            == """\
 There is one clause, clause 1 of driving:
   (motion-grounding ?desig (drive ?speed))
   holds  (desig-prop ?desig (:how ?how))
@@ -134,6 +155,7 @@ There is one clause, clause 1 of driving:
     -    (== ?speed fast)
   with ?desig = #<a motion (how slowly)>, ?how = :slowly
 (explain) tries it again and tells all of it."""
+        )
         assert explanations.explain(designator).reason == "nil is not cram-user::fast"
     assert len(calls) == 2
 
@@ -155,7 +177,9 @@ def test_the_groundings_of_a_designator_can_be_traced(driving):
     output = StringOutputStream()
     with binding(TRACE_OUTPUT, output, sym("*PACKAGE*"), HERE), tracing.tracing("DESIG::MOTION-GROUNDING", "DESIG::DESIG-PROP"):
         desig.reference(make("motion", [":type", ":moving"], [":goal", 2]))
-    assert output.take().replace("CRAM-USER::", "") == """\
+    assert (
+        output.take().replace("CRAM-USER::", "")
+        == """\
   0: CALL (MOTION-GROUNDING #<A MOTION (TYPE MOVING) (GOAL 2)> ?_)
     1: CALL (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:TYPE :DRIVING))
     1: FAIL (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:TYPE :DRIVING))   :type is :moving, not :driving
@@ -165,6 +189,7 @@ def test_the_groundings_of_a_designator_can_be_traced(driving):
     1: EXIT (DESIG-PROP #<A MOTION (TYPE MOVING) (GOAL 2)> (:GOAL 2))
   0: EXIT (MOTION-GROUNDING #<A MOTION (TYPE MOVING) (GOAL 2)> (MOVE 2))   by clause 2 of DRIVING
 """
+    )
 
 
 def traced(designator):
@@ -190,7 +215,8 @@ def test_explain_without_a_goal_takes_the_designator_of_the_last_error(driving):
 def test_the_hint_without_any_clause_says_what_to_define():
     assert error_of(make("motion", [":type", ":driving"])).hint == (
         "There is no clause of motion-grounding that could resolve it. Define one in a fact group that lists desig:motion-grounding, "
-        "and load the file.")
+        "and load the file."
+    )
 
 
 def test_an_object_stands_for_what_perception_put_into_its_data():
@@ -208,8 +234,12 @@ def test_an_action_without_solution_stays_without_and_a_new_one_resolves():
 
 
 def test_the_solutions_of_an_action_come_in_clause_order():
-    with facts("drawing", ["desig::action-grounding"], [["desig::action-grounding", "?d", ["draw", 1]]],
-               [["desig::action-grounding", "?d", ["draw", 2]]]):
+    with facts(
+        "drawing",
+        ["desig::action-grounding"],
+        [["desig::action-grounding", "?d", ["draw", 1]]],
+        [["desig::action-grounding", "?d", ["draw", 2]]],
+    ):
         action = make("action", [":type", ":drawing"])
         assert python(desig.reference(action)) == ["DRAW", 1]
         second = desig.next_solution(action)
@@ -367,11 +397,12 @@ def test_the_counter_starts_anew_after_an_accepted_candidate():
 
 def test_a_restart_decides_on_a_candidate_whose_validator_fails():
     def broken(designator, solution):
-        from cramhy_runtime.lisp.conditions import error
+        from cramhy_runtime.ground.conditions import error
 
         error("broken")
 
     with generators(giving(1), validators=[broken]):
+
         def accept(condition):
             invoke_restart(sym("DESIG::ACCEPT-SOLUTION"))
 
@@ -395,17 +426,21 @@ def test_registering_again_changes_the_priority_and_adds_no_second_entry():
 
 def test_filters_hold_in_their_extent_and_all_of_them():
     with generators(giving(1, 2, 3, 4, 6)):
+
         def even():
             return locations.with_designator_solution_filter(
-                lambda x: x % 2 == 0, lambda: locations.with_designator_solution_filter(lambda x: x > 2, lambda: desig.reference(place())))
+                lambda x: x % 2 == 0, lambda: locations.with_designator_solution_filter(lambda x: x > 2, lambda: desig.reference(place()))
+            )
 
         assert even() == 4
         assert desig.reference(place()) == 1
 
 
 def test_a_location_ground_by_prolog_drops_the_samples_of_other_generators():
-    with facts("places", ["desig::location-grounding"], [["desig::location-grounding", "?d", "'kitchen"]]), \
-            generators(giving("somewhere", "kitchen")):
+    with (
+        facts("places", ["desig::location-grounding"], [["desig::location-grounding", "?d", "'kitchen"]]),
+        generators(giving("somewhere", "kitchen")),
+    ):
         assert all_references(place()) == ["kitchen", "kitchen"]
 
 
@@ -450,11 +485,15 @@ def test_a_task_that_waits_for_the_equate_fluent_wakes_up():
 def test_with_designators_is_a_node_of_the_task_tree_and_create_functions_come_first():
     special = place()
     function = language_support.register_designator_create_function(
-        lambda name, type_, properties: special if type_ is keyword("LOCATION") else None)
+        lambda name, type_, properties: special if type_ is keyword("LOCATION") else None
+    )
     try:
+
         def body():
-            return (language_support.create_designator(user("HERE"), keyword("LOCATION"), None),
-                    language_support.create_designator(user("GO"), keyword("MOTION"), None))
+            return (
+                language_support.create_designator(user("HERE"), keyword("LOCATION"), None),
+                language_support.create_designator(user("GO"), keyword("MOTION"), None),
+            )
 
         made, other = cpl.top_level(lambda: language_support.with_designators(body))
     finally:

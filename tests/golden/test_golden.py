@@ -4,10 +4,19 @@ from __future__ import annotations
 
 import pytest
 
+from . import score as scores
 from .score import ROOT, score
 
-MUST_PASS = ["01_ros_and_turtle", "02_messages", "03_ros_errors", "03b_no_node", "05_motion_designators", "10_prolog", "11_printing",
-             "13_plan_language"]
+MUST_PASS = [
+    "01_ros_and_turtle",
+    "02_messages",
+    "03_ros_errors",
+    "03b_no_node",
+    "05_motion_designators",
+    "10_prolog",
+    "11_printing",
+    "13_plan_language",
+]
 
 
 @pytest.mark.parametrize("name", MUST_PASS)
@@ -17,7 +26,15 @@ def test_every_answer_is_that_of_the_original(shared, name):
     assert passed == total, output
 
 
-def test_the_readme_shows_the_score(shared):
-    readme = (ROOT / "README.md").read_text()
+def test_the_page_shows_the_score(shared):
+    page = (ROOT / "docs" / "explanation" / "how-near.md").read_text()
     for line in score(sorted((shared / "golden").glob("*.jsonl"))).splitlines():
-        assert line in readme
+        assert line in page
+
+
+def test_without_the_recorded_answers_make_golden_says_so(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(scores, "SHARED", tmp_path)
+    assert scores.main([]) == 1
+    said = capsys.readouterr()
+    assert said.out == "" and said.err == scores.MISSING + "\n"
+    assert "the recorded answers of the original are not here" in said.err

@@ -9,7 +9,7 @@ from cramhy_runtime.kernel import reports
 @pytest.fixture(autouse=True)
 def kernel_alone(monkeypatch):
     """Whatever rooms above were loaded before: frames are described as the kernel itself describes them."""
-    monkeypatch.setattr(kernel, "describe_frame", reports.describe_frame)
+    monkeypatch.setattr(reports.installed, "reporter", reports.PlainReporter())
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def k(start):
 
 @pytest.fixture
 def reported(monkeypatch):
-    """What the hook `unhandled` was told: pairs of the task's name and the exception."""
+    """What the reporter was told of unhandled exceptions: pairs of the task's name and the exception."""
     told = []
-    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: told.append((task.name, exception)))
+    monkeypatch.setattr(kernel.reports.installed.reporter, "unhandled", lambda task, exception: told.append((task.name, exception)))
     return told

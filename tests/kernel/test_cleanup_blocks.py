@@ -110,8 +110,9 @@ def test_a_task_that_is_abandoned_unwinds_though_it_is_shielded(k):
     assert isinstance(task.exception, kernel.Abandoned)
 
 
-@pytest.mark.parametrize("waits", [lambda: kernel.park("nothing"), lambda: kernel.sleep(1000),
-                                   lambda: kernel.spawn(lambda: kernel.park()).join()])
+@pytest.mark.parametrize(
+    "waits", [lambda: kernel.park("nothing"), lambda: kernel.sleep(1000), lambda: kernel.spawn(lambda: kernel.park()).join()]
+)
 def test_every_wait_can_be_ended(k, waits):
     task = kernel.spawn(waits)
     kernel.sleep(1)

@@ -38,7 +38,7 @@ def test_frames_are_described_in_the_terms_of_the_floor_above(k, monkeypatch):
     def plan():
         wait_for_a_pulse()
 
-    monkeypatch.setattr(kernel, "describe_frame", describe)
+    monkeypatch.setattr(kernel.reports.installed.reporter, "describe_frame", describe)
     kernel.spawn(plan, name="recharge")
     with pytest.raises(kernel.Deadlock) as told:
         kernel.park("the end")
@@ -51,7 +51,7 @@ def test_frames_are_described_in_the_terms_of_the_floor_above(k, monkeypatch):
 
 
 def test_a_hook_or_a_reason_that_fails_does_not_spoil_the_report(k, monkeypatch):
-    monkeypatch.setattr(kernel, "describe_frame", lambda frame: 1 / 0)
+    monkeypatch.setattr(kernel.reports.installed.reporter, "describe_frame", lambda frame: 1 / 0)
     with pytest.raises(kernel.Deadlock) as told:
         kernel.park(lambda: {}["missing"])
     lines = str(told.value).splitlines()

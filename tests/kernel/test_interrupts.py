@@ -1,5 +1,6 @@
 """Ctrl-C: reaches the main task wherever it is; a second one gives up cleanup."""
 
+import _thread
 import signal
 import threading
 import time
@@ -10,17 +11,23 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.clocks import Bell
 
 
+ASKING = getattr(signal, "SIGUSR1", signal.SIGINT)
+
+
 @pytest.fixture
 def on_signal():
-    """SIGUSR1 interrupts, as SIGINT does at the prompt."""
-    before = signal.signal(signal.SIGUSR1, lambda *_: kernel.interrupt())
+    """A signal interrupts, as SIGINT does at the prompt."""
+    before = signal.signal(ASKING, lambda *_: kernel.interrupt())
     yield
-    signal.signal(signal.SIGUSR1, before)
+    signal.signal(ASKING, before)
 
 
-def send():
-    """The signal comes to the main thread, whatever that is doing."""
-    signal.pthread_kill(threading.main_thread().ident, signal.SIGUSR1)
+def send(number=ASKING):
+    """The signal comes to the main thread, whatever that is doing. On Windows it ends no wait."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident, number)
+    else:
+        _thread.interrupt_main(number)
 
 
 def wait_long():
@@ -141,7 +148,7 @@ def test_without_a_handler_of_ours_ctrl_c_still_reaches_the_main_task_that_waits
     start()
 
     def busy():
-        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        send(signal.SIGINT)
         while True:
             kernel.checkpoint()
 

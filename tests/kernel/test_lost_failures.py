@@ -110,7 +110,7 @@ def test_base_exceptions_end_the_task_and_nothing_else(k, reported, exception):
 
 
 def test_a_hook_that_fails_does_not_stop_the_scheduler(k, monkeypatch, capsys):
-    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: 1 / 0)
+    monkeypatch.setattr(kernel.reports.installed.reporter, "unhandled", lambda task, exception: 1 / 0)
     kernel.spawn(fail, name="drive")
     kernel.sleep(1)
     err = capsys.readouterr().err

@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.pace import FORGOTTEN, Pace
+from cramhy_runtime.kernel.throttle import FORGOTTEN, Pace
 
 
 class PlayedWall:
@@ -162,6 +162,7 @@ class TestAtThePrompt:
     def prompt(*from_outside):
         """Wait at a prompt until what comes from outside is over; each is a function that is posted, after the one before was read."""
         import _thread
+
         lock = _thread.allocate_lock()
         lock.acquire()
         messages = list(from_outside)
@@ -192,6 +193,7 @@ class TestAtThePrompt:
                 lock.release()
 
         import _thread
+
         lock = _thread.allocate_lock()
         lock.acquire()
         kernel.call_every(0.5, tick, first=0.5)
@@ -201,6 +203,7 @@ class TestAtThePrompt:
 
     def test_a_step_reaches_its_end(self, virtual):
         import _thread
+
         lock = _thread.allocate_lock()
         lock.acquire()
         ticks = []
@@ -212,6 +215,7 @@ class TestAtThePrompt:
 
     def test_a_task_that_is_outside_for_itself_still_holds_the_clock(self, virtual):
         import _thread
+
         lock, other = _thread.allocate_lock(), _thread.allocate_lock()
         lock.acquire()
         other.acquire()

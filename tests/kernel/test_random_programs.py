@@ -149,7 +149,7 @@ class Run:
 
 @pytest.fixture(autouse=True)
 def quiet(monkeypatch):
-    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: None)
+    monkeypatch.setattr(kernel.reports.installed.reporter, "unhandled", lambda task, exception: None)
     yield
     kernel.stop()
 

@@ -128,13 +128,13 @@ def test_tasks_run_on_all_processors_although_they_are_woken_where_the_waker_was
 
 
 def test_where_processors_cannot_be_chosen_everything_goes_on_without(start, monkeypatch):
-    from cramhy_runtime.kernel.backends import nearness
+    from cramhy_runtime.kernel.backends import affinity
 
     def forbidden(*_):
         raise PermissionError
 
     monkeypatch.setattr(os, "sched_setaffinity", forbidden, raising=False)
-    assert nearness.nearness() is None
-    monkeypatch.setattr(threads, "_near", None)
+    assert affinity.affinity() is None
+    monkeypatch.setattr(threads, "_affinity", None)
     start()
     assert kernel.spawn(lambda: kernel.sleep(1) or "woken").join() == "woken"

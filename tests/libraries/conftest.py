@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.lisp.packages import COMMON_LISP, ensure_package
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.ground.conditions import Condition
 
 TESTS = """
 (defpackage :fiveam-tests (:use :cl :fiveam))
@@ -34,6 +34,7 @@ TESTS = """
 @pytest.fixture
 def printed(values, session, capsys):
     """A function: what a form prints after the tests above were defined; addresses are ``{ID}``, blanks at line ends are gone."""
+
     def run(form):
         session.evaluate_text(TESTS, "<test>")
         session.package = "FIVEAM-TESTS"
@@ -46,7 +47,9 @@ def printed(values, session, capsys):
 
 
 def test_a_suite_with_its_suites(printed):
-    assert printed("(print (run! 'all))") == """\
+    assert (
+        printed("(print (run! 'all))")
+        == """\
 Running test suite ALL
  Running test suite SUB
   Running test ERRING .X
@@ -180,10 +183,13 @@ Unexpected TROUBLE.
 
 
 NIL"""
+    )
 
 
 def test_one_test_and_a_list(printed):
-    assert printed("(print (run! 'good))") == """\
+    assert (
+        printed("(print (run! 'good))")
+        == """\
 Running test GOOD .
  Did 1 check.
     Pass: 1 (100%)
@@ -192,12 +198,15 @@ Running test GOOD .
 
 
 T"""
+    )
     assert printed("(run! '(good dep2))").startswith("Running test GOOD .\nRunning test DEP2 .\n Did 2 checks.")
 
 
 def test_without_names_and_with_another_explainer(printed):
-    assert printed("(explain (make-instance '5am::simple-text-explainer) (run 'sub :print-names nil) t)") == \
-        ".X...\n Ran 7 checks, 4 passed, 2 skipped  and 1 failed."
+    assert (
+        printed("(explain (make-instance '5am::simple-text-explainer) (run 'sub :print-names nil) t)")
+        == ".X...\n Ran 7 checks, 4 passed, 2 skipped  and 1 failed."
+    )
 
 
 def test_run_all_tests(printed):
@@ -206,8 +215,10 @@ def test_run_all_tests(printed):
 
 
 def test_skipped_and_verbose(printed):
-    assert printed("""(in-suite sub) (test skips (is (= 1 1)) (skip "later ~a" 3) (skip "simply") (is (= 1 2) "differ"))
-                      (let ((5am:*verbose-failures* t)) (run! 'skips))""") == """\
+    assert (
+        printed("""(in-suite sub) (test skips (is (= 1 1)) (skip "later ~a" 3) (skip "simply") (is (= 1 2) "differ"))
+                      (let ((5am:*verbose-failures* t)) (run! 'skips))""")
+        == """\
 Running test SKIPS .ssssf
  Did 4 checks.
     Pass: 1 (25%)
@@ -226,6 +237,7 @@ Running test SKIPS .ssssf
      simply
  SKIPS []:
      later 3"""
+    )
 
 
 def test_fixtures(printed):
@@ -248,7 +260,8 @@ def test_random_data(printed):
 
 def test_random_data_that_falsifies(printed):
     text = printed("""(test false-data (for-all ((a (gen-one-element 7))) (is (= a 8)))) (run! 'false-data)""")
-    assert """\
+    assert (
+        """\
  FALSE-DATA in SUB []:
       Falsifiable with (7)
  Results collected with failure data:
@@ -276,7 +289,9 @@ def test_random_data_that_falsifies(printed):
 7
 
 
-    --------------------------------""" in text
+    --------------------------------"""
+        in text
+    )
     assert "Guard conditions never passed" in printed("(test guard (for-all ((a (gen-one-element 7) (= a 8))) (is (= a 8)))) (run! 'guard)")
     assert "No tests" in printed("(test nothing (for-all ((a (gen-integer))) a)) (run! 'nothing)")
 
@@ -286,17 +301,20 @@ def test_running_again_and_when_defined(printed):
     assert "Running test NOW ." in printed("(let ((*run-test-when-defined* t)) (eval '(test now (is (= 1 1)))))")
 
 
-@pytest.mark.parametrize("form, text", [
-    ("(is 5)", "Argument to IS must be a list, not 5"),
-    ("(in-suite no-such)", "Unknown suite NO-SUCH."),
-    ("(def-suite y :in no-such)", "Unknown suite NO-SUCH."),
-    ("(with-fixture none () 1)", "Unknown fixture NONE."),
-    ("(run! 'no-such)", "Unknown test or suite NO-SUCH."),
-    ("(progn (test (x :depends-on no-such) (is (= 1 1))) (run! 'x))", "Test X depends on NO-SUCH, which is no test."),
-    ("(progn (test (r1 :depends-on r2) (is (= 1 1))) (test (r2 :depends-on r1) (is (= 1 1))) (run! 'r1))", ": R1 -> R2 -> R1."),
-    ("(let ((*on-failure* :debug)) (test bad (is (= 1 2) \"differ\")) (run! 'bad))", "The following check failed: (= 1 2)\ndiffer."),
-    ("(debug! 'erring)", "Unexpected TROUBLE"),
-])
+@pytest.mark.parametrize(
+    "form, text",
+    [
+        ("(is 5)", "Argument to IS must be a list, not 5"),
+        ("(in-suite no-such)", "Unknown suite NO-SUCH."),
+        ("(def-suite y :in no-such)", "Unknown suite NO-SUCH."),
+        ("(with-fixture none () 1)", "Unknown fixture NONE."),
+        ("(run! 'no-such)", "Unknown test or suite NO-SUCH."),
+        ("(progn (test (x :depends-on no-such) (is (= 1 1))) (run! 'x))", "Test X depends on NO-SUCH, which is no test."),
+        ("(progn (test (r1 :depends-on r2) (is (= 1 1))) (test (r2 :depends-on r1) (is (= 1 1))) (run! 'r1))", ": R1 -> R2 -> R1."),
+        ('(let ((*on-failure* :debug)) (test bad (is (= 1 2) "differ")) (run! \'bad))', "The following check failed: (= 1 2)\ndiffer."),
+        ("(debug! 'erring)", "Unexpected TROUBLE"),
+    ],
+)
 def test_what_is_wrong(printed, form, text):
     with pytest.raises(Condition) as caught:
         printed(form)
@@ -304,6 +322,8 @@ def test_what_is_wrong(printed, form, text):
 
 
 def test_results(printed):
-    assert printed("""(format t "~{~S~%~}" (mapcar #'length (multiple-value-list (results-status (run 'sub :print-names nil)))))""") == \
-        ".X...0\n1\n2"
+    assert (
+        printed("""(format t "~{~S~%~}" (mapcar #'length (multiple-value-list (results-status (run 'sub :print-names nil)))))""")
+        == ".X...0\n1\n2"
+    )
     assert printed("(format t \"~S\" (list (get-test 'no-such :none) (rem-test 'good) (get-test 'good)))") == "(:NONE T NIL)"

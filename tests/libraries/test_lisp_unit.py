@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.lisp.conditions import Condition
+from cramhy_runtime.ground.conditions import Condition
 
 TESTS = """
 (defpackage :lisp-unit-tests (:use :cl :lisp-unit))
@@ -31,6 +31,7 @@ TESTS = """
 @pytest.fixture
 def printed(values, session, capsys):
     """A function: what a form prints after the tests above were defined."""
+
     def run(form):
         try:
             session.evaluate_text(TESTS, "<test>")
@@ -45,7 +46,9 @@ def printed(values, session, capsys):
 
 
 def test_the_summary(printed):
-    assert printed("(princ (run-tests))") == """Unit Test Summary
+    assert (
+        printed("(princ (run-tests))")
+        == """Unit Test Summary
  | 14 assertions total
  | 8 passed
  | 6 failed
@@ -53,10 +56,13 @@ def test_the_summary(printed):
  | 0 missing tests
 
 #<TEST-RESULTS-DB Total(14) Passed(8) Failed(6) Errors(1)>"""
+    )
 
 
 def test_failures_errors_and_missing_tests(printed):
-    assert printed("(let ((*print-failures* t) (*print-errors* t)) (run-tests '(maximum errors nothing)))") == """\
+    assert (
+        printed("(let ((*print-failures* t) (*print-errors* t)) (run-tests '(maximum errors nothing)))")
+        == """\
  | Failed Form: (MY-MAX 2 5)
  | Expected 5 but saw 2
  | 2 => 2
@@ -95,6 +101,7 @@ Unit Test Summary
  | 1 missing tests
 
 """
+    )
 
 
 def test_an_expansion_that_differs(printed):
@@ -106,9 +113,11 @@ def test_an_expansion_that_differs(printed):
 
 
 def test_details_of_a_run_afterwards(printed):
-    assert printed("""(let ((results (let ((lisp-unit:*summarize-results* nil)) (run-tests '(maximum good none)))))
+    assert (
+        printed("""(let ((results (let ((lisp-unit:*summarize-results* nil)) (run-tests '(maximum good none)))))
                         (format t "~S~%" (list (test-names results) (failed-tests results) (error-tests results) (missing-tests results)))
-                        (print-failures results))""") == """\
+                        (print-failures results))""")
+        == """\
 ((MAXIMUM GOOD) (MAXIMUM) NIL (NONE))
  | Failed Form: (MY-MAX 2 5)
  | Expected 5 but saw 2
@@ -124,10 +133,13 @@ def test_details_of_a_run_afterwards(printed):
 MAXIMUM: 1 assertions passed, 2 failed.
 
 """
+    )
 
 
 def test_tap(printed):
-    assert printed("(let ((*summarize-results* nil)) (write-tap (run-tests '(good maximum))))") == """TAP version 13
+    assert (
+        printed("(let ((*summarize-results* nil)) (write-tap (run-tests '(good maximum))))")
+        == """TAP version 13
 1..2
 ok 1 GOOD
 not ok 2 MAXIMUM
@@ -145,50 +157,74 @@ not ok 2 MAXIMUM
   # |
   ...
 """
+    )
 
 
 def test_managing_tests_and_tags(printed):
-    assert printed("""(print (list (list-tests) (list-tags) (tagged-tests '(:max)) (test-code 'good) (test-documentation 'maximum)))
+    assert (
+        printed("""(print (list (list-tests) (list-tags) (tagged-tests '(:max)) (test-code 'good) (test-documentation 'maximum)))
                       (remove-tests '(maximum)) (remove-tags '(:max))
-                      (print (list (list-tests) (list-tags) (tagged-tests :all)))""").split() == """
+                      (print (list (list-tests) (list-tags) (tagged-tests :all)))""").split()
+        == """
 ((MAXIMUM ERRORS GOOD) (:MAX :BASIC) (MAXIMUM)
  ((ASSERT-NIL NIL) (ASSERT-EQUALP "A" "a") (ASSERT-EQUALITY #'STRING= "A" 'A :X) (ASSERT-EQ 'A 'A)) "Tests of MY-MAX.")
 ((ERRORS GOOD) (:BASIC) (ERRORS))""".split()
+    )
 
 
 def test_a_run_signals_its_results_when_asked(printed):
-    assert printed("""(signal-results t)
+    assert (
+        printed("""(signal-results t)
                       (let ((*summarize-results* nil))
                         (handler-bind ((test-run-complete (lambda (c) (print (test-names (results c)))))) (run-tags '(:max))))
-                      (signal-results nil)""").strip() == "(MAXIMUM)"
+                      (signal-results nil)""").strip()
+        == "(MAXIMUM)"
+    )
 
 
 def test_an_endless_recursion_ends_its_test_only(printed):
     assert "2 execution errors" in printed("(defun endless (x) (+ 1 (endless x))) (define-test recursion (endless 1)) (run-tests)")
 
 
-@pytest.mark.parametrize("form, value", [
-    ("(lisp-unit:float-equal 1.0 1.0000001)", "T"), ("(lisp-unit:float-equal 1.0 1.001)", "NIL"),
-    ("(lisp-unit:float-equal 1.0 1.001 0.01)", "T"), ("(lisp-unit:float-equal 0.0 0.0)", "T"),
-    ("(lisp-unit:float-equal 1d0 1.0000001d0)", "NIL"),
-    ("(lisp-unit:sigfig-equal 123.41 123.44)", "T"), ("(lisp-unit:sigfig-equal 123.4 123.5)", "NIL"),
-    ("(lisp-unit:sigfig-equal 0.00123 0.00124 2)", "T"),
-    ("(lisp-unit:norm '(3 4) 2)", "5.0"), ("(lisp-unit:norm #(3 -4))", "7"), ("(lisp-unit:norm #2A((3 4)) :infinity)", "4"),
-    ("(lisp-unit:norm-equal '(1.0 2.0) '(1.0 2.0))", "T"), ("(lisp-unit:norm-equal '(1.0 2.0) '(1.0 3.0))", "NIL"),
-    ("(lisp-unit:number-equal 2 2.0)", "T"), ("(lisp-unit:number-equal 2 2.0 nil t)", "NIL"), ("(lisp-unit:number-equal 1/3 1/3)", "T"),
-    ("(lisp-unit:numerical-equal '(1 #(2.0 3)) '(1.0 (2 3)))", "T"), ("(lisp-unit:numerical-equal '(1) '(1 2))", "NIL"),
-    ("(lisp-unit:rational-equal '(1/2 3) '(1/2 3))", "T"), ("(lisp-unit:relative-error 4 5)", "1/4"),
-    ("(lisp-unit:set-equal '(1 2) '(2 1))", "T"), ("(lisp-unit:set-equal '(\"a\") '(\"A\") :test #'string-equal)", "T"),
-    ("(lisp-unit:logically-equal 1 t)", "T"),
-])
+@pytest.mark.parametrize(
+    "form, value",
+    [
+        ("(lisp-unit:float-equal 1.0 1.0000001)", "T"),
+        ("(lisp-unit:float-equal 1.0 1.001)", "NIL"),
+        ("(lisp-unit:float-equal 1.0 1.001 0.01)", "T"),
+        ("(lisp-unit:float-equal 0.0 0.0)", "T"),
+        ("(lisp-unit:float-equal 1d0 1.0000001d0)", "NIL"),
+        ("(lisp-unit:sigfig-equal 123.41 123.44)", "T"),
+        ("(lisp-unit:sigfig-equal 123.4 123.5)", "NIL"),
+        ("(lisp-unit:sigfig-equal 0.00123 0.00124 2)", "T"),
+        ("(lisp-unit:norm '(3 4) 2)", "5.0"),
+        ("(lisp-unit:norm #(3 -4))", "7"),
+        ("(lisp-unit:norm #2A((3 4)) :infinity)", "4"),
+        ("(lisp-unit:norm-equal '(1.0 2.0) '(1.0 2.0))", "T"),
+        ("(lisp-unit:norm-equal '(1.0 2.0) '(1.0 3.0))", "NIL"),
+        ("(lisp-unit:number-equal 2 2.0)", "T"),
+        ("(lisp-unit:number-equal 2 2.0 nil t)", "NIL"),
+        ("(lisp-unit:number-equal 1/3 1/3)", "T"),
+        ("(lisp-unit:numerical-equal '(1 #(2.0 3)) '(1.0 (2 3)))", "T"),
+        ("(lisp-unit:numerical-equal '(1) '(1 2))", "NIL"),
+        ("(lisp-unit:rational-equal '(1/2 3) '(1/2 3))", "T"),
+        ("(lisp-unit:relative-error 4 5)", "1/4"),
+        ("(lisp-unit:set-equal '(1 2) '(2 1))", "T"),
+        ('(lisp-unit:set-equal \'("a") \'("A") :test #\'string-equal)', "T"),
+        ("(lisp-unit:logically-equal 1 t)", "T"),
+    ],
+)
 def test_comparisons(values, form, value):
     assert values(form) == value
 
 
-@pytest.mark.parametrize("form, text", [
-    ('(lisp-unit:run-tests :all :no-such-package)', "The name :NO-SUCH-PACKAGE does not designate any package."),
-    ('(lisp-unit:define-test "text" 1)', 'DEFINE-TEST: the name of a test is a symbol, not "text".'),
-])
+@pytest.mark.parametrize(
+    "form, text",
+    [
+        ("(lisp-unit:run-tests :all :no-such-package)", "The name :NO-SUCH-PACKAGE does not designate any package."),
+        ('(lisp-unit:define-test "text" 1)', 'DEFINE-TEST: the name of a test is a symbol, not "text".'),
+    ],
+)
 def test_what_is_wrong(values, form, text):
     with pytest.raises(Condition) as caught:
         values(form)
@@ -196,5 +232,5 @@ def test_what_is_wrong(values, form, text):
 
 
 def test_a_package_without_tests_is_a_warning(values, capsys):
-    assert values('(defpackage :empty-package) (lisp-unit:run-tests :all :empty-package)') == "NIL"
+    assert values("(defpackage :empty-package) (lisp-unit:run-tests :all :empty-package)") == "NIL"
     assert "No tests defined for package: EMPTY-PACKAGE" in "".join(capsys.readouterr())

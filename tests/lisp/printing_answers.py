@@ -8,16 +8,16 @@ compiler, so these tests fail only for what printing does.
 import json
 from pathlib import Path
 
-from cramhy_runtime.lisp import faces
-from cramhy_runtime.lisp.collections import array_making
-from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.data import Character, Cons, Keyword, Symbol, lisp_list, one, python_list
-from cramhy_runtime.lisp.format import format
-from cramhy_runtime.lisp.packages import find_package, sym
-from cramhy_runtime.lisp.printer import pprint_dispatch, pretty, printer
-from cramhy_runtime.lisp.printer.print_controls import bound
-from cramhy_runtime.lisp.reader.reader import read_from_string
-from cramhy_runtime.lisp.streams import stream_functions
+from cramhy_runtime.languages.commonlisp.packages import face_definition as faces
+from cramhy_runtime.languages.commonlisp.collections import array_making
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import Character, Cons, Keyword, Symbol, lisp_list, one, python_list
+from cramhy_runtime.languages.commonlisp.format import format
+from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.languages.commonlisp.printer import pprint_dispatch, pretty, printer
+from cramhy_runtime.languages.commonlisp.printer.print_controls import bound
+from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
+from cramhy_runtime.languages.commonlisp.streams import stream_functions
 
 FOLDER = Path(__file__).parent / "printing"
 FUNCTIONS = {
@@ -87,9 +87,7 @@ def _logical_block(specification, body):
         with bound(stream, out):
             _in_order(body)
 
-    pretty.call_logical_block(
-        evaluate(stream), pretty.NO_OBJECT, run, prefix, given.get("SUFFIX", ""), "PER-LINE-PREFIX" in given
-    )
+    pretty.call_logical_block(evaluate(stream), pretty.NO_OBJECT, run, prefix, given.get("SUFFIX", ""), "PER-LINE-PREFIX" in given)
 
 
 def answer(text):

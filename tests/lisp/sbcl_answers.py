@@ -11,15 +11,16 @@ from functools import reduce
 from pathlib import Path
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions, faces
-from cramhy_runtime.lisp.data import Cons, Keyword, Symbol, all_values, list_from, one, truth
-from cramhy_runtime.lisp.packages import find_package
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.reader.reader import read_from_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.packages import face_definition as faces
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, all_values, list_from, one, truth
+from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 
-MODULES = """evaluation.functions equality collections.lists collections.list_search collections.sequences
+MODULES = """ground.functions ground.equality collections.lists collections.list_search collections.sequences
     collections.sequence_mapping collections.sequence_search collections.sequence_change collections.sequence_sort
-    collections.strings collections.characters collections.arrays collections.array_making collections.hash_tables""".split()
+    collections.strings collections.characters collections.arrays collections.array_making ground.hash_tables""".split()
 FOLDER = Path(__file__).parent / "sbcl"
 
 
@@ -34,17 +35,28 @@ def _chain(relation):
 
 
 FUNCTIONS = {
-    "+": lambda *numbers: sum(numbers), "-": lambda *numbers: reduce(operator.sub, numbers) if numbers[1:] else -numbers[0],
-    "*": lambda *numbers: reduce(operator.mul, numbers, 1), "1+": lambda number: number + 1, "1-": lambda number: number - 1,
-    "=": _chain(operator.eq), "<": _chain(operator.lt), ">": _chain(operator.gt),
-    "EVENP": lambda number: True if number % 2 == 0 else None, "ODDP": lambda number: True if number % 2 else None,
+    "+": lambda *numbers: sum(numbers),
+    "-": lambda *numbers: reduce(operator.sub, numbers) if numbers[1:] else -numbers[0],
+    "*": lambda *numbers: reduce(operator.mul, numbers, 1),
+    "1+": lambda number: number + 1,
+    "1-": lambda number: number - 1,
+    "=": _chain(operator.eq),
+    "<": _chain(operator.lt),
+    ">": _chain(operator.gt),
+    "EVENP": lambda number: True if number % 2 == 0 else None,
+    "ODDP": lambda number: True if number % 2 else None,
     "NUMBERP": lambda thing: True if isinstance(thing, (int, float)) and thing is not True else None,
-    "SYMBOLP": lambda thing: True if isinstance(thing, Symbol) else None, "GENSYM": lambda: Symbol("G"),
-    "EXPT": operator.pow, "MOD": operator.mod, "ABS": abs,
+    "SYMBOLP": lambda thing: True if isinstance(thing, Symbol) else None,
+    "GENSYM": lambda: Symbol("G"),
+    "EXPT": operator.pow,
+    "MOD": operator.mod,
+    "ABS": abs,
 }
 SETTERS = {}
 for _module in MODULES:
-    _module = importlib.import_module("cramhy_runtime.lisp." + _module)
+    _module = importlib.import_module(
+        ("cramhy_runtime." if _module.startswith("ground.") else "cramhy_runtime.languages.commonlisp.") + _module
+    )
     for _name in _module.LISP_NAMES.split():
         _function = getattr(_module, faces.python_name(_name), None) or getattr(_module, faces.python_name(_name) + "_")
         FUNCTIONS[_name.upper()] = faces.lispify(_function)

@@ -3,14 +3,14 @@
 import sys
 from pathlib import Path
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp import coverage
+from cramhy_runtime.session import boot
+from cramhy_runtime.languages.commonlisp import coverage
 
 PAGE = Path(__file__).parents[2] / "docs" / "common-lisp.md"
 
 
 def text():
-    image.boot()
+    boot()
     return coverage.page()
 
 

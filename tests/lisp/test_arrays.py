@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.collections import array_making, arrays
-from cramhy_runtime.lisp.collections.vectors import LispArray, TypedVector, Vector, bit_vector
-from cramhy_runtime.lisp.data import Character, DoubleFloat, LispString, lisp_list, list_from, python_list
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.collections import array_making, arrays
+from cramhy_runtime.ground.arrays import LispArray, TypedVector, Vector, array_type, bit_vector
+from cramhy_runtime.ground.data import Character, DoubleFloat, LispString, lisp_list, list_from, python_list
+from cramhy_runtime.ground.packages import sym
 
 
 @pytest.fixture(autouse=True)
@@ -34,8 +34,7 @@ def test_the_plainest_object_is_chosen():
 def test_an_index_outside_is_an_error_with_the_text_of_sbcl():
     with pytest.raises(arrays.InvalidArrayIndex) as caught:
         arrays.aref([1, 2], 5)
-    assert " ".join(caught.value.report().split()) == \
-        "Invalid index 5 for (SIMPLE-VECTOR 2), should be a non-negative integer below 2."
+    assert " ".join(caught.value.report().split()) == "Invalid index 5 for (SIMPLE-VECTOR 2), should be a non-negative integer below 2."
 
 
 def test_true_is_no_index():
@@ -87,7 +86,7 @@ def test_floats_of_both_kinds_fit_into_float_arrays_and_integers_do_not():
 def test_a_bit_vector_of_the_reader_is_one():
     assert arrays.bit_vector_p(bit_vector([1, 0])) is True
     assert arrays.array_element_type(bit_vector([])) is sym("BIT")
-    assert python_list(arrays.array_type(bit_vector([1]))) == [sym("SIMPLE-BIT-VECTOR"), 1]
+    assert python_list(array_type(bit_vector([1]))) == [sym("SIMPLE-BIT-VECTOR"), 1]
 
 
 @given(st.lists(st.integers(0, 4), min_size=1, max_size=3), st.data())

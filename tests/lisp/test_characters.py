@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.collections import characters
-from cramhy_runtime.lisp.data import Character
+from cramhy_runtime.languages.commonlisp.collections import characters
+from cramhy_runtime.ground.data import Character
 
 any_character = st.characters().map(Character)
 
@@ -34,8 +34,10 @@ def test_a_name_leads_back_to_its_character(character):
 @given(any_character)
 def test_a_character_with_case_comes_back_from_the_other_case(character):
     if characters.both_case_p(character):
-        assert character in (characters.char_upcase(characters.char_downcase(character)),
-                             characters.char_downcase(characters.char_upcase(character)))
+        assert character in (
+            characters.char_upcase(characters.char_downcase(character)),
+            characters.char_downcase(characters.char_upcase(character)),
+        )
     else:
         assert characters.char_upcase(character) is characters.char_downcase(character) is character
 

@@ -2,16 +2,18 @@
 
 import pytest
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.data import Cons, lisp_list
-from cramhy_runtime.lisp.objects import class_definition, classes, generic, instances, slots
-from cramhy_runtime.lisp.objects.builtin_classes import lisp_mro
-from cramhy_runtime.lisp.objects.classes import class_name, find_class, make_instance
-from cramhy_runtime.lisp.objects.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
-from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import Cons, lisp_list
+from cramhy_runtime.languages.commonlisp.objects import class_definition, classes, instances, slots
+from cramhy_runtime.ground import generic_functions as generic
+from cramhy_runtime.languages.commonlisp.objects.builtin_classes import lisp_mro
+from cramhy_runtime.languages.commonlisp.objects.classes import class_name, find_class
+from cramhy_runtime.languages.commonlisp.objects.instances import make_instance
+from cramhy_runtime.ground.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
+from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
 
-image.boot()
+boot()
 HOME = find_package("CLOS-TESTS") or make_package("CLOS-TESTS", use=("COMMON-LISP",))
 X, Y, NAME = keyword("X"), keyword("Y"), keyword("NAME")
 
@@ -51,8 +53,10 @@ def test_an_invalid_initarg_names_the_class():
     define("STRICT", slots=[slot("X", X)])
     with pytest.raises(instances.InitargError) as problem:
         make_instance(here("STRICT"), keyword("BAD"), 1)
-    assert str(problem.value) == ("Invalid initialization argument:\n  :BAD\nin call for class #<STANDARD-CLASS CLOS-TESTS::STRICT>.\n"
-                                  "See also:\nThe ANSI Standard, Section 7.1.2")
+    assert str(problem.value) == (
+        "Invalid initialization argument:\n  :BAD\nin call for class #<STANDARD-CLASS CLOS-TESTS::STRICT>.\n"
+        "See also:\nThe ANSI Standard, Section 7.1.2"
+    )
 
 
 def test_a_class_that_does_not_exist_is_an_error_of_the_class_that_sbcl_signals():
@@ -81,8 +85,14 @@ def test_slots_of_two_packages_with_one_name_are_two_slots():
 
 def test_the_precedence_list_is_that_of_clos():
     # The example of ANSI 4.3.5.2, for which Python's own order is another one.
-    for name, supers in (("FOOD", ()), ("SPICE", ("FOOD",)), ("FRUIT", ("FOOD",)), ("CINNAMON", ("SPICE",)), ("APPLE", ("FRUIT",)),
-                         ("PIE", ("APPLE", "CINNAMON"))):
+    for name, supers in (
+        ("FOOD", ()),
+        ("SPICE", ("FOOD",)),
+        ("FRUIT", ("FOOD",)),
+        ("CINNAMON", ("SPICE",)),
+        ("APPLE", ("FRUIT",)),
+        ("PIE", ("APPLE", "CINNAMON")),
+    ):
         define(name, [here(parent) for parent in supers])
     names = [class_name(cls).name for cls in find_class(here("PIE")).__mro__[:6]]
     assert names == ["PIE", "APPLE", "FRUIT", "CINNAMON", "SPICE", "FOOD"]
@@ -160,9 +170,11 @@ def test_no_applicable_method_is_told_with_function_and_arguments():
     lonely = generic.generic("CLOS-TESTS::LONELY", "(object)")
     with pytest.raises(NoApplicableMethodError) as problem:
         lonely(None)
-    assert str(problem.value) == ("There is no applicable method for the generic function\n"
-                                  "  #<STANDARD-GENERIC-FUNCTION CLOS-TESTS::LONELY (0)>\nwhen called with arguments\n  (NIL).\n"
-                                  "See also:\nThe ANSI Standard, Section 7.6.6")
+    assert str(problem.value) == (
+        "There is no applicable method for the generic function\n"
+        "  #<STANDARD-GENERIC-FUNCTION CLOS-TESTS::LONELY (0)>\nwhen called with arguments\n  (NIL).\n"
+        "See also:\nThe ANSI Standard, Section 7.6.6"
+    )
     assert [restart.name.name for restart in problem.value.restarts][:1] == ["RETRY"]
 
 
@@ -171,8 +183,9 @@ def test_no_primary_method_is_told_too():
     before.method(None, qualifier="before")(lambda obj: None)
     with pytest.raises(NoPrimaryMethodError) as problem:
         before(1)
-    assert str(problem.value).startswith("There is no primary method for the generic function\n"
-                                         "  #<STANDARD-GENERIC-FUNCTION CLOS-TESTS::ONLY-BEFORE (1)>\n")
+    assert str(problem.value).startswith(
+        "There is no primary method for the generic function\n  #<STANDARD-GENERIC-FUNCTION CLOS-TESTS::ONLY-BEFORE (1)>\n"
+    )
     assert str(problem.value).endswith("Section 7.6.6.2")
 
 
@@ -243,8 +256,12 @@ def test_a_method_that_does_not_fit_is_refused():
 
 
 def test_a_condition_is_an_exception_with_slots_and_a_report():
-    class_definition.define_condition(here("LOST"), [sym("ERROR")], [slot("PLACE", keyword("PLACE"), initform=lambda: "home")],
-                                      report=lambda condition, stream: stream.write(f"lost at {condition.place}"))
+    class_definition.define_condition(
+        here("LOST"),
+        [sym("ERROR")],
+        [slot("PLACE", keyword("PLACE"), initform=lambda: "home")],
+        report=lambda condition, stream: stream.write(f"lost at {condition.place}"),
+    )
     cls = find_class(here("LOST"))
     lost = make_instance(cls, keyword("PLACE"), "sea")
     assert isinstance(lost, Exception) and str(lost) == "lost at sea"
@@ -255,8 +272,9 @@ def test_a_condition_is_an_exception_with_slots_and_a_report():
 def test_slots_of_conditions_do_not_hide_what_exceptions_need():
     names = ("ARGS", "REPORT", "CONTEXT")
     class_definition.define_condition(here("ODD"), [sym("SIMPLE-ERROR")], [slot(name, keyword(name)) for name in names])
-    odd = make_instance(find_class(here("ODD")), keyword("ARGS"), 1, keyword("REPORT"), 2, keyword("CONTEXT"), 3,
-                        keyword("FORMAT-CONTROL"), "odd")
+    odd = make_instance(
+        find_class(here("ODD")), keyword("ARGS"), 1, keyword("REPORT"), 2, keyword("CONTEXT"), 3, keyword("FORMAT-CONTROL"), "odd"
+    )
     assert str(odd) == "odd" and odd.args == ()
     assert [slots.slot_value(odd, here(name)) for name in names] == [1, 2, 3]
 

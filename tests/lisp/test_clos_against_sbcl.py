@@ -1,5 +1,4 @@
-"""CLOS, structures and conditions answer as in SBCL 2.2.9: see ``test_numbers_against_sbcl.py`` for how to read this.
-"""
+"""CLOS, structures and conditions answer as in SBCL 2.2.9: see ``test_numbers_against_sbcl.py`` for how to read this."""
 
 # ruff: noqa: E501
 
@@ -7,7 +6,7 @@ from __future__ import annotations
 
 from test_numbers_against_sbcl import check
 
-OBJECTS = r'''
+OBJECTS = r"""
 (defclass a () ((x :initarg :x :accessor ax) (y :initform 2 :reader ay :writer set-ay) (z :allocation :class :initform 9)))
 (defclass b (a) ((w :initarg :w)) (:default-initargs :x 77))
 (defstruct tm speed (angle 2))
@@ -246,7 +245,7 @@ OBJECTS = r'''
 => SB-PCL::NO-APPLICABLE-METHOD-ERROR: There is no applicable method for the generic function #<STANDARD-GENERIC-FUNCTION (COMMON-LISP:SETF COMMON-LISP-USER::FOO3) (1)> when called with arguments (1 "a"). See also: The ANSI Standard, Section 7.6.6
 (describe (make-tm))
 =>
-'''
+"""
 
 
 def test_objects_and_their_errors_answer_as_in_sbcl():

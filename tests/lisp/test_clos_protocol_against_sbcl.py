@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from test_numbers_against_sbcl import check
 
-PROTOCOLS = r'''
+PROTOCOLS = r"""
 (defvar *log* nil)
 (defun note (x) (push x *log*))
 (defmacro logged (form) `(let ((*log* nil)) (let ((r ,form)) (list r (reverse *log*)))))
@@ -401,7 +401,7 @@ PROTOCOLS = r'''
 => #<STANDARD-CLASS COMMON-LISP-USER::REQ>
 (type-of (make-instance 'alias :a 1))
 => REQ
-'''
+"""
 
 
 def test_protocols_answer_as_in_sbcl():

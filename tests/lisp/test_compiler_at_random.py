@@ -10,7 +10,7 @@ from __future__ import annotations
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.lisp.data import Cons
+from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.repl.session import Session
 
 # A program is a nested tuple; strings are symbols. ``n`` makes a number of anything, so that ``+`` always has numbers.
@@ -42,8 +42,11 @@ def programs(draw, names=Names(), depth=4):
     if depth <= 0:
         kind = draw(st.sampled_from(simple))
     else:
-        kinds = simple + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and
+        kinds = (
+            simple
+            + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and
             or remember values tagbody < do""".split()
+        )
         kinds += ["setq"] * 4 * bool(names.variables) + ["return-from"] * 3 * bool(names.blocks)
         kinds += ["call"] * 2 * bool(names.functions) + ["throw"] * bool(names.tags)
         kind = draw(st.sampled_from(kinds))
@@ -67,8 +70,11 @@ def programs(draw, names=Names(), depth=4):
             inner = names.plus(variables=(new,))
             return ("let*", ((new, expression()), ("d", expression(inner))), *body(inner.plus(variables=("d",))))
         case "dotimes":
-            return ("dotimes", (new, draw(st.integers(0, 3)), expression(names.plus(variables=(new,), blocks=("nil",)))),
-                    *statements(names.plus(variables=(new,), blocks=("nil",))))
+            return (
+                "dotimes",
+                (new, draw(st.integers(0, 3)), expression(names.plus(variables=(new,), blocks=("nil",)))),
+                *statements(names.plus(variables=(new,), blocks=("nil",))),
+            )
         case "dolist":
             return ("dolist", (new, ("list", *body())), *statements(names.plus(variables=(new,), blocks=("nil",))))
         case "do":
@@ -254,7 +260,7 @@ def values(form, env):
         case "lambda":
             return [function(rest[0], rest[1:], env)]
         case "flet" | "labels":
-            (name, parameters, *forms), = rest[0]
+            ((name, parameters, *forms),) = rest[0]
             inner = dict(env)
             inner["function", name] = function(parameters, [("block", name, *forms)], inner if head == "labels" else env)
             return sequence(rest[1:], inner)
@@ -324,6 +330,7 @@ def test_the_compiler_and_the_interpreter_agree(program):
         wanted = reference(program)
     except (TooLong, RecursionError):
         return
-    (got,) = _session[0].evaluate_text(f"(let ((closures nil)) (let ((r {text(program)})) (list r (mapcar #'funcall closures))))"
-                                       .replace("(push ", "(remember "))
+    (got,) = _session[0].evaluate_text(
+        f"(let ((closures nil)) (let ((r {text(program)})) (list r (mapcar #'funcall closures))))".replace("(push ", "(remember ")
+    )
     assert plain(got) == wanted, text(program)

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-from cramhy_runtime.lisp.streams import streams
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl import json_lines
 from cramhy_runtime.repl.session import Session
 
@@ -37,7 +37,7 @@ def lisp(monkeypatch, tmp_path):
 
 
 def printed(values):
-    from cramhy_runtime.lisp.printer.printer import prin1_to_string
+    from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
     return [prin1_to_string(value) for value in values]
 
@@ -54,6 +54,7 @@ NOTICE = """(defun notices (form)
 (defgeneric gf (a b))
 (defclass cl () (a b))
 (defstruct m15 a b)"""
+
 
 def recorded():
     text = (Path(__file__).parent / "sbcl" / "warnings.txt").read_text().split("\n", 1)[1]
@@ -86,7 +87,9 @@ def test_a_file_is_warned_of_at_its_end_in_the_order_of_its_text(lisp, tmp_path)
   (declare (ignore now))
   (turn-of x :quick t))
 """)
-    assert lisp.said('(load "plan.lisp")') == """\
+    assert (
+        lisp.said('(load "plan.lisp")')
+        == """\
 ; caught STYLE-WARNING:
 ;   The variable ANGLE is defined but never used.
 ;   at plan.lisp:1:21
@@ -126,6 +129,7 @@ def test_a_file_is_warned_of_at_its_end_in_the_order_of_its_text(lisp, tmp_path)
 ;       ^
 ;   Did you mean TURN-OFF?
 """
+    )
 
 
 def test_a_file_that_is_loaded_without_being_compiled_is_silent(lisp, tmp_path, monkeypatch):
@@ -146,7 +150,9 @@ def test_the_files_of_a_system_are_one_unit(lisp, tmp_path, monkeypatch):
     (tmp_path / "robot.asd").write_text("""(defsystem robot :components ((:file "a") (:file "b" :depends-on ("a"))))""")
     (tmp_path / "a.lisp").write_text("(defun first-step () (second-step 1) (third-step))")
     (tmp_path / "b.lisp").write_text("(defun second-step () 2)")
-    assert lisp.said("(asdf:load-system :robot)") == """\
+    assert (
+        lisp.said("(asdf:load-system :robot)")
+        == """\
 ; caught STYLE-WARNING:
 ;   The function SECOND-STEP is called with one argument, but wants exactly zero.
 ;   at a.lisp:1:22
@@ -158,10 +164,13 @@ def test_the_files_of_a_system_are_one_unit(lisp, tmp_path, monkeypatch):
 ;     (defun first-step () (second-step 1) (third-step))
 ;                                          ^
 """
+    )
 
 
 def test_at_the_prompt_warnings_come_before_the_form_runs(lisp):
-    assert lisp.said("(defun greet (name) (prnt nam) (greet 1 2))") == """\
+    assert (
+        lisp.said("(defun greet (name) (prnt nam) (greet 1 2))")
+        == """\
 ; caught STYLE-WARNING:
 ;   The variable NAME is defined but never used.
 ;   at <repl 1>:1:15
@@ -184,6 +193,7 @@ def test_at_the_prompt_warnings_come_before_the_form_runs(lisp):
 ;     (defun greet (name) (prnt nam) (greet 1 2))
 ;                                    ^
 """
+    )
 
 
 @pytest.mark.parametrize("form", ["(no-such-thing 1)", "(list no-such-thing)", "(car 1 2)", "no-such-thing"])
@@ -194,29 +204,37 @@ def test_what_the_form_itself_runs_into_is_told_by_the_error_alone(lisp, form):
 
 
 def test_a_variable_that_is_set_at_the_prompt_without_defvar(lisp):
-    assert lisp.said("(setq velocity 3)") == """\
+    assert (
+        lisp.said("(setq velocity 3)")
+        == """\
 ; caught WARNING:
 ;   undefined variable: COMMON-LISP-USER::VELOCITY
 ;   at <repl 1>:1:7
 ;     (setq velocity 3)
 ;           ^
 """
+    )
     assert printed(lisp("velocity")) == ["3"]
 
 
 def test_a_symbol_is_found_where_it_stands_in_a_template(lisp):
-    assert lisp.said("(defmacro twice (form) `(progn ,form ,@fom))") == """\
+    assert (
+        lisp.said("(defmacro twice (form) `(progn ,form ,@fom))")
+        == """\
 ; caught WARNING:
 ;   undefined variable: COMMON-LISP-USER::FOM
 ;   at <repl 1>:1:40
 ;     (defmacro twice (form) `(progn ,form ,@fom))
 ;                                            ^
 """
+    )
 
 
 def test_a_function_defined_twice_in_one_file(lisp, tmp_path):
     (tmp_path / "plan.lisp").write_text("(defun stop () 1)\n(defun go-on () 2)\n(defun stop () 3)")
-    assert lisp.said('(load "plan.lisp")') == """\
+    assert (
+        lisp.said('(load "plan.lisp")')
+        == """\
 ; caught WARNING:
 ;   Duplicate definition for STOP found in one file.
 ;   at plan.lisp:3:1
@@ -224,6 +242,7 @@ def test_a_function_defined_twice_in_one_file(lisp, tmp_path):
 ;     ^
 ;   also at plan.lisp:1:1
 """
+    )
 
 
 def test_local_functions_of_one_name_are_no_duplicates(lisp, tmp_path):
@@ -248,16 +267,19 @@ def test_compile_returns_whether_there_were_warnings(lisp):
     assert flags("(lambda () (car 1 2))") == "(T T)"
     assert flags("(lambda () undefined)") == "(T T)"
     assert flags("(lambda () (undefined))") == "(NIL NIL)"  # as in SBCL: known only at the end of the unit
-    assert printed(lisp("(handler-bind ((warning #'muffle-warning)) (cdr (multiple-value-list (compile nil '(lambda () (car 1 2))))))")) \
-        == ["(NIL NIL)"]
+    assert printed(
+        lisp("(handler-bind ((warning #'muffle-warning)) (cdr (multiple-value-list (compile nil '(lambda () (car 1 2))))))")
+    ) == ["(NIL NIL)"]
     assert printed(lisp("(multiple-value-list (compile 'three '(lambda () 3)))")) == ["(THREE NIL NIL)"]
     assert printed(lisp("(list (three) (multiple-value-list (compile 'three)))")) == ["(3 (THREE NIL NIL))"]
 
 
 def test_a_compilation_unit_waits_for_its_end(lisp):
     assert lisp.said("(with-compilation-unit () (compile nil '(lambda () (to-come))) (eval '(defun to-come ())))") == ""
-    assert "undefined function: COMMON-LISP-USER::NEVER-TO-COME" in lisp.said(
-        "(with-compilation-unit () (compile nil '(lambda () (never-to-come))) (princ \"x\" *error-output*))").split("x", 1)[1]
+    assert (
+        "undefined function: COMMON-LISP-USER::NEVER-TO-COME"
+        in lisp.said('(with-compilation-unit () (compile nil \'(lambda () (never-to-come))) (princ "x" *error-output*))').split("x", 1)[1]
+    )
     assert lisp.said("""(with-compilation-unit ()
         (with-compilation-unit (:override t) (compile nil '(lambda () (come)))) (terpri *error-output*)
         (eval '(defun come ())))""").startswith("; caught STYLE-WARNING:\n;   undefined function: COMMON-LISP-USER::COME\n")
@@ -280,39 +302,52 @@ def test_a_declaration_can_be_made_known(lisp):
 
 def test_a_handler_around_load_sees_the_warnings(lisp, tmp_path):
     (tmp_path / "plan.lisp").write_text("(defun stop (x) (nowhere))")
-    assert printed(lisp("""(let ((seen '()))
+    assert printed(
+        lisp("""(let ((seen '()))
       (handler-bind ((style-warning (lambda (c) (push (format nil "~a" c) seen) (muffle-warning c))))
         (load "plan.lisp"))
-      (format nil "~{~a~^; ~}" (reverse seen)))""")) == [
-          '"The variable X is defined but never used.; undefined function: COMMON-LISP-USER::NOWHERE"']
+      (format nil "~{~a~^; ~}" (reverse seen)))""")
+    ) == ['"The variable X is defined but never used.; undefined function: COMMON-LISP-USER::NOWHERE"']
     assert lisp.said() == ""
 
 
 def test_the_answers_of_cramhy_eval_have_them_apart_from_the_output(lisp):
     assert json_lines.evaluate(lisp.session, "(defun stop (x) 1)") == {
-        "output": "", "values": ["STOP"], "error": None,
-        "warnings": [{"type": "SB-INT::SIMPLE-STYLE-WARNING", "message": "The variable X is defined but never used.",
-                      "where": "<repl 1>:1:14"}]}
+        "output": "",
+        "values": ["STOP"],
+        "error": None,
+        "warnings": [
+            {"type": "SB-INT::SIMPLE-STYLE-WARNING", "message": "The variable X is defined but never used.", "where": "<repl 1>:1:14"}
+        ],
+    }
 
 
 def test_a_type_that_nobody_defines(lisp):
-    assert re.findall("caught (.*)|;   (und.*)", lisp.said(
-            "(defun f (x) (handler-case (typep x 'no-such-type) (no-such-error () 1)))")) == [
-        ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-ERROR"),
-        ("STYLE-WARNING:", ""), ("", "undefined type: COMMON-LISP-USER::NO-SUCH-TYPE")]
-    assert printed(lisp("(handler-case (handler-case (error \"x\") (no-such-error () 1)) (error () 2))")) == ["2"]  # it fits nothing
+    assert re.findall(
+        "caught (.*)|;   (und.*)", lisp.said("(defun f (x) (handler-case (typep x 'no-such-type) (no-such-error () 1)))")
+    ) == [
+        ("STYLE-WARNING:", ""),
+        ("", "undefined type: COMMON-LISP-USER::NO-SUCH-ERROR"),
+        ("STYLE-WARNING:", ""),
+        ("", "undefined type: COMMON-LISP-USER::NO-SUCH-TYPE"),
+    ]
+    assert printed(lisp('(handler-case (handler-case (error "x") (no-such-error () 1)) (error () 2))')) == ["2"]  # it fits nothing
 
 
 def test_a_function_that_becomes_a_macro(lisp):
     lisp("(defun changing-kind (x) x)")
-    assert printed(lisp("""(let ((seen nil))
+    assert printed(
+        lisp("""(let ((seen nil))
       (handler-bind ((style-warning (lambda (c) (push (princ-to-string c) seen) (muffle-warning c))))
         (eval '(defmacro changing-kind (x) (list 'list x)))
         (eval '(defmacro changing-kind (x) (list 'list x x))))
-      (list seen (eval '(changing-kind 1)) (handler-case (funcall 'changing-kind 1) (undefined-function () :gone))))""")) == [
-          '(("CHANGING-KIND is being redefined as a macro when it was previously defined to be a function.")\n (1 1) :GONE)']
+      (list seen (eval '(changing-kind 1)) (handler-case (funcall 'changing-kind 1) (undefined-function () :gone))))""")
+    ) == ['(("CHANGING-KIND is being redefined as a macro when it was previously defined to be a function.")\n (1 1) :GONE)']
 
 
 def test_a_failure_that_its_handler_ignores_is_not_warned_of(lisp):
-    assert lisp.said("""(defun quiet ()
-      (cpl:with-failure-handling ((error (failure) (declare (ignore failure)) (return 1))) 2))""") == ""
+    assert (
+        lisp.said("""(defun quiet ()
+      (cpl:with-failure-handling ((error (failure) (declare (ignore failure)) (return 1))) 2))""")
+        == ""
+    )

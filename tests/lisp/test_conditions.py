@@ -6,11 +6,11 @@ import weakref
 
 import pytest
 
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.conditions import Condition, PythonError, SimpleError
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.conditions import Condition, PythonError, SimpleError
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 
 @pytest.fixture
@@ -54,7 +54,8 @@ def test_python_sees_its_own_exception_again(evaluate):
 
 def test_an_error_signalled_in_python_runs_lisp_handlers_before_unwinding(evaluate):
     sym("CL-USER::SIGNALS").function = lambda: conditions.restart_case(
-        [(sym("USE-VALUE"), lambda value: value)], lambda: conditions.error(SimpleError("from Python")))
+        [(sym("USE-VALUE"), lambda value: value)], lambda: conditions.error(SimpleError("from Python"))
+    )
     assert evaluate("(handler-bind ((simple-error (lambda (c) c (use-value 42)))) (signals))") == "42"
 
 
@@ -92,15 +93,24 @@ def test_break_on_signals(evaluate):
 
 def test_an_unknown_condition_class(evaluate):
     for operator in ("make-condition", "error", "signal", "warn"):
-        assert evaluate(f"(handler-case ({operator} 'nope) (simple-error () 'simple) (type-error (c) (princ-to-string c)))") == \
-            '"NOPE does not designate a condition class."'
+        assert (
+            evaluate(f"(handler-case ({operator} 'nope) (simple-error () 'simple) (type-error (c) (princ-to-string c)))")
+            == '"NOPE does not designate a condition class."'
+        )
 
 
-@pytest.mark.parametrize(("form", "wanted"), [
-    ("(ecase 3 (1 1) ((2 4) 2))", "(MEMBER 1 2 4)"), ("(etypecase 3 (string 1) (symbol 2))", "(OR STRING SYMBOL)"),
-    ("(etypecase 3 (string 1))", "(OR STRING)"), ("(car 5)", "LIST"), ("(+ 'a 1)", "NUMBER"), ("(< nil 1)", "REAL"),
-    ("(let ((x 1)) (check-type x string))", "STRING"),
-])
+@pytest.mark.parametrize(
+    ("form", "wanted"),
+    [
+        ("(ecase 3 (1 1) ((2 4) 2))", "(MEMBER 1 2 4)"),
+        ("(etypecase 3 (string 1) (symbol 2))", "(OR STRING SYMBOL)"),
+        ("(etypecase 3 (string 1))", "(OR STRING)"),
+        ("(car 5)", "LIST"),
+        ("(+ 'a 1)", "NUMBER"),
+        ("(< nil 1)", "REAL"),
+        ("(let ((x 1)) (check-type x string))", "STRING"),
+    ],
+)
 def test_the_expected_type_is_a_type_specifier(evaluate, form, wanted):
     assert evaluate(f"(handler-case {form} (type-error (c) (type-error-expected-type c)))") == wanted
 
@@ -108,18 +118,29 @@ def test_the_expected_type_is_a_type_specifier(evaluate, form, wanted):
 def test_names_in_reports_stand_in_the_right_package(evaluate):
     evaluate("(defpackage shadows (:use :cl) (:shadow #:/ #:car))")
     evaluate("(in-package :shadows)")
-    assert evaluate("(handler-case (cl:/ 1 0) (error (c) (princ-to-string c)))") == \
-        '"arithmetic error DIVISION-BY-ZERO signalled Operation was (COMMON-LISP:/ 1 0)."'
-    assert evaluate("(handler-case (error 'type-error :datum 'xx :expected-type 'foo) (error (c) (princ-to-string c)))") == \
-        '"The value XX is not of type SHADOWS::FOO"'
-    assert evaluate("(handler-case (setf (nowhere 1) 2) (error (c) (princ-to-string c)))") == \
-        '"The function (COMMON-LISP:SETF SHADOWS::NOWHERE) is undefined."'
+    assert (
+        evaluate("(handler-case (cl:/ 1 0) (error (c) (princ-to-string c)))")
+        == '"arithmetic error DIVISION-BY-ZERO signalled Operation was (COMMON-LISP:/ 1 0)."'
+    )
+    assert (
+        evaluate("(handler-case (error 'type-error :datum 'xx :expected-type 'foo) (error (c) (princ-to-string c)))")
+        == '"The value XX is not of type SHADOWS::FOO"'
+    )
+    assert (
+        evaluate("(handler-case (setf (nowhere 1) 2) (error (c) (princ-to-string c)))")
+        == '"The function (COMMON-LISP:SETF SHADOWS::NOWHERE) is undefined."'
+    )
 
 
 def test_assert_and_check_type_try_again(evaluate):
     assert evaluate("(let ((x 0)) (handler-bind ((error (lambda (c) c (continue)))) (assert (> (incf x) 3))) x)") == "4"
-    assert evaluate("(let ((x 'a) (n 0)) (handler-bind ((error (lambda (c) c (incf n) (store-value (if (< n 3) 'b 5))))) "
-                    "(check-type x integer)) (list x n))") == "(5 3)"
+    assert (
+        evaluate(
+            "(let ((x 'a) (n 0)) (handler-bind ((error (lambda (c) c (incf n) (store-value (if (< n 3) 'b 5))))) "
+            "(check-type x integer)) (list x n))"
+        )
+        == "(5 3)"
+    )
 
 
 def test_binding_nothing_is_allowed(session):

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, StringOutputStream
+from cramhy_runtime.languages.commonlisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, StringOutputStream
 
 DEFINITIONS = """
 (defun fib (n &optional (k 2) &rest r &key (z 3) w) "Fibonacci.
@@ -37,6 +37,7 @@ Two lines." (list n k r z w))
 @pytest.fixture
 def lisp(session, monkeypatch):
     """``lisp(text)``: what evaluating ``text`` in CL-USER printed, addresses left out."""
+
     def lisp(text):
         output = StringOutputStream()
         for stream in (STANDARD_OUTPUT, ERROR_OUTPUT):  # globally: tasks of plans print too
@@ -57,7 +58,9 @@ def without_place(text):
 def test_functions_and_macros(lisp):
     text = lisp("(describe 'fib)")
     assert "  Source file: <repl 1>:2\n" in text
-    assert without_place(text) == """\
+    assert (
+        without_place(text)
+        == """\
 COMMON-LISP-USER::FIB
   [symbol]
 
@@ -67,7 +70,10 @@ FIB names a compiled function:
     Fibonacci.
     Two lines.
 """
-    assert without_place(lisp("(describe #'fib)")) == """\
+    )
+    assert (
+        without_place(lisp("(describe #'fib)"))
+        == """\
 #<FUNCTION FIB>
   [compiled function]
 
@@ -77,7 +83,10 @@ Documentation:
   Fibonacci.
   Two lines.
 """
-    assert without_place(lisp("(describe 'my-mac)")) == """\
+    )
+    assert (
+        without_place(lisp("(describe 'my-mac)"))
+        == """\
 COMMON-LISP-USER::MY-MAC
   [symbol]
 
@@ -86,22 +95,29 @@ MY-MAC names a macro:
   Documentation:
     Mac doc.
 """
+    )
     assert without_place(lisp("(describe 'foo)")).splitlines()[3:] == [
-        "(SETF FOO) names a compiled function:", "  Lambda-list: (V X)", "  Documentation:", "    setf foo doc"]
-    assert lisp("(describe 'bar)").splitlines()[3:] == [
-        "(SETF BAR) has setf-expansion: SET-BAR", "  Documentation:", "    defsetf doc"]
+        "(SETF FOO) names a compiled function:",
+        "  Lambda-list: (V X)",
+        "  Documentation:",
+        "    setf foo doc",
+    ]
+    assert lisp("(describe 'bar)").splitlines()[3:] == ["(SETF BAR) has setf-expansion: SET-BAR", "  Documentation:", "    defsetf doc"]
     assert lisp("(describe 'when)").splitlines()[3:] == ["WHEN names a macro:", "  Lambda-list: (TEST &REST BODY)"]
 
 
-@pytest.mark.parametrize(("name", "shown"), [
-    ("*v*", "*V* names a special variable:\n  Value: 3\n  Documentation:\n    A var."),
-    ("*unb*", "*UNB* names a special variable:\n  Currently unbound."),
-    ("+c+", "+C+ names a constant variable:\n  Value: 5\n  Documentation:\n    const doc"),
-    ("smac", "SMAC names a symbol macro:\n  Expansion: (CAR *V*)"),
-    ("small", "SMALL names a type-specifier:\n  Documentation:\n    a small type\n  Lambda-list: ()\n  Expansion: (INTEGER 0 5)"),
-    (":key", "KEY names a constant variable:\n  Value: :KEY"),
-    ("nil", "NIL names a constant variable:\n  Value: NIL"),
-])
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("*v*", "*V* names a special variable:\n  Value: 3\n  Documentation:\n    A var."),
+        ("*unb*", "*UNB* names a special variable:\n  Currently unbound."),
+        ("+c+", "+C+ names a constant variable:\n  Value: 5\n  Documentation:\n    const doc"),
+        ("smac", "SMAC names a symbol macro:\n  Expansion: (CAR *V*)"),
+        ("small", "SMALL names a type-specifier:\n  Documentation:\n    a small type\n  Lambda-list: ()\n  Expansion: (INTEGER 0 5)"),
+        (":key", "KEY names a constant variable:\n  Value: :KEY"),
+        ("nil", "NIL names a constant variable:\n  Value: NIL"),
+    ],
+)
 def test_what_a_symbol_names(lisp, name, shown):
     assert lisp(f"(describe '{name})").partition("\n\n")[2].rstrip() == shown
 
@@ -111,7 +127,9 @@ def test_a_symbol_without_meaning(lisp):
 
 
 def test_classes_and_instances(lisp):
-    assert lisp("(describe 'robot)") == """\
+    assert (
+        lisp("(describe 'robot)")
+        == """\
 COMMON-LISP-USER::ROBOT
   [symbol]
 
@@ -137,7 +155,10 @@ ROBOT names the standard-class #<STANDARD-CLASS COMMON-LISP-USER::ROBOT>:
       Allocation: :CLASS
       Initform: 0
 """
-    assert lisp("(describe (make-instance 'robot))") == """\
+    )
+    assert (
+        lisp("(describe (make-instance 'robot))")
+        == """\
 #<ROBOT {address}>
   [standard-object]
 
@@ -147,7 +168,10 @@ Slots with :INSTANCE allocation:
   NAME                           = "R2"
   SPEED                          = #<unbound slot>
 """
-    assert lisp("(describe (make-point :y '(1 2)))") == """\
+    )
+    assert (
+        lisp("(describe (make-point :y '(1 2)))")
+        == """\
 #S(POINT :X 0 :Y (1 2))
   [structure-object]
 
@@ -155,19 +179,26 @@ Slots with :INSTANCE allocation:
   X                              = 0
   Y                              = (1 2)
 """
-    assert lisp("(describe (make-condition 'my-err :why 3))") == """\
+    )
+    assert (
+        lisp("(describe (make-condition 'my-err :why 3))")
+        == """\
 #<MY-ERR {address}>
   [condition]
 
 Slots with :INSTANCE allocation:
   WHY                            = 3
 """
+    )
     assert "MY-ERR names the condition-class #<SB-PCL::CONDITION-CLASS COMMON-LISP-USER::MY-ERR>:\n  Documentation:\n    cond\n" in lisp(
-        "(describe 'my-err)")
+        "(describe 'my-err)"
+    )
 
 
 def test_generic_functions_with_their_methods(lisp):
-    assert lisp("(describe #'area)") == """\
+    assert (
+        lisp("(describe #'area)")
+        == """\
 #<STANDARD-GENERIC-FUNCTION COMMON-LISP-USER::AREA (2)>
   [generic-function]
 
@@ -182,31 +213,44 @@ Methods:
     Documentation:
       robot area
 """
+    )
 
 
-@pytest.mark.parametrize(("form", "shown"), [
-    ("3", "3\n  [fixnum]\n"),
-    ("(expt 2 100)", "1267650600228229401496703205376\n  [bignum]\n"),
-    ("3.5d0", "3.5d0\n  [double-float]\n"),
-    ("1/2", "1/2\n  [ratio]\n"),
-    (r"#\a", "#\\a\n  [standard-char]\n\nChar-code: 97\nChar-name: LATIN_SMALL_LETTER_A\n"),
-    ('"abc"', '"abc"\n  [simple-string]\n\nElement-type: CHARACTER\nLength: 3\n'),
-    ("(vector 1 2)", "#(1 2)\n  [simple-vector]\n\nElement-type: T\nLength: 2\n"),
-    ("#*101", "#*101\n  [simple-bit-vector]\n\nElement-type: BIT\nLength: 3\n"),
-    ("(make-array 3 :fill-pointer 1 :adjustable t)",
-     "#(0)\n  [vector]\n\nElement-type: T\nFill-pointer: 1\nSize: 3\nAdjustable: yes\nDisplaced: no\n"),
-    ("(make-array '(2 2) :element-type 'double-float)",
-     "#2A((0.0d0 0.0d0) (0.0d0 0.0d0))\n  [simple specialized array]\n\nElement-type: DOUBLE-FLOAT\nDimensions: (2 2)\n"),
-    ("'(1 2)", "(1 2)\n  [list]\n"),
-    ("'(1 . 2)", "(1 . 2)\n  [cons]\n"),
-    ("(make-hash-table :test 'equal)", "#<HASH-TABLE :TEST EQUAL :COUNT 0 {address}>\n  [hash-table]\n\nOccupancy: 0.0\n"
-     "Rehash-threshold: 1.0\nRehash-size: 1.5\nSize: 7\nSynchronized: no\n"),
-    ("(find-package :described)", '#<PACKAGE "DESCRIBED">\n  [package]\n\n\nDocumentation:\n  pk doc\nNicknames: DSC\n'
-     "Use-list: COMMON-LISP\nExports: AA\n0 internal symbols.\n"),
-    ("(make-string-output-stream)", "#<SB-IMPL::STRING-OUTPUT-STREAM {address}>\n  [stream]\n"),
-    ("(loop for i below 60 collect i)",
-     "(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 2..\n  [list]\n"),
-])
+@pytest.mark.parametrize(
+    ("form", "shown"),
+    [
+        ("3", "3\n  [fixnum]\n"),
+        ("(expt 2 100)", "1267650600228229401496703205376\n  [bignum]\n"),
+        ("3.5d0", "3.5d0\n  [double-float]\n"),
+        ("1/2", "1/2\n  [ratio]\n"),
+        (r"#\a", "#\\a\n  [standard-char]\n\nChar-code: 97\nChar-name: LATIN_SMALL_LETTER_A\n"),
+        ('"abc"', '"abc"\n  [simple-string]\n\nElement-type: CHARACTER\nLength: 3\n'),
+        ("(vector 1 2)", "#(1 2)\n  [simple-vector]\n\nElement-type: T\nLength: 2\n"),
+        ("#*101", "#*101\n  [simple-bit-vector]\n\nElement-type: BIT\nLength: 3\n"),
+        (
+            "(make-array 3 :fill-pointer 1 :adjustable t)",
+            "#(0)\n  [vector]\n\nElement-type: T\nFill-pointer: 1\nSize: 3\nAdjustable: yes\nDisplaced: no\n",
+        ),
+        (
+            "(make-array '(2 2) :element-type 'double-float)",
+            "#2A((0.0d0 0.0d0) (0.0d0 0.0d0))\n  [simple specialized array]\n\nElement-type: DOUBLE-FLOAT\nDimensions: (2 2)\n",
+        ),
+        ("'(1 2)", "(1 2)\n  [list]\n"),
+        ("'(1 . 2)", "(1 . 2)\n  [cons]\n"),
+        (
+            "(make-hash-table :test 'equal)",
+            "#<HASH-TABLE :TEST EQUAL :COUNT 0 {address}>\n  [hash-table]\n\nOccupancy: 0.0\n"
+            "Rehash-threshold: 1.0\nRehash-size: 1.5\nSize: 7\nSynchronized: no\n",
+        ),
+        (
+            "(find-package :described)",
+            '#<PACKAGE "DESCRIBED">\n  [package]\n\n\nDocumentation:\n  pk doc\nNicknames: DSC\n'
+            "Use-list: COMMON-LISP\nExports: AA\n0 internal symbols.\n",
+        ),
+        ("(make-string-output-stream)", "#<SB-IMPL::STRING-OUTPUT-STREAM {address}>\n  [stream]\n"),
+        ("(loop for i below 60 collect i)", "(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 2..\n  [list]\n"),
+    ],
+)
 def test_objects(lisp, form, shown):
     assert lisp(f"(describe {form})") == shown
     assert lisp.values == []
@@ -219,7 +263,9 @@ def test_users_describe_their_own_classes(lisp):
 
 
 def test_things_of_cram(lisp):
-    assert lisp("(describe (cpl:make-fluent :name :distance :value 3))") == """\
+    assert (
+        lisp("(describe (cpl:make-fluent :name :distance :value 3))")
+        == """\
 #<FLUENT DISTANCE [3]>
   [fluent]
 
@@ -230,7 +276,10 @@ Waiting tasks: NIL
 Fluents computed from it: NIL
 Callbacks: NIL
 """
-    assert lisp("(describe (desig:a motion (type going) (to (1 2))))") == """\
+    )
+    assert (
+        lisp("(describe (desig:a motion (type going) (to (1 2))))")
+        == """\
 #<A MOTION
     (TYPE GOING)
     (TO (1 2))>
@@ -242,6 +291,7 @@ Effective: NIL
 Data: NIL
 Timestamp: NIL
 """
+    )
     lisp("(cpm:def-process-module described-pm (d) d)")
     assert "  [process-module]\n\nName: DESCRIBED-PM\nStatus: :WAITING\n" in lisp("""
         (cpl:top-level (cpm:with-process-modules-running (described-pm)
@@ -252,12 +302,12 @@ Timestamp: NIL
             (cpl:with-tags
               (cpl:par (:tag waiter (cpl:wait-for go))
                        (progn (cpl:sleep 1) (describe waiter) (setf (cpl:value go) t))))))""")
-    assert "  [task]\n\nName: \"[TAG-WAITER]-" in shown
+    assert '  [task]\n\nName: "[TAG-WAITER]-' in shown
     assert "\nStatus: :RUNNING\n" in shown and "\nWaits for: the fluent #<FLUENT GO [NIL]>\n" in shown
 
 
 def test_python_objects(lisp, session):
-    from cramhy_runtime.lisp.packages import sym
+    from cramhy_runtime.ground.packages import sym
 
     class Gripper:
         """A hand."""
@@ -272,19 +322,35 @@ def test_python_objects(lisp, session):
     assert "Documentation:\n  A hand.\nAttributes:\n  width                          = 0.5\n" in shown
 
 
-@pytest.mark.parametrize(("form", "text"), [
-    ("'fib 'function", "Fibonacci.\nTwo lines."), ("#'fib t", "Fibonacci.\nTwo lines."), ("#'fib 'function", "Fibonacci.\nTwo lines."),
-    ("'my-mac 'function", "Mac doc."), ("(macro-function 'my-mac) t", "Mac doc."), ("'*v* 'variable", "A var."),
-    ("'+c+ 'variable", "const doc"), ("'small 'type", "a small type"), ("'robot 'type", "A robot."), ("(find-class 'robot) t", "A robot."),
-    ("'point 'structure", "A point."), ("'point 'type", "A point."), ("'my-err 'type", "cond"), ("'area 'function", "Area of it."),
-    ("(find-method #'area nil (list (find-class 'robot))) t", "robot area"), ("'(setf foo) 'function", "setf foo doc"),
-    ("'bar 'setf", "defsetf doc"), ("(find-package :described) t", "pk doc"),
-    ("(first (sb-mop:class-direct-slots (find-class 'robot))) t", "its name"), ("'undefined-thing 'function", None),
-])
+@pytest.mark.parametrize(
+    ("form", "text"),
+    [
+        ("'fib 'function", "Fibonacci.\nTwo lines."),
+        ("#'fib t", "Fibonacci.\nTwo lines."),
+        ("#'fib 'function", "Fibonacci.\nTwo lines."),
+        ("'my-mac 'function", "Mac doc."),
+        ("(macro-function 'my-mac) t", "Mac doc."),
+        ("'*v* 'variable", "A var."),
+        ("'+c+ 'variable", "const doc"),
+        ("'small 'type", "a small type"),
+        ("'robot 'type", "A robot."),
+        ("(find-class 'robot) t", "A robot."),
+        ("'point 'structure", "A point."),
+        ("'point 'type", "A point."),
+        ("'my-err 'type", "cond"),
+        ("'area 'function", "Area of it."),
+        ("(find-method #'area nil (list (find-class 'robot))) t", "robot area"),
+        ("'(setf foo) 'function", "setf foo doc"),
+        ("'bar 'setf", "defsetf doc"),
+        ("(find-package :described) t", "pk doc"),
+        ("(first (sb-mop:class-direct-slots (find-class 'robot))) t", "its name"),
+        ("'undefined-thing 'function", None),
+    ],
+)
 def test_documentation_is_read_and_set(lisp, form, text):
     lisp(f"(documentation {form})")
     assert lisp.values == [text]
-    lisp(f"(list (setf (documentation {form}) \"new\") (documentation {form}))")
+    lisp(f'(list (setf (documentation {form}) "new") (documentation {form}))')
     assert list(lisp.values[0]) == ["new", "new"]
 
 
@@ -302,9 +368,9 @@ def test_users_may_add_kinds_of_documentation(lisp):
 def test_apropos(lisp):
     assert lisp('(apropos "hash-table-c" :cl)') == "HASH-TABLE-COUNT (fbound)"
     assert lisp('(apropos "*print-b")') == "*PRINT-BASE* = 10"
-    assert lisp("(apropos \"fib\" :cl-user)") == "FIB (fbound)"
+    assert lisp('(apropos "fib" :cl-user)') == "FIB (fbound)"
     lisp("(apropos-list 'eval- :cl)")
     assert [symbol.name for symbol in lisp.values[0]] == ["EVAL-WHEN"]
-    lisp("(list (apropos-list \"aa\" :described t) (apropos-list \"no such name\"))")
+    lisp('(list (apropos-list "aa" :described t) (apropos-list "no such name"))')
     assert [symbol.name for symbol in lisp.values[0].car] == ["AA"]
     assert lisp.values[0].cdr.car is None

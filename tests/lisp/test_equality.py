@@ -8,21 +8,34 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import equality
-from cramhy_runtime.lisp.collections.hash_tables import HashTable
-from cramhy_runtime.lisp.collections.vectors import LispArray, Vector, bit_vector
-from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, LispString, list_from
-from cramhy_runtime.lisp.equality import eq, eql, equal, equalp, sxhash
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground import equality
+from cramhy_runtime.ground.hash_tables import HashTable, sxhash
+from cramhy_runtime.ground.arrays import LispArray, Vector, bit_vector
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, list_from
+from cramhy_runtime.ground.equality import eq, eql, equal, equalp
+from cramhy_runtime.ground.packages import sym
 
 atoms = st.one_of(
-    st.none(), st.booleans(), st.integers(-2, 2), st.sampled_from([0.0, -0.0, 1.0, 2.0, float("nan"), DoubleFloat(0.0), DoubleFloat(1.0)]),
+    st.none(),
+    st.booleans(),
+    st.integers(-2, 2),
+    st.sampled_from([0.0, -0.0, 1.0, 2.0, float("nan"), DoubleFloat(0.0), DoubleFloat(1.0)]),
     st.sampled_from([Fraction(1, 2), sym("CAR"), Character("a"), Character("A"), 1j, 0.5]),
-    st.text("aA", max_size=2), st.text("aA", max_size=2).map(LispString), st.lists(st.integers(0, 1), max_size=2).map(bit_vector))
-things = st.recursive(atoms, lambda inner: st.one_of(
-    st.builds(Cons, inner, inner), st.lists(inner, max_size=2), st.lists(inner, max_size=2).map(list_from),
-    st.lists(inner, max_size=2).map(Vector),
-    st.lists(inner, min_size=2, max_size=2).map(lambda items: LispArray((1, 2), items))), max_leaves=5)
+    st.text("aA", max_size=2),
+    st.text("aA", max_size=2).map(LispString),
+    st.lists(st.integers(0, 1), max_size=2).map(bit_vector),
+)
+things = st.recursive(
+    atoms,
+    lambda inner: st.one_of(
+        st.builds(Cons, inner, inner),
+        st.lists(inner, max_size=2),
+        st.lists(inner, max_size=2).map(list_from),
+        st.lists(inner, max_size=2).map(Vector),
+        st.lists(inner, min_size=2, max_size=2).map(lambda items: LispArray((1, 2), items)),
+    ),
+    max_leaves=5,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -45,7 +58,7 @@ def test_python_false_is_nil():
 
 
 def test_equal_numbers_are_eq_however_large():
-    assert eq(10 ** 30, 10 ** 30) is True
+    assert eq(10**30, 10**30) is True
 
 
 def test_a_string_that_can_be_changed_equals_a_constant_one():

@@ -2,39 +2,53 @@
 
 import pytest
 
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.tools.advice import explanation
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl.session import condition_of, signalled_here
 
 READING = [
-    ("(list 1\n  '(1 . 2 3))", """\
+    (
+        "(list 1\n  '(1 . 2 3))",
+        """\
   More than one object follows . in list.
   at plan.lisp:2:11
     '(1 . 2 3))
             ^
-  After the dot and one object the list must end."""),
-    ("(list 1\n  (nope::x))", """\
+  After the dot and one object the list must end.""",
+    ),
+    (
+        "(list 1\n  (nope::x))",
+        """\
   Package NOPE does not exist.
   at plan.lisp:2:4
     (nope::x))
      ^
-  There is no package NOPE. Is the system that defines it loaded?"""),
+  There is no package NOPE. Is the system that defines it loaded?""",
+    ),
 ]
 EXPANSION = [
-    ("(defun f (x)\n  (dolist x '(1 2)\n    (print x)))", """\
+    (
+        "(defun f (x)\n  (dolist x '(1 2)\n    (print x)))",
+        """\
   The DOLIST form (DOLIST X '(1 2) (PRINT X)) is malformed: it has the wrong number of parts, or a part is not a list.
   at plan.lisp:2:3
       (dolist x '(1 2)
       ^
-  It is written (dolist (variable list [result]) form...)."""),
-    ("(defun f (x)\n  (cond (= x 1) 2))", """\
+  It is written (dolist (variable list [result]) form...).""",
+    ),
+    (
+        "(defun f (x)\n  (cond (= x 1) 2))",
+        """\
   The COND form (COND (= X 1) 2) is malformed: it has the wrong number of parts, or a part is not a list.
   at plan.lisp:2:3
       (cond (= x 1) 2))
       ^
-  It is written (cond (test form...) (test form...)...)."""),
-    ("(defmacro twice-of (a b)\n  `(list ,a ,b))\n(defun f (x)\n  (twice-of x))", """\
+  It is written (cond (test form...) (test form...)...).""",
+    ),
+    (
+        "(defmacro twice-of (a b)\n  `(list ,a ,b))\n(defun f (x)\n  (twice-of x))",
+        """\
   Error while parsing arguments to DEFMACRO TWICE-OF:
     too few elements in
       (X)
@@ -43,8 +57,11 @@ EXPANSION = [
     exactly 2 expected, but got 1
   at plan.lisp:4:3
       (twice-of x))
-      ^"""),
-    ("(defmacro broken-one (a)\n  `(list ,a ,(car 5)))\n(defun f (x)\n  (broken-one x))", """\
+      ^""",
+    ),
+    (
+        "(defmacro broken-one (a)\n  `(list ,a ,(car 5)))\n(defun f (x)\n  (broken-one x))",
+        """\
   The value
     5
   is not of type
@@ -55,16 +72,22 @@ EXPANSION = [
                  ^
   in the expansion of the macro call at plan.lisp:4:3
       (broken-one x))
-      ^"""),
-    ("(defmacro misspelt (form)\n  `(list ,form ,fom))\n(misspelt 1)", """\
+      ^""",
+    ),
+    (
+        "(defmacro misspelt (form)\n  `(list ,form ,fom))\n(misspelt 1)",
+        """\
   The variable FOM is unbound.
   at plan.lisp:2:17
       `(list ,form ,fom))
                     ^
   in the expansion of the macro call at plan.lisp:3:1
     (misspelt 1)
-    ^"""),
-    ("(macrolet ((m (x)\n             (car x)))\n  (m 7))", """\
+    ^""",
+    ),
+    (
+        "(macrolet ((m (x)\n             (car x)))\n  (m 7))",
+        """\
   The value
     7
   is not of type
@@ -75,33 +98,48 @@ EXPANSION = [
                  ^
   in the expansion of the macro call at plan.lisp:3:3
       (m 7))
-      ^"""),
+      ^""",
+    ),
 ]
 COMPILATION = [
-    ("(defun f x\n  x)", """\
+    (
+        "(defun f x\n  x)",
+        """\
   The lambda list X is malformed: the parameters stand in a list.
   at plan.lisp:1:1
     (defun f x
-    ^"""),
-    ("(defun f ()\n  (list 1\n    (return-from g 2)))", """\
+    ^""",
+    ),
+    (
+        "(defun f ()\n  (list 1\n    (return-from g 2)))",
+        """\
   return for unknown block: G
   at plan.lisp:3:5
         (return-from g 2)))
-        ^"""),
-    ("(defun f ()\n  (let ((x 1))\n    ((g x) 2)))", """\
+        ^""",
+    ),
+    (
+        "(defun f ()\n  (let ((x 1))\n    ((g x) 2)))",
+        """\
   (G X) cannot be called: the head of a form must be a symbol or a lambda expression.
   at plan.lisp:3:5
         ((g x) 2)))
-        ^"""),
+        ^""",
+    ),
 ]
 RUNNING = [
-    ("(defvar *speed-limit* 3)\n(defun f ()\n  (list 1\n    (+ 2 speed-limit)))\n(f)", """\
+    (
+        "(defvar *speed-limit* 3)\n(defun f ()\n  (list 1\n    (+ 2 speed-limit)))\n(f)",
+        """\
   The variable SPEED-LIMIT is unbound.
   at plan.lisp:4:10
         (+ 2 speed-limit)))
              ^
-  There is a variable *SPEED-LIMIT*, with stars."""),
-    ("(defgeneric speed-of (wheel) (:method ((wheel symbol)) 1) (:method ((wheel (eql 5))) 2))\n(list\n  (speed-of 6))", """\
+  There is a variable *SPEED-LIMIT*, with stars.""",
+    ),
+    (
+        "(defgeneric speed-of (wheel) (:method ((wheel symbol)) 1) (:method ((wheel (eql 5))) 2))\n(list\n  (speed-of 6))",
+        """\
   There is no applicable method for the generic function
     #<STANDARD-GENERIC-FUNCTION COMMON-LISP-USER::SPEED-OF (2)>
   when called with arguments
@@ -111,47 +149,69 @@ RUNNING = [
   at plan.lisp:3:3
       (speed-of 6))
       ^
-  Methods are defined for (SYMBOL) and ((EQL 5))."""),
-    ("(dolist (x\n         identity)\n  x)", """\
+  Methods are defined for (SYMBOL) and ((EQL 5)).""",
+    ),
+    (
+        "(dolist (x\n         identity)\n  x)",
+        """\
   The variable IDENTITY is unbound.
   at plan.lisp:2:10
              identity)
              ^
-  IDENTITY is a function, no variable: a call of it is (identity ...), in parentheses of its own."""),
-    ("(let ((x 1)\n      (y no-such-variable))\n  (list x y))", """\
+  IDENTITY is a function, no variable: a call of it is (identity ...), in parentheses of its own.""",
+    ),
+    (
+        "(let ((x 1)\n      (y no-such-variable))\n  (list x y))",
+        """\
   The variable NO-SUCH-VARIABLE is unbound.
   at plan.lisp:2:10
           (y no-such-variable))
-             ^"""),
-    ("(cond\n  ((evenp 3) 1)\n  (t (list no-such-variable)))", """\
+             ^""",
+    ),
+    (
+        "(cond\n  ((evenp 3) 1)\n  (t (list no-such-variable)))",
+        """\
   The variable NO-SUCH-VARIABLE is unbound.
   at plan.lisp:3:12
       (t (list no-such-variable)))
-               ^"""),
-    ("(defvar *seen* 1) ; a (comment\n(list \")\" #\\( (def-fact-group animals\n  (legs)))", """\
+               ^""",
+    ),
+    (
+        '(defvar *seen* 1) ; a (comment\n(list ")" #\\( (def-fact-group animals\n  (legs)))',
+        """\
   The variable ANIMALS is unbound.
   at plan.lisp:2:31
     (list ")" #\\( (def-fact-group animals
                                   ^
   Nobody has defined def-fact-group here, so (def-fact-group ...) is taken for a call, whose arguments are evaluated.
-  There is prolog:def-fact-group in another package."""),
-    ("(case 3\n  (3 no-such-variable))", """\
+  There is prolog:def-fact-group in another package.""",
+    ),
+    (
+        "(case 3\n  (3 no-such-variable))",
+        """\
   The variable NO-SUCH-VARIABLE is unbound.
   at plan.lisp:2:6
       (3 no-such-variable))
-         ^"""),
-    ("(defun f ()\n  (prnit 1))\n(f)", """\
+         ^""",
+    ),
+    (
+        "(defun f ()\n  (prnit 1))\n(f)",
+        """\
   The function COMMON-LISP-USER::PRNIT is undefined.
   at plan.lisp:2:3
       (prnit 1))
       ^
-  Did you mean PRINT?"""),
-    ('(error "speed ~a of ~a" 1)', """\
+  Did you mean PRINT?""",
+    ),
+    (
+        '(error "speed ~a of ~a" 1)',
+        """\
   speed ~a of ~a
   (Its report could not be made: error in FORMAT: No more arguments speed ~a of ~a ^)
   at plan.lisp:1:1
     (error "speed ~a of ~a" 1)
-    ^"""),
+    ^""",
+    ),
 ]
 
 
@@ -160,7 +220,7 @@ def shown(session, tmp_path, monkeypatch):
     """What is shown of the error of a file with this text."""
     monkeypatch.chdir(tmp_path)
     session.package = "COMMON-LISP-USER"
-    monkeypatch.setattr(conditions, "_debugger", signalled_here)
+    monkeypatch.setattr(conditions._debugger, "value", signalled_here)
 
     def load(text):
         (tmp_path / "plan.lisp").write_text(text)

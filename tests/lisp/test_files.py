@@ -6,18 +6,18 @@ What SBCL answers to each symbol of these chapters is in ``symbols/``; here is w
 from __future__ import annotations
 
 import os
-import sys
 import threading
+import time
 
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation import universal_time
-from cramhy_runtime.lisp.files.files import lisp_path
-from cramhy_runtime.lisp.files.pathnames import DEFAULTS
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation import universal_time
+from cramhy_runtime.languages.commonlisp.files.files import lisp_path
+from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 
 
@@ -56,8 +56,10 @@ def complaint(answer, tmp_path):
 def test_a_file_that_was_replaced_is_back_when_writing_fails(answer, complaint, tmp_path):
     (tmp_path / "x").write_text("old")
     for how in ("supersede", "rename", "rename-and-delete"):
-        assert complaint(f'(with-open-file (s "x" :direction :output :if-exists :{how}) (write-line "new" s) (error "left"))') \
+        assert (
+            complaint(f'(with-open-file (s "x" :direction :output :if-exists :{how}) (write-line "new" s) (error "left"))')
             == "SIMPLE-ERROR left"
+        )
         assert (tmp_path / "x").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["x"]
 
@@ -102,19 +104,24 @@ def test_a_file_that_may_not_be_read(complaint, tmp_path):
 # ----------------------------------------------------------------------------------------------------------------- reading
 
 
-@pytest.mark.parametrize(("restart", "wanted"), [
-    ("'sb-int:attempt-resync", '"ab"'), ("'sb-int:force-end-of-file", '"a"'), ("'sb-impl::input-replacement #\\?", '"a?b"'),
-])
+@pytest.mark.parametrize(
+    ("restart", "wanted"),
+    [("'sb-int:attempt-resync", '"ab"'), ("'sb-int:force-end-of-file", '"a"'), ("'sb-impl::input-replacement #\\?", '"a?b"')],
+)
 def test_what_is_no_character_may_be_left_out_or_replaced(answer, tmp_path, restart, wanted):
     (tmp_path / "x").write_bytes(b"a\xffb\n")
-    assert answer(f"""(handler-bind ((error (lambda (c) (declare (ignore c)) (invoke-restart {restart}))))
-        (with-open-file (s "x") (values (read-line s))))""") == wanted
+    assert (
+        answer(f"""(handler-bind ((error (lambda (c) (declare (ignore c)) (invoke-restart {restart}))))
+        (with-open-file (s "x") (values (read-line s))))""")
+        == wanted
+    )
 
 
 def test_positions_stand_behind_what_read_took(answer, tmp_path):
     (tmp_path / "x").write_text("(a ö) c\nd\n")
-    assert answer('(with-open-file (s "x") (list (read s) (file-position s) (read s) (file-position s) (read-line s)))') \
-        == '((A Ö) 7 C 9 "d")'
+    assert (
+        answer('(with-open-file (s "x") (list (read s) (file-position s) (read s) (file-position s) (read-line s)))') == '((A Ö) 7 C 9 "d")'
+    )
 
 
 def test_a_pipe_is_waited_for_while_other_tasks_run(answer, tmp_path):
@@ -150,7 +157,7 @@ def test_translations_in_a_circle_are_an_error(answer, complaint):
 def test_python_opens_a_pathname(answer, session, tmp_path):
     (tmp_path / "a*b").write_text("star")
     with binding(DEFAULTS, lisp_path(tmp_path)):
-        path, = session.evaluate_text('(truename "a\\\\*b")')
+        (path,) = session.evaluate_text('(truename "a\\\\*b")')
     with open(path) as file:
         assert file.read() == "star"
 
@@ -196,13 +203,17 @@ def test_a_form_that_could_not_be_compiled_is_an_error_when_it_runs(answer, comp
 
 def test_compiled_files_of_others_and_damaged_ones_are_refused(answer, complaint, tmp_path):
     (tmp_path / "x.fasl").write_bytes(b"# FASL\n  compiled from ...")
-    assert complaint('(load "x.fasl")') \
+    assert (
+        complaint('(load "x.fasl")')
         == "SIMPLE-FILE-ERROR /here/x.fasl was compiled by SBCL. Load its source, or compile it here with COMPILE-FILE."
+    )
     (tmp_path / "a.lisp").write_text("(defvar *a* 1)")
     answer('(compile-file "a.lisp" :verbose nil)')
     (tmp_path / "x.fasl").write_bytes((tmp_path / "a.fasl").read_bytes()[:-30])
-    assert complaint('(load "x.fasl")') \
-        == "SIMPLE-FILE-ERROR /here/x.fasl is damaged: it is no complete compiled file. Compile its source again."
+    assert (
+        complaint('(load "x.fasl")')
+        == "SIMPLE-FILE-ERROR /here/x.fasl is damaged: it is not a complete compiled file. Compile its source again."
+    )
 
 
 def test_a_source_in_another_encoding_is_loaded_when_it_is_named(answer, complaint, tmp_path):
@@ -213,8 +224,10 @@ def test_a_source_in_another_encoding_is_loaded_when_it_is_named(answer, complai
 
 def test_load_shows_what_it_does(answer, tmp_path):
     (tmp_path / "x.lisp").write_text("(defvar *x* 1) (values 1 2) (values)")
-    assert answer('(with-output-to-string (*standard-output*) (load "x.lisp" :verbose t :print t))') \
+    assert (
+        answer('(with-output-to-string (*standard-output*) (load "x.lisp" :verbose t :print t))')
         == '";; loading #P\\"/here/x.lisp\\"\n;; *X*\n;; 1, 2\n;; \n"'
+    )
 
 
 # -------------------------------------------------------------------------------------------------------------- environment
@@ -237,18 +250,36 @@ def test_time_zones_are_those_of_utc_in_virtual_time(session, answer):
     assert answer("(let ((before (get-universal-time))) (sleep 60) (- (get-universal-time) before))") == "60"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the zone is set as Unix sets it")
-def test_time_zones_are_the_machines_in_wall_time(monkeypatch):
-    import time
-
+@pytest.fixture
+def in_berlin(monkeypatch):
+    """A kernel in wall time, on a machine in Berlin."""
+    if not hasattr(time, "tzset"):
+        pytest.skip("the zone is set as Unix sets it")
     kernel.start(clock="wall")
     monkeypatch.setenv("TZ", "Europe/Berlin")
     time.tzset()
-    try:
-        assert universal_time.decode_universal_time(3501677469) == (9, 11, 17, 18, 12, 2010, 5, None, -1)
-        summer = universal_time.encode_universal_time(0, 0, 12, 1, 7, 2010)
-        assert universal_time.decode_universal_time(summer) == (0, 0, 12, 1, 7, 2010, 3, True, -1)
-    finally:
-        kernel.stop()
-        monkeypatch.undo()
-        time.tzset()
+    yield
+    kernel.stop()
+    monkeypatch.undo()
+    time.tzset()
+
+
+def test_time_zones_are_the_machines_in_wall_time(in_berlin):
+    assert universal_time.decode_universal_time(3501677469) == (9, 11, 17, 18, 12, 2010, 5, None, -1)
+    summer = universal_time.encode_universal_time(0, 0, 12, 1, 7, 2010)
+    assert universal_time.decode_universal_time(summer) == (0, 0, 12, 1, 7, 2010, 3, True, -1)
+
+
+@pytest.mark.parametrize("when", [(0, 30, 9, 1, 2, 1963), (0, 30, 9, 1, 8, 1955), (59, 59, 23, 31, 12, 1969)])
+def test_time_zones_where_the_system_knows_no_time_before_1970(in_berlin, monkeypatch, when):
+    localtime = time.localtime
+
+    def of_windows(seconds=None):
+        if seconds is not None and seconds < 0:
+            raise OSError(22, "Invalid argument")
+        return localtime(seconds)
+
+    monkeypatch.setattr(time, "localtime", of_windows)
+    second, minute, hour, date, month, year = when
+    moment = universal_time.encode_universal_time(second, minute, hour, date, month, year)
+    assert universal_time.decode_universal_time(moment)[:6] == when

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import equality
-from cramhy_runtime.lisp.collections import hash_tables as h
-from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
-from cramhy_runtime.lisp.packages import keyword, sym
+from cramhy_runtime.ground import equality
+from cramhy_runtime.ground import hash_tables as h
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.packages import keyword, sym
 
 
 @pytest.fixture(autouse=True)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import importlib
 import itertools
+import re
 import sys
 
+import hy
 import pytest
 
-from cramhy_runtime.lisp.conditions import SimpleProgramError, TypeError_, from_python
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.systems import importer
+from cramhy_runtime.ground.conditions import SimpleProgramError, TypeError_, from_python
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.languages.commonlisp.systems import importer
 
 _numbers = itertools.count()
 
@@ -18,13 +20,14 @@ _numbers = itertools.count()
 @pytest.fixture
 def module(tmp_path, session, monkeypatch):
     """The module of a small Lisp package, imported by Python."""
-    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.ros.search_folders.extra_folders", [str(tmp_path)])
     name = f"imported-{next(_numbers)}"
     home = tmp_path / name
     home.mkdir()
     (home / f"{name}.asd").write_text(f'(defsystem {name} :components ((:file "package") (:file "code")))')
     (home / "package.lisp").write_text(
-        f'(defpackage {name} (:nicknames {name}-short) (:use :cl) (:documentation "A package.") (:export #:area))')
+        f'(defpackage {name} (:nicknames {name}-short) (:use :cl) (:documentation "A package.") (:export #:area))'
+    )
     (home / "code.lisp").write_text(f"""
 (in-package :{name})
 (defvar *speed* 1.5)
@@ -75,14 +78,22 @@ def test_internal_names_are_there_and_unknown_ones_say_so(module):
     assert module.internal().name == "HIDDEN"
     with pytest.raises(AttributeError) as caught:
         module.no_such_thing
-    assert str(caught.value) == (f"the Lisp package {module.lisp_package.name} defines no function or variable for the Python name "
-                                 "'no_such_thing'")
+    assert str(caught.value) == (
+        f"the Lisp package {module.lisp_package.name} defines no function or variable for the Python name 'no_such_thing'"
+    )
     assert not hasattr(module, "__path__")
 
 
 def test_dir_and_documentation(module):
     assert {"area", "two_values", "speed", "internal", "is_big_p"} <= set(dir(module))
     assert module.__doc__ == "A package."
+
+
+def test_hy_may_write_the_name_of_lisp_itself(module):
+    hy.eval(hy.read("(setv speed module.*speed*  limit module.+limit+  big (module.is-big? 11))"), locals=(names := {"module": module}))
+    assert (names["speed"], names["limit"], names["big"]) == (1.5, 10, True)
+    with pytest.raises(AttributeError, match=re.escape("for the Python name '*speet*'")):
+        hy.eval(hy.read("module.*speet*"), locals=names)
 
 
 def test_an_error_in_lisp_is_an_exception_in_python(module):
@@ -108,9 +119,38 @@ def test_an_unknown_module_stays_unknown(session):
 
 
 def test_a_system_without_a_package_of_its_name(tmp_path, session, monkeypatch):
-    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.ros.search_folders.extra_folders", [str(tmp_path)])
     (tmp_path / "packageless-system.asd").write_text("(defsystem packageless-system)")
     importer.install()
     with pytest.raises(ImportError) as caught:
         importlib.import_module("packageless_system")
     assert str(caught.value) == "the system packageless-system defines no Lisp package called packageless_system"
+
+
+@pytest.fixture
+def folder_of_a_system(tmp_path, session, monkeypatch):
+    """The name of a system whose folder has that name, in a folder of Python's path which is the current one."""
+    name = f"here{next(_numbers)}"
+    (tmp_path / name).mkdir()
+    (tmp_path / name / f"{name}.asd").write_text(f'(defsystem {name} :components ((:file "code")))')
+    (tmp_path / name / "code.lisp").write_text(f"(defpackage {name} (:use :cl)) (in-package {name}) (defun answer () 42)")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    importer.install()
+    yield name
+    sys.modules.pop(name, None)
+
+
+def test_a_system_is_found_where_its_folder_lies_on_the_path(folder_of_a_system):
+    assert importlib.import_module(folder_of_a_system).answer() == 42
+
+
+def test_a_package_of_python_goes_before_the_system_in_its_folder(folder_of_a_system, tmp_path):
+    (tmp_path / folder_of_a_system / "__init__.py").write_text("answer = 'Python'")
+    importlib.invalidate_caches()
+    assert importlib.import_module(folder_of_a_system).answer == "Python"
+
+
+def test_a_folder_without_a_system_stays_a_package_without_init(folder_of_a_system, tmp_path):
+    (tmp_path / folder_of_a_system / f"{folder_of_a_system}.asd").unlink()
+    assert importlib.import_module(folder_of_a_system).__path__

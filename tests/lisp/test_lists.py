@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.collections import list_search, lists
-from cramhy_runtime.lisp.data import Cons, MultipleValues, lisp_list, list_from, python_list
-from cramhy_runtime.lisp.packages import intern, keyword
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.collections import list_search, lists
+from cramhy_runtime.ground.data import Cons, MultipleValues, lisp_list, list_from, python_list
+from cramhy_runtime.ground.packages import intern, keyword
 
 integers = st.lists(st.integers(-5, 5), max_size=12)
 
@@ -33,8 +33,9 @@ def test_car_of_an_atom_is_a_type_error_with_the_text_of_sbcl():
 def test_a_handler_sees_the_error_before_anything_unwinds():
     seen = []
     with pytest.raises(conditions.TypeError_):
-        conditions.handler_bind([(conditions.TypeError_, lambda condition: seen.append(condition.datum))],
-                                lambda: lists.mapcar(lists.car, lisp_list(7)))
+        conditions.handler_bind(
+            [(conditions.TypeError_, lambda condition: seen.append(condition.datum))], lambda: lists.mapcar(lists.car, lisp_list(7))
+        )
     assert seen == [7]
 
 

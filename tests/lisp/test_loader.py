@@ -8,11 +8,11 @@ import sys
 
 import pytest
 
-from cramhy_runtime.lisp.conditions import Condition, FileError
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.packages import find_package, make_package, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.systems import loader
+from cramhy_runtime.ground.conditions import Condition, FileError
+from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+from cramhy_runtime.ground.packages import find_package, make_package, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.systems import loader
 
 
 @pytest.fixture
@@ -118,7 +118,7 @@ LITERALS = r"""
 
 
 def test_every_kind_of_literal_comes_back_from_a_kept_file(folder, compiled):
-    from cramhy_runtime.lisp.reader.reader import Reader
+    from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
     find_package("OTHER-PACKAGE") or make_package("OTHER-PACKAGE", [])
     reader, end, forms = Reader(LITERALS, filename="literals"), object(), []
@@ -136,8 +136,11 @@ def test_every_kind_of_literal_comes_back_from_a_kept_file(folder, compiled):
 
 
 def test_an_uninterned_symbol_is_the_same_wherever_a_file_mentions_it(folder):
-    path = write(folder, """(defmacro both () (let ((g (make-symbol "G"))) `(list ',g '(a ,g) (eq ',g (second '(a ,g))))))
-                            (defparameter *both* (both))""")
+    path = write(
+        folder,
+        """(defmacro both () (let ((g (make-symbol "G"))) `(list ',g '(a ,g) (eq ',g (second '(a ,g))))))
+                            (defparameter *both* (both))""",
+    )
     for _ in range(2):
         loader.load_file(path)
         assert value("*BOTH*") == "(#:G (A #:G) T)"
@@ -160,7 +163,9 @@ def test_a_literal_that_no_code_can_make_keeps_the_file_from_being_kept(folder):
 
 
 def test_definitions_of_all_kinds_work_from_a_kept_file(folder, compiled):
-    path = write(folder, """
+    path = write(
+        folder,
+        """
 (defpackage kept-test (:use :cl) (:export #:f))
 (in-package :kept-test)
 (defvar *v* 10 "a variable")
@@ -182,9 +187,9 @@ def test_definitions_of_all_kinds_work_from_a_kept_file(folder, compiled):
           (handler-case (error 'bad :n 3) (bad (c) (princ-to-string c))) (documentation 'f 'function)
           (block nil (mapc (lambda (x) (when (= x 2) (return x))) '(1 2 3))))))
 (defparameter *result* (result))
-""")
-    wanted = ('((1 5 2 NIL 10 1) (2 5 3 T 10 1) #S(KEPT-TEST::POINT :X 1 :Y 2) (KEPT-TEST::NEW 2) T NIL (:THING 1 2) "bad 3" '
-              '"documented" 2)')
+""",
+    )
+    wanted = '((1 5 2 NIL 10 1) (2 5 3 T 10 1) #S(KEPT-TEST::POINT :X 1 :Y 2) (KEPT-TEST::NEW 2) T NIL (:THING 1 2) "bad 3" "documented" 2)'
     loader.load_file(path)
     assert " ".join(prin1_to_string(sym("KEPT-TEST::*RESULT*").value).split()) == wanted
     before = compiled[0]
@@ -198,18 +203,21 @@ def test_the_package_is_the_same_after_loading(folder, session):
     assert session.package.name == "COMMON-LISP-USER"
 
 
-@pytest.mark.parametrize(("text", "place"), [
-    ("(defun f ()\n  (let ((x 1 2))\n    x))", (2, 3)),
-    ("(defun f ()\n  (return-from g 1))", (2, 3)),
-    ("\n\n(defun g ()\n  (list 1\n        (if)))", (5, 9)),
-    ("(defun h (a a) a)", (1, 1)),
-    ("(setq 5 1)", (1, 1)),
-    ("(list 1 2)\n(car 5)", (2, 1)),
-    ("(defun f ()\n  (car 5))\n\n(f)", (2, 3)),
-    ("(list 1 2)\n ; why\n  nowhere\n(list 2)", (3, 3)),
-])
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("(defun f ()\n  (let ((x 1 2))\n    x))", (2, 3)),
+        ("(defun f ()\n  (return-from g 1))", (2, 3)),
+        ("\n\n(defun g ()\n  (list 1\n        (if)))", (5, 9)),
+        ("(defun h (a a) a)", (1, 1)),
+        ("(setq 5 1)", (1, 1)),
+        ("(list 1 2)\n(car 5)", (2, 1)),
+        ("(defun f ()\n  (car 5))\n\n(f)", (2, 3)),
+        ("(list 1 2)\n ; why\n  nowhere\n(list 2)", (3, 3)),
+    ],
+)
 def test_an_error_says_where_in_the_file_it_arose(folder, text, place, session):
-    from cramhy_runtime.lisp.evaluation.places_in_source import exception_position
+    from cramhy_runtime.ground.source_places import exception_position
 
     path = write(folder, text)
     with pytest.raises(Condition) as caught:
@@ -259,10 +267,13 @@ def test_load_finds_files_beside_the_one_being_loaded(folder, session):
 
 
 def test_eval_when_in_a_file(folder):
-    path = write(folder, """(eval-when (:compile-toplevel :load-toplevel :execute) (defun helper () '(list 1 2)))
+    path = write(
+        folder,
+        """(eval-when (:compile-toplevel :load-toplevel :execute) (defun helper () '(list 1 2)))
                             (defmacro use-helper () (helper))
                             (defparameter *used* (use-helper))
-                            (let () (eval-when (:compile-toplevel) (defparameter *used* nil)))""")
+                            (let () (eval-when (:compile-toplevel) (defparameter *used* nil)))""",
+    )
     for _ in range(2):
         loader.load_file(path)
         assert value("*USED*") == "(1 2)"
@@ -277,10 +288,13 @@ def test_load_time_value_is_computed_once_for_each_load(folder):
 
 def test_each_load_time_value_of_a_text_has_a_place_of_its_own(folder):
     """All of them were one variable: a scanner of cl-ppcre matched what a later function of the file looked for."""
-    path = write(folder, """(defun first-box () (load-time-value (list 1)))
+    path = write(
+        folder,
+        """(defun first-box () (load-time-value (list 1)))
                             (defun other-boxes () (flet ((inner () (load-time-value (list 3)))) (list (load-time-value (list 2)) (inner))))
                             (defun last-box () (load-time-value (list 4)))
-                            (defparameter *boxes* (list (first-box) (other-boxes) (last-box)))""")
+                            (defparameter *boxes* (list (first-box) (other-boxes) (last-box)))""",
+    )
     for _ in range(2):
         loader.load_file(path)
         assert value("*BOXES*") == "((1) ((2) (3)) (4))"
@@ -294,22 +308,27 @@ def test_load_time_values_of_the_repl_are_apart(session):
 
 def test_a_kept_file_runs_in_a_process_that_compiles_nothing(tmp_path):
     """What expansions call is there without the macros: LOOP's collecting was not."""
-    path = write(tmp_path, """(defparameter *got*
+    path = write(
+        tmp_path,
+        """(defparameter *got*
       (list (loop for x in '(1 2) collect x append (list x) nconc (list x)) (loop for x across "ab" collect x)
             (let ((h (make-hash-table)))
               (setf (gethash 1 h) 2)
               (loop for k being the hash-keys of h using (hash-value v) collect (list k v)))
             (loop for s being the external-symbols of :sb-mop count (symbolp s))
             (with-output-to-string (s) (format s "~a" 1)) (handler-case (error "x") (error () :handled))))
-      (print (subseq *got* 0 3))""")
+      (print (subseq *got* 0 3))""",
+    )
     program = f"""from cramhy_runtime.repl.session import Session
 import sys
 Session(time="virtual", turtlesim=False).load({str(path)!r})
 print("hy" in sys.modules)"""
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
     runs = [subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment) for _ in range(2)]
-    assert [run.stdout.split("\n") for run in runs] == [["", '((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) True', ""],
-                                                        ["", '((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) False', ""]], runs[1].stderr
+    assert [run.stdout.split("\n") for run in runs] == [
+        ["", "((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) True", ""],
+        ["", "((1 1 1 2 2 2) (#\\a #\\b) ((1 2))) False", ""],
+    ], runs[1].stderr
 
 
 def test_a_circular_literal_is_loaded_but_not_kept(folder, compiled):

@@ -2,20 +2,21 @@
 
 import pytest
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.data import python_list
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.loop import loop
-from cramhy_runtime.lisp.packages import find_package, sym
-from cramhy_runtime.lisp.reader.reader import Reader
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import python_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+from cramhy_runtime.languages.commonlisp.loop import loop
+from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
 
 @pytest.fixture(autouse=True)
 def in_user_package():
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     with binding(sym("*PACKAGE*"), find_package("COMMON-LISP-USER")):
         yield
 
@@ -30,40 +31,93 @@ def complaint(text):
     return caught.value
 
 
-@pytest.mark.parametrize("text, report, hint", [
-    ("(loop for x in l colect x)", "unknown LOOP keyword: COLECT\ncurrent LOOP context: COLECT X.", "Did you mean COLLECT or COLLECTING?"),
-    ("(loop for x from 1 to 3 by)", "LOOP code ran out where a form was expected.\ncurrent LOOP context: FOR X FROM 1 TO 3 BY.", None),
-    ("(loop for x)", "LOOP source code ran out when another token was expected.\ncurrent LOOP context: FOR X.", None),
-    ("(loop for x over l do (print x))", "OVER is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X OVER.",
-     "After the variable comes IN, ON, ACROSS, =, FROM or BEING."),
-    ("(loop for x in a and for y in b)",
-     "Y is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X IN A AND FOR Y.",
-     "After AND the next variable follows directly, without FOR."),
-    ("(loop for x in a for x in b)", "Duplicated variable X\ncurrent LOOP context: FOR X IN B.", None),
-    ("(loop for x in a finally return x)",
-     "A compound form was expected, but RETURN found.\ncurrent LOOP context: FINALLY RETURN.",
-     "A value is returned with FINALLY (RETURN value)."),
-    ("(loop for x in a do print x)", "A compound form was expected, but PRINT found.\ncurrent LOOP context: DO PRINT.",
-     "Forms are lists here: (print x)."),
-    ("(loop for x in a collect x sum x)", "incompatible kinds of LOOP value accumulation specified for collecting\n"
-     "as the value of the LOOP: LIST and SUM\ncurrent LOOP context: SUM X.", "Give each its own variable with INTO."),
-    ("(loop when t for x in a)", "FOR does not introduce a LOOP clause that can follow WHEN.\ncurrent LOOP context: WHEN T FOR.", None),
-    ("(loop else)", "secondary clause misplaced at top level in LOOP macro: ELSE\ncurrent LOOP context: ELSE.", None),
-    ("(loop for x being the parts of y)", "PART is not the name of a LOOP iteration path.\ncurrent LOOP context: FOR X BEING THE PARTS.",
-     "There are HASH-KEYS, HASH-VALUES, SYMBOLS, PRESENT-SYMBOLS and EXTERNAL-SYMBOLS."),
-    ("(loop for 5 in a)", "5 cannot be used as a variable.\ncurrent LOOP context: FOR 5.", None),
-    ("(loop 3 4)", "3 found where a LOOP keyword expected\ncurrent LOOP context: 3.", None),
-    ("(loop for x downto 3)", "don't know where to start stepping\ncurrent LOOP context: FOR X DOWNTO 3.", "Counting down needs FROM."),
-])
+@pytest.mark.parametrize(
+    "text, report, hint",
+    [
+        (
+            "(loop for x in l colect x)",
+            "unknown LOOP keyword: COLECT\ncurrent LOOP context: COLECT X.",
+            "Did you mean COLLECT or COLLECTING?",
+        ),
+        ("(loop for x from 1 to 3 by)", "LOOP code ran out where a form was expected.\ncurrent LOOP context: FOR X FROM 1 TO 3 BY.", None),
+        ("(loop for x)", "LOOP source code ran out when another token was expected.\ncurrent LOOP context: FOR X.", None),
+        (
+            "(loop for x over l do (print x))",
+            "OVER is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X OVER.",
+            "After the variable comes IN, ON, ACROSS, =, FROM or BEING.",
+        ),
+        (
+            "(loop for x in a and for y in b)",
+            "Y is an unknown keyword in FOR or AS clause in LOOP.\ncurrent LOOP context: FOR X IN A AND FOR Y.",
+            "After AND the next variable follows directly, without FOR.",
+        ),
+        ("(loop for x in a for x in b)", "Duplicated variable X\ncurrent LOOP context: FOR X IN B.", None),
+        (
+            "(loop for x in a finally return x)",
+            "A compound form was expected, but RETURN found.\ncurrent LOOP context: FINALLY RETURN.",
+            "A value is returned with FINALLY (RETURN value).",
+        ),
+        (
+            "(loop for x in a do print x)",
+            "A compound form was expected, but PRINT found.\ncurrent LOOP context: DO PRINT.",
+            "Forms are lists here: (print x).",
+        ),
+        (
+            "(loop for x in a collect x sum x)",
+            "incompatible kinds of LOOP value accumulation specified for collecting\n"
+            "as the value of the LOOP: LIST and SUM\ncurrent LOOP context: SUM X.",
+            "Give each its own variable with INTO.",
+        ),
+        ("(loop when t for x in a)", "FOR does not introduce a LOOP clause that can follow WHEN.\ncurrent LOOP context: WHEN T FOR.", None),
+        ("(loop else)", "secondary clause misplaced at top level in LOOP macro: ELSE\ncurrent LOOP context: ELSE.", None),
+        (
+            "(loop for x being the parts of y)",
+            "PART is not the name of a LOOP iteration path.\ncurrent LOOP context: FOR X BEING THE PARTS.",
+            "There are HASH-KEYS, HASH-VALUES, SYMBOLS, PRESENT-SYMBOLS and EXTERNAL-SYMBOLS.",
+        ),
+        ("(loop for 5 in a)", "5 cannot be used as a variable.\ncurrent LOOP context: FOR 5.", None),
+        ("(loop 3 4)", "3 found where a LOOP keyword expected\ncurrent LOOP context: 3.", None),
+        ("(loop for x downto 3)", "don't know where to start stepping\ncurrent LOOP context: FOR X DOWNTO 3.", "Counting down needs FROM."),
+    ],
+)
 def test_a_malformed_loop_is_explained(text, report, hint):
     problem = complaint(text)
     assert (problem.report(), problem.hint) == (report, hint)
 
 
-@pytest.mark.parametrize("clauses", [
-    "for", "for x in", "for x = ", "with", "repeat", "collect", "when", "if t", "named", "initially", "finally", "do", "return", "while",
-    "always", "thereis", "for x in a by", "for x being", "for x being the", "sum 1 into", "for (a . 3) in b", "for x in a using",
-    "with x =", "for x being the hash-keys", "and", "end", "it", '"a" b'])
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        "for",
+        "for x in",
+        "for x = ",
+        "with",
+        "repeat",
+        "collect",
+        "when",
+        "if t",
+        "named",
+        "initially",
+        "finally",
+        "do",
+        "return",
+        "while",
+        "always",
+        "thereis",
+        "for x in a by",
+        "for x being",
+        "for x being the",
+        "sum 1 into",
+        "for (a . 3) in b",
+        "for x in a using",
+        "with x =",
+        "for x being the hash-keys",
+        "and",
+        "end",
+        "it",
+        '"a" b',
+    ],
+)
 def test_no_malformed_loop_raises_anything_but_a_condition(clauses):
     complaint(f"(loop {clauses})")
 

@@ -4,13 +4,13 @@ from fractions import Fraction
 
 import pytest
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp.conditions import DivisionByZero, FloatingPointOverflow, SimpleTypeError, TypeError_
-from cramhy_runtime.lisp.data import DoubleFloat
-from cramhy_runtime.lisp.numbers import arithmetic, irrational, random_state, rounding
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, SimpleTypeError, TypeError_
+from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.languages.commonlisp.numbers import arithmetic, irrational, random_state, rounding
+from cramhy_runtime.ground.packages import sym
 
-image.boot()
+boot()
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +63,7 @@ def test_a_product_too_large_for_a_float_overflows_instead_of_going_on_with_infi
     with pytest.raises(FloatingPointOverflow):
         arithmetic.mul2(1e300, 1e300)
     with pytest.raises(FloatingPointOverflow):
-        arithmetic.mul2(10 ** 400, 1.5)
+        arithmetic.mul2(10**400, 1.5)
 
 
 def test_the_quotient_of_singles_is_rounded_to_a_single_before_it_is_cut():
@@ -82,7 +82,7 @@ def test_a_single_that_becomes_a_double_has_the_digits_of_a_single():
 
 
 def test_a_fresh_session_throws_the_numbers_that_sbcl_throws():
-    throws = [random_state.random(limit) for limit in (255, 1.0, 10, DoubleFloat(1), 100, 2 ** 40, 7)]
+    throws = [random_state.random(limit) for limit in (255, 1.0, 10, DoubleFloat(1), 100, 2**40, 7)]
     assert throws[0] == 92 and throws[2] == 9 and throws[4:6] == [5, 969083603898]
     assert throws[1] == pytest.approx(0.2709539, abs=1e-7)
     assert throws[3] == 0.2539739311864577 and type(throws[3]) is DoubleFloat
@@ -98,14 +98,14 @@ def test_a_seed_gives_the_throws_that_sbcl_gives_for_it():
 def test_same_seed_same_throws():
     def throws():
         random_state.seed_random(7)
-        return [random_state.random(1000) for _ in range(20)] + [random_state.random(2 ** 100) for _ in range(5)]
+        return [random_state.random(1000) for _ in range(20)] + [random_state.random(2**100) for _ in range(5)]
 
     assert throws() == throws()
 
 
 def test_a_copied_state_repeats_what_the_original_throws():
     copy = random_state.make_random_state()
-    assert random_state.random(10 ** 6, copy) == random_state.random(10 ** 6)
+    assert random_state.random(10**6, copy) == random_state.random(10**6)
 
 
 def test_a_limit_that_is_not_positive_is_refused():

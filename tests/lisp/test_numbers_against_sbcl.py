@@ -9,22 +9,23 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.data import all_values, one
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation.evaluator import evaluate
-from cramhy_runtime.lisp.objects.classes import class_name
-from cramhy_runtime.lisp.packages import find_package, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.reader.reader import read_from_string
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import all_values, one
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
+from cramhy_runtime.languages.commonlisp.objects.classes import class_name
+from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 
 PACKAGE, PRETTY = sym("*PACKAGE*"), sym("*PRINT-PRETTY*")
 
 
 def answers(program):
     """(form text, what SBCL answered, what we answer) for the forms of ``program`` that are followed by ``=> answer``."""
-    image.boot()
+    boot()
     if kernel.active() is None:
         kernel.start()
     expected, text = [], []
@@ -56,7 +57,7 @@ def check(program):
     assert not wrong, f"{len(wrong)} answers differ:\n" + "\n".join(wrong)
 
 
-NUMBERS = r'''
+NUMBERS = r"""
 (+ 1 nil)
 => TYPE-ERROR: The value NIL is not of type NUMBER
 (+ nil 1)
@@ -433,7 +434,7 @@ most-positive-short-float
 => 1/4
 (/ 0.5)
 => 2.0
-'''
+"""
 
 
 def test_numbers_answer_as_in_sbcl():

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.lisp import packages
-from cramhy_runtime.lisp.conditions import restart_case
-from cramhy_runtime.lisp.data import Symbol
-from cramhy_runtime.lisp.packages import Package
-from cramhy_runtime.lisp.symbols.package_errors import NameConflict, PackageLockedError, check_package, unlocked
+from cramhy_runtime.ground import packages
+from cramhy_runtime.ground.conditions import restart_case
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.packages import Package
+from cramhy_runtime.languages.commonlisp.packages.package_errors import NameConflict, PackageLockedError, check_package, unlocked
 
 
 @pytest.fixture
@@ -28,8 +28,15 @@ def lisp(session):
 RESTARTED = "(handler-bind ((error (lambda (e) (invoke-restart {})))) {})"
 
 
-@pytest.mark.parametrize(("restart", "home"), [("'sb-impl::keep-old", "TA"), ("'sb-impl::take-new", "TB"),
-                                               ("'sb-impl::resolve-conflict 'tb:x", "TB"), ("'sb-impl::resolve-conflict 'ta:x", "TA")])
+@pytest.mark.parametrize(
+    ("restart", "home"),
+    [
+        ("'sb-impl::keep-old", "TA"),
+        ("'sb-impl::take-new", "TB"),
+        ("'sb-impl::resolve-conflict 'tb:x", "TB"),
+        ("'sb-impl::resolve-conflict 'ta:x", "TA"),
+    ],
+)
 def test_a_conflict_of_inherited_names_is_resolved_as_the_user_says(lisp, restart, home):
     lisp("(make-package :tc :use '(:ta))")
     assert lisp(RESTARTED.format(restart, "(use-package :tb :tc)")) is True
@@ -49,9 +56,11 @@ def test_the_conflict_says_what_to_do(lisp, session):
     with pytest.raises(NameConflict) as caught:
         lisp("(defpackage :tf (:use :ta :tb))")
     assert " ".join(str(caught.value).split()) == (
-        'USE-PACKAGE #<PACKAGE "TB"> causes name-conflicts in #<PACKAGE "TF"> between the following symbols: TB:X, TA:X')
+        'USE-PACKAGE #<PACKAGE "TB"> causes name-conflicts in #<PACKAGE "TF"> between the following symbols: TB:X, TA:X'
+    )
     assert caught.value.hint == (
-        "Choose with a restart, or say in the package definition which one is meant, with :shadow or :shadowing-import-from.")
+        "Choose with a restart, or say in the package definition which one is meant, with :shadow or :shadowing-import-from."
+    )
     assert lisp("(package-name (defpackage :tf (:use :ta :tb) (:shadowing-import-from :ta #:x)))") == "TF"
 
 
@@ -91,5 +100,5 @@ def test_the_symbols_of_a_deleted_package_print_without_home(lisp):
 
 def test_local_nicknames_hold_in_their_package_only(lisp):
     lisp("(defpackage :th (:use :cl) (:local-nicknames (:geometry :ta)))")
-    assert lisp("(let ((*package* (find-package :th))) (package-name (symbol-package (read-from-string \"geometry:x\"))))") == "TA"
+    assert lisp('(let ((*package* (find-package :th))) (package-name (symbol-package (read-from-string "geometry:x"))))') == "TA"
     assert lisp("(find-package :geometry)") is None

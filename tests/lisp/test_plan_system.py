@@ -17,7 +17,7 @@ RECORDED = SYSTEMS / "kitchen-courier" / "transcript.txt"
 
 
 def test_the_transcript_is_that_of_sbcl(session, monkeypatch):
-    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(SYSTEMS / "kitchen-courier")])
+    monkeypatch.setattr("cramhy_runtime.ros.search_folders.extra_folders", [str(SYSTEMS / "kitchen-courier")])
     session.package = "CL-USER"
     session.evaluate_text('(asdf:load-system "kitchen-courier/tests")')
     [text] = session.evaluate_text("""(with-output-to-string (*standard-output*)
@@ -30,8 +30,13 @@ def test_the_transcript_is_that_of_sbcl(session, monkeypatch):
 @pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL is not installed")
 def test_the_recorded_transcript_is_what_sbcl_prints(tmp_path):
     translations = f'(:output-translations (t "{tmp_path}/") :ignore-inherited-configuration)'
-    run = subprocess.run(["sbcl", "--script", str(SYSTEMS / "transcript.lisp")], capture_output=True, text=True, timeout=120,
-                         env={**os.environ, "ASDF_OUTPUT_TRANSLATIONS": translations})
+    run = subprocess.run(
+        ["sbcl", "--script", str(SYSTEMS / "transcript.lisp")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, "ASDF_OUTPUT_TRANSLATIONS": translations},
+    )
     assert run.stdout == RECORDED.read_text()
 
 

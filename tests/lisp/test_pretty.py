@@ -4,11 +4,11 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.data import Cons, DoubleFloat, lisp_list
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER, sym
-from cramhy_runtime.lisp.printer import pprint_dispatch, printing_support
-from cramhy_runtime.lisp.printer.pretty import logical_block, pprint_indent, pprint_newline
-from cramhy_runtime.lisp.printer.print_controls import (
+from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list
+from cramhy_runtime.ground.packages import COMMON_LISP_USER, sym
+from cramhy_runtime.languages.commonlisp.printer import pprint_dispatch, printing_support
+from cramhy_runtime.languages.commonlisp.printer.pretty import logical_block, pprint_indent, pprint_newline
+from cramhy_runtime.languages.commonlisp.printer.print_controls import (
     PACKAGE,
     PRINT_LENGTH,
     PRINT_LEVEL,
@@ -17,9 +17,16 @@ from cramhy_runtime.lisp.printer.print_controls import (
     PRINT_RIGHT_MARGIN,
     bound,
 )
-from cramhy_runtime.lisp.printer.printer import define_printer, output_object, prin1, prin1_to_string, print_unreadable, write
-from cramhy_runtime.lisp.reader.reader import read_from_string
-from cramhy_runtime.lisp.streams.streams import StringOutputStream
+from cramhy_runtime.languages.commonlisp.printer.printer import (
+    define_printer,
+    output_object,
+    prin1,
+    prin1_to_string,
+    print_unreadable,
+    write,
+)
+from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
+from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 
 
 @pytest.fixture(autouse=True)
@@ -127,10 +134,7 @@ def test_a_block_too_deep_is_a_sharp_sign():
 
 def test_lines_beyond_print_lines_are_cut():
     with bound(PRINT_LINES, 2, PRINT_RIGHT_MARGIN, 20):
-        assert (
-            prin1_to_string(read("(foo bar baz quux frob a b c d e f g h i j k)"))
-            == "(FOO BAR BAZ QUUX\n FROB A B C D E F G ..)"
-        )
+        assert prin1_to_string(read("(foo bar baz quux frob a b c d e f g h i j k)")) == "(FOO BAR BAZ QUUX\n FROB A B C D E F G ..)"
 
 
 def test_elements_beyond_print_length_are_dots():

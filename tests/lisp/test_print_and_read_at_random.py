@@ -1,6 +1,6 @@
 """What is printed reads back as the same, and reading anything at all gives an object or a reader error.
 
-Short in ``make test``; with CRAMHY_SOAK=1 (``make soak``) 10,000 forms and 100,000 texts. The figures are in ``docs/reliability.md``.
+Short in ``make test``; with CRAMHY_SOAK=1 (``make soak``) 10,000 forms and 100,000 texts. The figures are in ``docs/explanation/reliability.md``.
 """
 
 from __future__ import annotations
@@ -15,24 +15,25 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.collections.array_making import make_array
-from cramhy_runtime.lisp.collections.vectors import LispArray, bit_vector
-from cramhy_runtime.lisp.condition_types import EndOfFile, ReaderError
-from cramhy_runtime.lisp.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, LispString, Symbol, list_from, one
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation.evaluator import evaluate
-from cramhy_runtime.lisp.files.pathnames import parse_namestring
-from cramhy_runtime.lisp.numbers.arithmetic import single
-from cramhy_runtime.lisp.numbers.complex_numbers import DoubleComplex, exact
-from cramhy_runtime.lisp.objects.structures import slots_of
-from cramhy_runtime.lisp.packages import Package, find_package, intern, keyword, register, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.reader.backquote import QUASIQUOTE, Comma
-from cramhy_runtime.lisp.reader.reader import Reader
-from cramhy_runtime.lisp.reader.readtables import STANDARD
-from cramhy_runtime.lisp.symbols.package_errors import PackageLockedError
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.languages.commonlisp.collections.array_making import make_array
+from cramhy_runtime.ground.arrays import LispArray, bit_vector
+from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError
+from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol, list_from, one
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
+from cramhy_runtime.languages.commonlisp.pathnames.pathnames import parse_namestring
+from cramhy_runtime.languages.commonlisp.numbers.arithmetic import single
+from cramhy_runtime.languages.commonlisp.numbers.complex_numbers import DoubleComplex, exact
+from cramhy_runtime.languages.commonlisp.objects.structures import slots_of
+from cramhy_runtime.ground.packages import Package, find_package, intern, keyword, register, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.syntax.backquote import QUASIQUOTE, Comma
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
+from cramhy_runtime.languages.commonlisp.reader.readtables import STANDARD
+from cramhy_runtime.languages.commonlisp.packages.package_errors import PackageLockedError
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 FORMS, TEXTS, SECONDS_A_TEXT = (10_000, 100_000, 5) if SOAK else (300, 3_000, 5)
@@ -41,7 +42,7 @@ FORMS, TEXTS, SECONDS_A_TEXT = (10_000, 100_000, 5) if SOAK else (300, 3_000, 5)
 @pytest.fixture(scope="module", autouse=True)
 def lisp():
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     for name in ODD_PACKAGES:
         if find_package(name) is None:
             register(Package(name))
@@ -55,9 +56,12 @@ def lisp():
 
 ODD_PACKAGES = ("ODD PACKAGE", "lower", "A:B", "1", "x|y")
 SETTINGS = {
-    "*PRINT-BASE*": st.integers(2, 36), "*PRINT-RADIX*": st.sampled_from([None, True]), "*PRINT-PRETTY*": st.sampled_from([None, True]),
+    "*PRINT-BASE*": st.integers(2, 36),
+    "*PRINT-RADIX*": st.sampled_from([None, True]),
+    "*PRINT-PRETTY*": st.sampled_from([None, True]),
     "*PRINT-CASE*": st.sampled_from(["UPCASE", "DOWNCASE", "CAPITALIZE"]).map(keyword),
-    "*PRINT-RIGHT-MARGIN*": st.sampled_from([None, 1, 20, 40, 80]), "*PRINT-MISER-WIDTH*": st.sampled_from([None, 10, 40]),
+    "*PRINT-RIGHT-MARGIN*": st.sampled_from([None, 1, 20, 40, 80]),
+    "*PRINT-MISER-WIDTH*": st.sampled_from([None, 10, 40]),
 }
 CASES = ("UPCASE", "DOWNCASE", "PRESERVE", "INVERT")
 
@@ -65,21 +69,27 @@ characters = st.characters(exclude_categories=["Cs"])
 texts = st.text(characters, max_size=12)
 glyphs = characters.filter(lambda char: char != " ")  # "#\\ " at the end of a line loses its space, in SBCL too
 names = st.one_of(
-    st.sampled_from("a A Car |  . .. ... 1 -1 +1 1/2 1e5 1.5d0 + - 1+ a.b :a a: a:b NIL nil T #a a# 'a `a ,a a;b (a \\ \\| \" 1E ^ _ É é "
-                    "ABC abc aBc FF ff 10 1A a1 ß".split(" ")),
+    st.sampled_from(
+        "a A Car |  . .. ... 1 -1 +1 1/2 1e5 1.5d0 + - 1+ a.b :a a: a:b NIL nil T #a a# 'a `a ,a a;b (a \\ \\| \" 1E ^ _ É é "
+        "ABC abc aBc FF ff 10 1A a1 ß".split(" ")
+    ),
     st.text(st.sampled_from("aAbB1-+./ |\\:#;'\"(),`eEdD_^~\n\t"), min_size=1, max_size=6),
     texts,
 )
 symbols = st.one_of(
-    names.map(lambda name: intern(name, "COMMON-LISP-USER")), names.map(keyword), st.sampled_from(["CAR", "LIST", "QUOTE"]).map(sym),
-    st.tuples(names, st.sampled_from(ODD_PACKAGES)).map(lambda pair: intern(*pair)), st.sampled_from([None, True]),
+    names.map(lambda name: intern(name, "COMMON-LISP-USER")),
+    names.map(keyword),
+    st.sampled_from(["CAR", "LIST", "QUOTE"]).map(sym),
+    st.tuples(names, st.sampled_from(ODD_PACKAGES)).map(lambda pair: intern(*pair)),
+    st.sampled_from([None, True]),
 )
 singles = st.floats(allow_nan=False, allow_infinity=False, width=32)
 doubles = st.floats(allow_nan=False, allow_infinity=False).map(DoubleFloat)
-integers = st.one_of(st.integers(-100, 100), st.integers(-2 ** 70, 2 ** 70), st.integers(-10 ** 400, 10 ** 400))
+integers = st.one_of(st.integers(-100, 100), st.integers(-(2**70), 2**70), st.integers(-(10**400), 10**400))
 ratios = st.fractions().map(lambda ratio: ratio.numerator if ratio.denominator == 1 else ratio)
 complexes = st.one_of(
-    st.tuples(st.integers(-9, 9), st.fractions()).map(lambda parts: exact(*parts)), st.tuples(singles, singles).map(lambda p: complex(*p)),
+    st.tuples(st.integers(-9, 9), st.fractions()).map(lambda parts: exact(*parts)),
+    st.tuples(singles, singles).map(lambda p: complex(*p)),
     st.tuples(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9)).map(lambda parts: DoubleComplex(*parts)),
 )
 bits = st.lists(st.integers(0, 1), max_size=9).map(bit_vector)
@@ -142,8 +152,9 @@ def same(a, b, sharing):
     todo, there, back = [(a, b)], {}, {}
     while todo:
         a, b = todo.pop()
-        if sharing and (isinstance(a, (Cons, list)) or hasattr(a.__class__, "lisp_structure")
-                        or isinstance(a, Symbol) and a.package is None):
+        if sharing and (
+            isinstance(a, (Cons, list)) or hasattr(a.__class__, "lisp_structure") or isinstance(a, Symbol) and a.package is None
+        ):
             if id(a) in there or id(b) in back:
                 if there.get(id(a)) is not b or back.get(id(b)) is not a:
                     return False
@@ -190,8 +201,16 @@ def reread(form, values, case, **more):
     """(the text of ``form`` printed under the settings, what reading that gives)."""
     table = STANDARD.copy()
     table.case = keyword(case)
-    settings_ = {**values, **more, "*READTABLE*": table, "*READ-BASE*": values["*PRINT-BASE*"],
-                 "*PACKAGE*": find_package("COMMON-LISP-USER"), "*PRINT-LENGTH*": None, "*PRINT-LEVEL*": None, "*PRINT-LINES*": None}
+    settings_ = {
+        **values,
+        **more,
+        "*READTABLE*": table,
+        "*READ-BASE*": values["*PRINT-BASE*"],
+        "*PACKAGE*": find_package("COMMON-LISP-USER"),
+        "*PRINT-LENGTH*": None,
+        "*PRINT-LEVEL*": None,
+        "*PRINT-LINES*": None,
+    }
     with binding(*[part for name, value in settings_.items() for part in (sym(name), value)]):
         text = prin1_to_string(form)
         try:
@@ -228,13 +247,20 @@ def test_a_path_name_reads_back_as_the_same(path):
 
 READING = (ReaderError, EndOfFile, PackageLockedError)
 """The conditions of reading; the last is SBCL's for a new symbol in COMMON-LISP."""
-SCRAPS = """( ) ' ` , ,@ ,. . .. ; " | \\ # #( #' #\\ #| |# #+ #- #. #1= #1# #= ## #b #o #x #2r #c( #* #3* #2A #0A #A #: #s( #p #< #) cl:
+SCRAPS = (
+    """( ) ' ` , ,@ ,. . .. ; " | \\ # #( #' #\\ #| |# #+ #- #. #1= #1# #= ## #b #o #x #2r #c( #* #3* #2A #0A #A #: #s( #p #< #) cl:
 cl:: nope: :a a: a:b::c 1/0 1/2 1e400 1d0 -1.5e+3 +. #\\Space #\\x #\\( |a #+(and #-(or #(1 2 #1=(a . #1#)
 #.(car 5) #S(nope :a 1) #P5
 #99999999999(1) #37r1 #2A((1) 2) a\\ \x00 \ud800 \ufeff \x7f \xa0 λ İ ß ﬁ #5(1
-#C(a b) #!x #@ #^ #5 #_""".split() + [" ", "\n", "\t", "\r\n"]
-REAL = "\n".join(line for path in sorted((Path(__file__).parent / "symbols").glob("*.txt")) for line in path.read_text().splitlines()
-                 if line.startswith(("(", "'", "`", "#", '"')))
+#C(a b) #!x #@ #^ #5 #_""".split()
+    + [" ", "\n", "\t", "\r\n"]
+)
+REAL = "\n".join(
+    line
+    for path in sorted((Path(__file__).parent / "symbols").glob("*.txt"))
+    for line in path.read_text().splitlines()
+    if line.startswith(("(", "'", "`", "#", '"'))
+)
 
 
 def any_text(chance):
@@ -244,17 +270,17 @@ def any_text(chance):
     if kind == 1:
         return "".join(chance.choice([" ", "", ""]) + chance.choice(SCRAPS) for _ in range(size // 4 + 1))
     start = chance.randrange(len(REAL) - size)
-    text = list(REAL[start:start + size])
+    text = list(REAL[start : start + size])
     for _ in range(1 + size // 16):  # real Lisp with accidents
         where, accident = chance.randrange(len(text) + 1), chance.randrange(4)
         if accident == 0:
             text.insert(where, chance.choice(SCRAPS))
         elif accident == 1:
-            del text[where:where + chance.randrange(4)]
+            del text[where : where + chance.randrange(4)]
         elif accident == 2:
-            text[where:where] = text[max(0, where - 9):where]
+            text[where:where] = text[max(0, where - 9) : where]
         else:
-            text[where:where + 1] = chr(chance.randrange(256))
+            text[where : where + 1] = chr(chance.randrange(256))
     return "".join(text)
 
 

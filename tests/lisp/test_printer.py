@@ -8,12 +8,19 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.data import Cons, DoubleFloat, LispString, Symbol, lisp_list, list_from
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER, Package, find_package, keyword, register, sym
-from cramhy_runtime.lisp.printer import printer
-from cramhy_runtime.lisp.printer.print_controls import PACKAGE, PRINT_CASE, PRINT_CIRCLE, PRINT_PRETTY, PRINT_READABLY, bound
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import Cons, DoubleFloat, LispString, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.packages import COMMON_LISP_USER, Package, find_package, keyword, register, sym
+from cramhy_runtime.languages.commonlisp.printer import printer
+from cramhy_runtime.languages.commonlisp.printer.print_controls import (
+    PACKAGE,
+    PRINT_CASE,
+    PRINT_CIRCLE,
+    PRINT_PRETTY,
+    PRINT_READABLY,
+    bound,
+)
+from cramhy_runtime.languages.commonlisp.printer.printer import define_printer, prin1_to_string, princ_to_string, print_unreadable
 
 
 @pytest.fixture(autouse=True)
@@ -179,7 +186,7 @@ def test_what_cannot_be_read_back_is_an_error_when_it_must_be():
 def test_the_users_print_object_method_comes_first(monkeypatch):
     define_printer(Thing, lambda obj, stream: stream.write("ours"))
     assert prin1_to_string(Thing()) == "ours"
-    monkeypatch.setattr(printer, "print_object_hook", lambda obj, stream: stream.write("theirs") or True)
+    monkeypatch.setattr(printer.user_methods, "print_object", lambda obj, stream: stream.write("theirs") or True)
     assert prin1_to_string(Thing()) == "theirs"
 
 

@@ -1,9 +1,9 @@
 """Python code prints Lisp objects at any time, also when no kernel runs."""
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.format.format import format_to_string
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.languages.commonlisp.format.format import format_to_string
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 
 
 def test_printing_needs_no_kernel():

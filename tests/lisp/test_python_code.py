@@ -7,10 +7,10 @@ from hy import models
 from hy.compiler import hy_compile
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.compiler.core import hy_model
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.reader.reader import Reader
+from cramhy_runtime.languages.commonlisp.compiler.core import hy_model
+from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.repl.session import Session
 
 PROGRAMS = """

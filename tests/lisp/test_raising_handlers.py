@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.lisp.conditions import Error, SeriousCondition, handler_bind, signal_condition
+from cramhy_runtime.ground.conditions import Error, SeriousCondition, handler_bind, signal_condition
 
 
 class Stuck(SeriousCondition):
@@ -22,8 +22,10 @@ def raising(problem):
 def test_handlers_hear_of_what_python_code_just_raises_inner_ones_first(session, problem):
     heard = []
     with pytest.raises(type(problem)):
-        handler_bind([(SeriousCondition, lambda condition: heard.append("outer"))], lambda: handler_bind(
-            [(SeriousCondition, lambda condition: heard.append("inner"))], raising(problem)))
+        handler_bind(
+            [(SeriousCondition, lambda condition: heard.append("outer"))],
+            lambda: handler_bind([(SeriousCondition, lambda condition: heard.append("inner"))], raising(problem)),
+        )
     assert heard == ["inner", "outer"]
 
 
@@ -38,8 +40,10 @@ def test_what_a_handler_raises_is_heard_outside_of_its_form_only(session, proble
         handler_bind([(SeriousCondition, note("inside"))], lambda: signal_condition(Error()))
 
     with pytest.raises(type(problem)):
-        handler_bind([(SeriousCondition, note("outside"))], lambda: handler_bind(
-            [(SeriousCondition, raising(problem)), (SeriousCondition, note("beside"))], body))
+        handler_bind(
+            [(SeriousCondition, note("outside"))],
+            lambda: handler_bind([(SeriousCondition, raising(problem)), (SeriousCondition, note("beside"))], body),
+        )
     assert [where for where, _ in heard] == ["inside", "outside"]
     assert heard[0][1] == str(Error()) and heard[1][1] == str(problem)
 

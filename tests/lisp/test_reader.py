@@ -6,16 +6,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.lisp.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import find_package, intern, keyword, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.reader import backquote
-from cramhy_runtime.lisp.reader.reader import Reader, incomplete, read, read_from_string
-from cramhy_runtime.lisp.streams.file_streams import open_
-from cramhy_runtime.lisp.streams.streams import InputStream, StringInputStream
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import find_package, intern, keyword, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.syntax import backquote
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader, incomplete, read, read_from_string
+from cramhy_runtime.languages.commonlisp.files.file_streams import open_
+from cramhy_runtime.languages.commonlisp.streams.streams import InputStream, StringInputStream
 
 USER = "COMMON-LISP-USER"
 
@@ -23,7 +24,7 @@ USER = "COMMON-LISP-USER"
 @pytest.fixture(autouse=True)
 def in_user_package():
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     with binding(sym("*PACKAGE*"), find_package(USER)):
         yield
 
@@ -58,7 +59,7 @@ def test_a_literal_single_keeps_all_its_digits():
 
 def test_a_very_long_integer_is_read():
     digits = "7" * 20000
-    assert first(digits) % 10 ** 9 == 777777777
+    assert first(digits) % 10**9 == 777777777
     assert first(digits).bit_length() > 66000
 
 
@@ -121,13 +122,22 @@ def test_places_count_from_where_the_text_starts_in_its_file():
 
 
 def test_read_all_gives_each_form_with_its_place():
-    assert [(str(form), place) for form, place in Reader("1 ; one\n  (2)\n#|3|# :four").read_all()] \
-        == [("1", (1, 1)), ("(2)", (2, 3)), (":FOUR", (3, 1))]
+    assert [(str(form), place) for form, place in Reader("1 ; one\n  (2)\n#|3|# :four").read_all()] == [
+        ("1", (1, 1)),
+        ("(2)", (2, 3)),
+        (":FOUR", (3, 1)),
+    ]
 
 
 names = st.sampled_from(["a", "b-c", ":k", "12", "1.5", '"s"', "#\\x", "nil"])
-texts_of_forms = st.recursive(names, lambda inner: st.lists(inner, max_size=4).map(lambda parts: "(" + "  ".join(parts) + ")")
-                              | inner.map(lambda part: "'" + part) | st.lists(inner, max_size=3).map(lambda p: "#(" + "\n".join(p) + ")"))
+texts_of_forms = st.recursive(
+    names,
+    lambda inner: (
+        st.lists(inner, max_size=4).map(lambda parts: "(" + "  ".join(parts) + ")")
+        | inner.map(lambda part: "'" + part)
+        | st.lists(inner, max_size=3).map(lambda p: "#(" + "\n".join(p) + ")")
+    ),
+)
 
 
 @given(st.lists(texts_of_forms, max_size=5))
@@ -139,23 +149,25 @@ def test_the_text_at_the_place_of_a_form_reads_as_that_form(texts):
     for form, whole in zip(forms, texts):
         if id(form) in reader.positions:
             line, column, end_line, end_column = reader.positions[id(form)]
-            part = lines[line - 1:end_line]
+            part = lines[line - 1 : end_line]
             part[-1] = part[-1][:end_column]
-            part[0] = part[0][column - 1:]
+            part[0] = part[0][column - 1 :]
             assert "\n".join(part) == whole
 
 
 # ------------------------------------------------------------------------------------------------------------ completeness
 
 
-@pytest.mark.parametrize("text", ["(", "(a", '"abc', "(a 'b", "'", "#'", "#(1", "#|", "#| |", "|a", "`(a ,", "(a \"b)", "#+sbcl", "(a . ",
-                                  "#\\", "\\", "(a ; b)"])
+@pytest.mark.parametrize(
+    "text", ["(", "(a", '"abc', "(a 'b", "'", "#'", "#(1", "#|", "#| |", "|a", "`(a ,", '(a "b)', "#+sbcl", "(a . ", "#\\", "\\", "(a ; b)"]
+)
 def test_a_text_that_ends_inside_something_is_incomplete(text):
     assert incomplete(text) is True
 
 
-@pytest.mark.parametrize("text", ["", "a", "(a)", ")", "(a))", "nope:foo", "#<x>", "(a . )", '"a"', "#|x|#", "; (", "(a) (b)", ",a",
-                                  "#.(foo)"])
+@pytest.mark.parametrize(
+    "text", ["", "a", "(a)", ")", "(a))", "nope:foo", "#<x>", "(a . )", '"a"', "#|x|#", "; (", "(a) (b)", ",a", "#.(foo)"]
+)
 def test_a_text_that_ends_between_forms_is_complete_however_wrong(text):
     assert incomplete(text) is False
 
@@ -216,11 +228,22 @@ def test_a_string_stream_stands_behind_the_object_and_one_blank():
 
 symbol_names = st.text(st.characters(codec="ascii", min_codepoint=32) | st.sampled_from("äλ\n"), max_size=6)
 atoms = st.one_of(
-    st.integers(), st.fractions().map(lambda f: f.numerator if f.denominator == 1 else f), st.none(), st.just(True),
-    st.floats(allow_nan=False, allow_infinity=False).map(DoubleFloat), st.integers(-1000, 1000).map(lambda n: n / 8),
-    st.text(max_size=8), st.characters(codec="utf-8").map(Character), symbol_names.map(user), symbol_names.map(keyword))
-data = st.recursive(atoms, lambda inner: st.lists(inner, max_size=4).map(list_from) | st.builds(Cons, inner, inner)
-                    | st.lists(inner, max_size=3), max_leaves=12)
+    st.integers(),
+    st.fractions().map(lambda f: f.numerator if f.denominator == 1 else f),
+    st.none(),
+    st.just(True),
+    st.floats(allow_nan=False, allow_infinity=False).map(DoubleFloat),
+    st.integers(-1000, 1000).map(lambda n: n / 8),
+    st.text(max_size=8),
+    st.characters(codec="utf-8").map(Character),
+    symbol_names.map(user),
+    symbol_names.map(keyword),
+)
+data = st.recursive(
+    atoms,
+    lambda inner: st.lists(inner, max_size=4).map(list_from) | st.builds(Cons, inner, inner) | st.lists(inner, max_size=3),
+    max_leaves=12,
+)
 
 
 def alike(one, other):
@@ -239,9 +262,40 @@ def test_what_is_printed_reads_as_it_was(thing):
     assert alike(read_from_string(prin1_to_string(thing))[0], thing)
 
 
-scraps = st.lists(st.sampled_from([
-    *"()'`,@.;\"|\\#:+-* \n\tabAB12/eEdx=<>_\xa0λ\x00", "#(", "#'", "#\\", "#|", "|#", "#+", "#-", "#1=", "#1#", "#b", "#x", "#c", "#*",
-    "#2A", "#:", "cl:", "cl::", "nope:", "..", ",@", ",.", "`(", "#s(", "#p", "1e400", "1/0"]), max_size=25).map("".join)
+scraps = st.lists(
+    st.sampled_from(
+        [
+            *"()'`,@.;\"|\\#:+-* \n\tabAB12/eEdx=<>_\xa0λ\x00",
+            "#(",
+            "#'",
+            "#\\",
+            "#|",
+            "|#",
+            "#+",
+            "#-",
+            "#1=",
+            "#1#",
+            "#b",
+            "#x",
+            "#c",
+            "#*",
+            "#2A",
+            "#:",
+            "cl:",
+            "cl::",
+            "nope:",
+            "..",
+            ",@",
+            ",.",
+            "`(",
+            "#s(",
+            "#p",
+            "1e400",
+            "1/0",
+        ]
+    ),
+    max_size=25,
+).map("".join)
 
 
 @settings(max_examples=1500, deadline=None)

@@ -2,18 +2,19 @@
 
 import pytest
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import find_package, make_package, sym
-from cramhy_runtime.lisp.reader.reader import Reader, read_from_string
-from cramhy_runtime.lisp.reader.reader_errors import UnmatchedClose
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import find_package, make_package, sym
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader, read_from_string
+from cramhy_runtime.languages.commonlisp.reader.reader_errors import UnmatchedClose
 
 
 @pytest.fixture(autouse=True)
 def in_user_package():
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     with binding(sym("*PACKAGE*"), find_package("COMMON-LISP-USER")):
         yield
 
@@ -43,13 +44,13 @@ def test_an_unclosed_list_is_reported_where_it_was_opened():
 
 def test_a_form_at_the_margin_inside_an_unclosed_one_tells_where_the_parenthesis_is_missing():
     problem = complaint("(defun a ()\n  (b c)\n(defun d ())\n")
-    assert problem.hint == ("The ( at line 1, column 1 is never closed. "
-                            "Perhaps its ) is missing before line 3, where a new form begins.")
+    assert problem.hint == ("The ( at line 1, column 1 is never closed. Perhaps its ) is missing before line 3, where a new form begins.")
 
 
 def test_several_open_lists_are_counted():
-    assert complaint("(a (b (c").hint == ("The ( at line 1, column 1 is never closed. "
-                                          "3 are open at the end; the innermost begins at line 1, column 7.")
+    assert complaint("(a (b (c").hint == (
+        "The ( at line 1, column 1 is never closed. 3 are open at the end; the innermost begins at line 1, column 7."
+    )
 
 
 def test_an_unclosed_string_is_reported_where_it_begins():
@@ -85,8 +86,9 @@ def test_a_symbol_that_is_internal(robots):
 
 
 def test_the_restart_continue_takes_the_symbol_all_the_same(robots):
-    found = conditions.handler_bind([(conditions.ReaderPackageError, lambda problem: conditions.continue_(problem))],
-                                    lambda: Reader("reader-robots:turn").read())
+    found = conditions.handler_bind(
+        [(conditions.ReaderPackageError, lambda problem: conditions.continue_(problem))], lambda: Reader("reader-robots:turn").read()
+    )
     assert found is robots.intern("TURN")
 
 
@@ -95,18 +97,24 @@ def test_a_splice_outside_a_list():
     assert "contains a splicing comma after a dot" in complaint("`(a . ,@b)").report()
 
 
-@pytest.mark.parametrize("text, report, hint", [
-    ("a:b:c", 'too many colons in "a:b:c"', "A symbol is written name, package:name, package::name or :keyword."),
-    (":::x", 'too many colons in ":::x"', "A symbol is written name, package:name, package::name or :keyword."),
-    ("1/0", "failed to build ratio", "The denominator of a ratio must not be zero."),
-    ("1e39", "failed to build float from 1e39",
-     "The largest single-float is about 3.4e38; write the exponent with d for a double-float: 1d39."),
-    ("(1, 2)", "Comma not inside a backquote.", "Lists are written without commas: (1 2 3)."),
-    ("(a . b c)", "More than one object follows . in list.", "After the dot and one object the list must end."),
-    ("#<thing>", "illegal sharp macro character: #\\<", "What prints as #<...> cannot be read back."),
-    ("#\\Spce", 'unrecognized character name: "Spce"', "Did you mean #\\Space?"),
-    ("(a ')", "unmatched close parenthesis", "Something must follow the ' before the )."),
-])
+@pytest.mark.parametrize(
+    "text, report, hint",
+    [
+        ("a:b:c", 'too many colons in "a:b:c"', "A symbol is written name, package:name, package::name or :keyword."),
+        (":::x", 'too many colons in ":::x"', "A symbol is written name, package:name, package::name or :keyword."),
+        ("1/0", "failed to build ratio", "The denominator of a ratio must not be zero."),
+        (
+            "1e39",
+            "failed to build float from 1e39",
+            "The largest single-float is about 3.4e38; write the exponent with d for a double-float: 1d39.",
+        ),
+        ("(1, 2)", "Comma not inside a backquote.", "Lists are written without commas: (1 2 3)."),
+        ("(a . b c)", "More than one object follows . in list.", "After the dot and one object the list must end."),
+        ("#<thing>", "illegal sharp macro character: #\\<", "What prints as #<...> cannot be read back."),
+        ("#\\Spce", 'unrecognized character name: "Spce"', "Did you mean #\\Space?"),
+        ("(a ')", "unmatched close parenthesis", "Something must follow the ' before the )."),
+    ],
+)
 def test_malformed_texts_are_explained(text, report, hint):
     problem = complaint(text)
     assert (problem.report(), problem.hint) == (report, hint)

@@ -5,14 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.data import all_values
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.packages import find_package, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.reader.reader import Reader
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import all_values
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
 FOLDER = Path(__file__).parent / "sbcl"
 
@@ -25,7 +26,7 @@ def recorded(name):
 def answer(form):
     """What our evaluator says to ``form``, in the notation of ``sbcl/record.lisp``."""
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     with binding(sym("*PACKAGE*"), find_package("COMMON-LISP-USER"), sym("*PRINT-PRETTY*"), None):
         try:
             found = all_values(evaluator.evaluate(Reader(form).read()))

@@ -6,8 +6,8 @@ import sys
 FIRST = """
 from cramhy_runtime import kernel
 kernel.start(clock="virtual")
-from cramhy_runtime.lisp.data import one
-from cramhy_runtime.lisp.reader.reader_functions import read_from_string
+from cramhy_runtime.ground.data import one
+from cramhy_runtime.languages.commonlisp.reader.reader_functions import read_from_string
 print(list(one(read_from_string('("a;b" 1) ; comment'))))
 from cramhy_runtime.repl.session import Session
 print(Session(time="virtual", turtlesim=False).evaluate_text("(defpackage first-reading (:use :cl)) (list 1 2)")[0])

@@ -7,10 +7,10 @@ import sys
 import pytest
 import standard_page
 
-from cramhy_runtime.lisp import coverage, standard_names
-from cramhy_runtime.lisp.conditions import CompileError
-from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.languages.commonlisp import coverage, standard_names
+from cramhy_runtime.ground.conditions import CompileError
+from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.ground.packages import sym
 
 
 @pytest.fixture(scope="module")
@@ -35,12 +35,15 @@ def test_every_symbol_is_there_or_has_a_reason(page):
     assert not [name for name in standard_names.INSIDE if standard_names.is_there(sym(name))]
 
 
-@pytest.mark.parametrize(("form", "text"), [
-    ("(call-next-method)", "CALL-NEXT-METHOD has a meaning only in the body of a method."),
-    ("(list (make-method 1))", "MAKE-METHOD has a meaning only in the form of a DEFINE-METHOD-COMBINATION."),
-    ("(loop-finish-is-mine otherwise)", "OTHERWISE has a meaning only as the key of the last clause of CASE and its relatives."),
-    ("(list #'declare)", "DECLARE has a meaning only at the head of a body, before its forms."),
-])
+@pytest.mark.parametrize(
+    ("form", "text"),
+    [
+        ("(call-next-method)", "CALL-NEXT-METHOD has a meaning only in the body of a method."),
+        ("(list (make-method 1))", "MAKE-METHOD has a meaning only in the form of a DEFINE-METHOD-COMBINATION."),
+        ("(loop-finish-is-mine otherwise)", "OTHERWISE has a meaning only as the key of the last clause of CASE and its relatives."),
+        ("(list #'declare)", "DECLARE has a meaning only at the head of a body, before its forms."),
+    ],
+)
 def test_a_name_used_where_it_means_nothing(session, form, text):
     with pytest.raises(CompileError) as caught:
         session.evaluate_text(f"(defun try ()\n  {form})", "<repl 1>")

@@ -6,14 +6,17 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.data import Character, LispString
-from cramhy_runtime.lisp.files import files
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.printer.print_controls import bound
-from cramhy_runtime.lisp.streams import file_streams, streams
-from cramhy_runtime.lisp.streams import stream_functions as functions
-from cramhy_runtime.lisp.streams.streams import StringInputStream, StringOutputStream
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import Character, LispString
+from cramhy_runtime.languages.commonlisp.files import files
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.plain_answers import PlainStream
+from cramhy_runtime.languages.commonlisp.printer.print_controls import bound
+from cramhy_runtime.languages.commonlisp.files import file_streams
+from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.tools import telling_and_asking
+from cramhy_runtime.languages.commonlisp.streams import stream_functions as functions
+from cramhy_runtime.languages.commonlisp.streams.streams import StringInputStream, StringOutputStream
 
 
 @pytest.fixture(autouse=True)
@@ -118,7 +121,7 @@ def test_what_is_no_stream_is_a_type_error():
 def warned(condition):
     stream = StringOutputStream()
     with bound(streams.ERROR_OUTPUT, stream):
-        streams.warning_line(condition)
+        telling_and_asking.warning_line(condition)
     return stream.text()
 
 
@@ -132,9 +135,7 @@ def test_warnings_stand_on_lines_of_their_own():
 
 def test_an_error_inside_a_warning_is_indented_to_its_place():
     inner = conditions.TypeError_(Character("a"), "NUMBER")
-    text = warned(
-        conditions.SimpleWarning("An error occurred while executing the lisp function `~a': `~a'", "+", inner)
-    )
+    text = warned(conditions.SimpleWarning("An error occurred while executing the lisp function `~a': `~a'", "+", inner))
     pad = " " * 61
     head = "WARNING:\n   An error occurred while executing the lisp function `+': `The value\n"
     assert text == f"{head}{pad}  #\\a\n{pad}is not of type\n{pad}  NUMBER'\n"
@@ -157,9 +158,7 @@ def test_files_are_written_and_read(tmp_path):
     path = tmp_path / "a~b.txt"
     output = sym(":OUTPUT")
     file_streams.with_open_file(lambda stream: functions.write_line("one", stream), str(path), direction=output)
-    file_streams.with_open_file(
-        lambda stream: functions.write_line("two", stream), path, direction=output, if_exists=sym(":APPEND")
-    )
+    file_streams.with_open_file(lambda stream: functions.write_line("two", stream), path, direction=output, if_exists=sym(":APPEND"))
     lines = file_streams.with_open_file(lambda stream: [functions.read_line(stream)[0] for _ in range(2)], path)
     assert lines == ["one", "two"]
     assert str(files.probe_file(str(path))) == str(path.resolve())
@@ -196,3 +195,24 @@ def test_a_closed_file_says_so(tmp_path):
     with pytest.raises(conditions.StreamError) as caught:
         functions.read_char(stream)
     assert caught.value.report().endswith("}> is closed")
+
+
+@pytest.mark.parametrize(("encoding", "shown"), [("cp1252", b"gr\xfcn \\u2192 \\u03bb"), ("ascii", b"gr\\xfcn \\u2192 \\u03bb")])
+@pytest.mark.parametrize("form", ['(write-string "grün → λ")', '(let ((*standard-output* *terminal-io*)) (princ "grün → λ"))'])
+def test_the_console_shows_signs_that_its_encoding_lacks_as_escapes(session, monkeypatch, encoding, shown, form):
+    """A pipe of Windows has the encoding cp1252, and nobody but ``cramhy`` itself has told Python what to do with the rest."""
+    written = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(written, encoding=encoding))
+    session.evaluate_text(form)
+    sys.stdout.flush()
+    assert written.getvalue() == shown
+
+
+def test_the_output_of_plans_in_python_does_so_too(monkeypatch):
+    written = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(written, encoding="cp1252"))
+    stream = PlainStream("stdout")
+    stream.write("Nach → gehen.")
+    stream.fresh_line()
+    stream.flush()
+    assert written.getvalue().replace(b"\r\n", b"\n") == b"Nach \\u2192 gehen.\n"

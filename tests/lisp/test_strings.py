@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.collections import strings
-from cramhy_runtime.lisp.data import Character, LispString, lisp_list
-from cramhy_runtime.lisp.packages import intern, keyword
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.collections import strings
+from cramhy_runtime.ground.data import Character, LispString, lisp_list
+from cramhy_runtime.ground.packages import intern, keyword
 
 
 @pytest.fixture(autouse=True)

@@ -2,15 +2,15 @@
 
 import pytest
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp.conditions import SimpleProgramError, TypeError_
-from cramhy_runtime.lisp.data import Symbol, UndefinedFunction, lisp_list
-from cramhy_runtime.lisp.equality import equalp
-from cramhy_runtime.lisp.objects import structures
-from cramhy_runtime.lisp.objects.classes import class_name, find_class
-from cramhy_runtime.lisp.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.conditions import SimpleProgramError, TypeError_
+from cramhy_runtime.ground.data import Symbol, UndefinedFunction, lisp_list
+from cramhy_runtime.ground.equality import equalp
+from cramhy_runtime.languages.commonlisp.objects import structures
+from cramhy_runtime.languages.commonlisp.objects.classes import class_name, find_class
+from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
 
-image.boot()
+boot()
 HOME = find_package("STRUCTURE-TESTS") or make_package("STRUCTURE-TESTS", use=("COMMON-LISP",))
 
 
@@ -28,8 +28,9 @@ def here(name):
 @pytest.fixture
 def motion():
     """(defstruct motion (speed 5) angle)"""
-    structures.define_structure(here("MOTION"), [structures.structure_slot(here("SPEED"), initform=lambda: 5),
-                                                 structures.structure_slot(here("ANGLE"))])
+    structures.define_structure(
+        here("MOTION"), [structures.structure_slot(here("SPEED"), initform=lambda: 5), structures.structure_slot(here("ANGLE"))]
+    )
     return find_class(here("MOTION"))
 
 
@@ -86,8 +87,12 @@ def test_initforms_are_computed_for_each_object():
 
 
 def test_an_included_structure_gives_slots_accessors_and_type(motion):
-    structures.define_structure(here("TURN"), [structures.structure_slot(here("RADIUS"))], include=here("MOTION"),
-                                include_slots=[structures.structure_slot(here("SPEED"), initform=lambda: 1)])
+    structures.define_structure(
+        here("TURN"),
+        [structures.structure_slot(here("RADIUS"))],
+        include=here("MOTION"),
+        include_slots=[structures.structure_slot(here("SPEED"), initform=lambda: 1)],
+    )
     turn = find_class(here("TURN"))(radius=3)
     assert (turn.speed, turn.angle, turn.radius) == (1, None, 3)
     assert isinstance(turn, motion)
@@ -109,27 +114,35 @@ def test_a_read_only_slot_has_no_setter():
 
 
 def test_names_of_functions_can_be_chosen_or_left_out():
-    structures.define_structure(here("PLAIN"), [structures.structure_slot(here("VALUE-OF"))], conc_name=None,
-                                constructors=[here("NEW-PLAIN")], copier=None, predicate=here("IS-PLAIN"))
+    structures.define_structure(
+        here("PLAIN"),
+        [structures.structure_slot(here("VALUE-OF"))],
+        conc_name=None,
+        constructors=[here("NEW-PLAIN")],
+        copier=None,
+        predicate=here("IS-PLAIN"),
+    )
     assert here("VALUE-OF").function(here("NEW-PLAIN").function(keyword("VALUE-OF"), 3)) == 3
     assert isinstance(here("COPY-PLAIN").function, UndefinedFunction)
     assert here("IS-PLAIN").function(1) is None
 
 
 def test_a_constructor_by_position_falls_back_to_the_initforms_of_the_slots():
-    a, b = Symbol("A"), Symbol("B")
-    lambda_list, variables = structures.boa_lambda_list(lisp_list(a, sym("&OPTIONAL"), b), {})
-    assert list(variables) == [a, b]
-    assert list(list(lambda_list)[2]) == [b, list(lambda_list)[2].cdr.car]
-    construct = lambda first, second=structures.unsupplied(): lisp_list(first, second)  # what the macro compiles
-    slots = [structures.structure_slot(here("A")), structures.structure_slot(here("B"), initform=lambda: 9)]
-    structures.define_structure(here("POINT"), slots, constructors=[[here("POINT"), variables, construct]])
-    assert (here("POINT").function(1).b, here("POINT").function(1, 2).b) == (9, 2)
+    a, b, c = Symbol("A"), here("B"), Symbol("C")
+    structures.define_structure(here("BASE"), [structures.structure_slot(b, initform=lambda: 9)])
+    written = lisp_list(a, sym("&OPTIONAL"), b, sym("&AUX"), c)
+    lambda_list, variables, empty = structures.boa_lambda_list(written, {}, here("BASE"))
+    assert list(variables) == [a, b, c] and list(empty) == [c]
+    name, default = list(lambda_list)[2]
+    assert name is b and default.car is sym("CRAMHY::SLOT-DEFAULT") and [quoted.cdr.car for quoted in default.cdr] == [here("BASE"), b]
+    assert structures.slot_default(here("BASE"), b) == 9 and structures.slot_default(here("BASE"), a) is None
 
 
 def test_slots_with_names_that_are_alike_in_python_do_not_meet():
-    structures.define_structure(here("ALIKE"), [structures.structure_slot(here("A-B")), structures.structure_slot(here("A_B")),
-                                                structures.structure_slot(here("CLASS"))])
+    structures.define_structure(
+        here("ALIKE"),
+        [structures.structure_slot(here("A-B")), structures.structure_slot(here("A_B")), structures.structure_slot(here("CLASS"))],
+    )
     alike = here("MAKE-ALIKE").function(keyword("A-B"), 1, keyword("A_B"), 2, keyword("CLASS"), 3)
     assert (here("ALIKE-A-B").function(alike), here("ALIKE-A_B").function(alike), here("ALIKE-CLASS").function(alike)) == (1, 2, 3)
 

@@ -11,23 +11,31 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.condition_types import ProgramError
-from cramhy_runtime.lisp.conditions import Condition
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.files.files import lisp_path
-from cramhy_runtime.lisp.files.pathnames import DEFAULTS
-from cramhy_runtime.lisp.objects.classes import class_name
-from cramhy_runtime.lisp.packages import COMMON_LISP, Package, delete_package, register, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.streams.streams import StringInputStream, StringOutputStream
+from cramhy_runtime.ground.condition_types import ProgramError
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.files.files import lisp_path
+from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
+from cramhy_runtime.languages.commonlisp.objects.classes import class_name
+from cramhy_runtime.ground.packages import COMMON_LISP, Package, delete_package, register, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.streams.streams import StringInputStream, StringOutputStream
 from cramhy_runtime.repl.session import Session, condition_of
 
 FOLDER = Path(__file__).parent / "symbols"
-USAGE = Path(__file__).parents[3] / "shared" / "reference" / "common-lisp-usage.tsv"
+USAGE = Path(__file__).parents[2] / "docs" / "reference" / "common-lisp-usage.tsv"
 ANSWERS = ("=>", "!! ", "|")
 PROGRAM_ERROR = "!! PROGRAM-ERROR"
-SBCL_PROGRAM_ERRORS = ("!! ARG-COUNT-ERROR", "!! SIMPLE-PROGRAM-ERROR", "!! COMPILED-PROGRAM-ERROR", "!! INTERPRETED-PROGRAM-ERROR",
-                       "!! UNKNOWN-KEYWORD-ARGUMENT", "!! DEFMACRO-LAMBDA-LIST-B", PROGRAM_ERROR, "!! INPUT-ERROR-IN")
+SBCL_PROGRAM_ERRORS = (
+    "!! ARG-COUNT-ERROR",
+    "!! SIMPLE-PROGRAM-ERROR",
+    "!! COMPILED-PROGRAM-ERROR",
+    "!! INTERPRETED-PROGRAM-ERROR",
+    "!! UNKNOWN-KEYWORD-ARGUMENT",
+    "!! DEFMACRO-LAMBDA-LIST-B",
+    PROGRAM_ERROR,
+    "!! INPUT-ERROR-IN",
+)
 ADDRESS = re.compile(r"\{[0-9A-F]{6,}\}")
 SECTION_PACKAGE = re.compile(r"SECTION-\d+")
 PACKAGE, PRINT_PRETTY = sym("*PACKAGE*"), sym("*PRINT-PRETTY*")
@@ -51,6 +59,9 @@ def sections(path):
     assert not form, f"{path.name}: no answer is recorded for {form[0]}"
     return found
 
+
+OF_THE_C_LIBRARY = set("acos acosh asin asinh atan atanh cis cos cosh exp expt log phase sin sinh tan tanh".split())
+"""Sections whose answers are the C library's, which may differ in the last digit from one system to the next."""
 
 SECTIONS = [pytest.param(questions, id=name) for path in sorted(FOLDER.glob("*.txt")) for name, questions in sections(path)]
 
@@ -96,6 +107,11 @@ def recorded(line):
     return PROGRAM_ERROR if line.startswith(SBCL_PROGRAM_ERRORS) else comparable(line).rstrip()
 
 
+def nearly(line):
+    """``line`` with 15 digits of its double floats."""
+    return re.sub(r"\d+\.\d+(?=d0)", lambda found: f"{float(found[0]):.15g}", line)
+
+
 def comparable(line):
     """``line`` without what differs by nature: addresses, SBCL's name for a section's package and for its own variable that had the
     wrong value (told only where the call is not open-coded), its reading list, and its streams."""
@@ -114,9 +130,12 @@ def test_the_symbol_answers_as_in_sbcl(session, questions, request):
     # the folder of pytest has a name so long that lines with it are broken
     with TemporaryDirectory() as folder, binding(PACKAGE, package, DEFAULTS, lisp_path(Path(folder))):
         for form, wanted in questions:
-            assert answer(session, form, folder) == [recorded(line) for line in wanted], form
+            lines = answer(session, form, folder), [recorded(line) for line in wanted]
+            if request.node.callspec.id in OF_THE_C_LIBRARY:
+                lines = [[nearly(line) for line in each] for each in lines]
+            assert lines[0] == lines[1], form
 
-@pytest.mark.skipif(not USAGE.exists(), reason="the counted usage lies beside the project")
+
 def test_every_symbol_that_cram_code_uses_has_a_section():
     used = {line.split("\t")[0] for line in USAGE.read_text().splitlines()[1:]}
     assert used - {section.id for section in SECTIONS} == set()

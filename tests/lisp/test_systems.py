@@ -6,9 +6,9 @@ import itertools
 
 import pytest
 
-from cramhy_runtime.lisp.conditions import CompileError, Condition, Error, FileError
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.lisp.systems import systems
+from cramhy_runtime.ground.conditions import CompileError, Condition, Error, FileError
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.languages.commonlisp.systems import systems
 
 _numbers = itertools.count()
 
@@ -45,7 +45,7 @@ class Workspace:
 
 @pytest.fixture
 def workspace(tmp_path, session, monkeypatch):
-    monkeypatch.setattr("cramhy_runtime.lisp.systems.search_folders.extra_folders", [str(tmp_path)])
+    monkeypatch.setattr("cramhy_runtime.ros.search_folders.extra_folders", [str(tmp_path)])
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     session.package = "CL-USER"
     return Workspace(tmp_path, session)
@@ -57,15 +57,19 @@ def test_files_come_in_the_order_in_which_they_stand(workspace):
 
 
 def test_dependencies_come_first(workspace):
-    workspace.system("deps", ':components ((:file "a" :depends-on ("c")) (:file "b" :depends-on ("a")) (:file "c"))',
-                     ["a.lisp", "b.lisp", "c.lisp"])
+    workspace.system(
+        "deps", ':components ((:file "a" :depends-on ("c")) (:file "b" :depends-on ("a")) (:file "c"))', ["a.lisp", "b.lisp", "c.lisp"]
+    )
     assert workspace.load("deps") == ["c", "a", "b"]
 
 
 def test_serial_and_modules(workspace):
-    workspace.system("mods", ':serial t :components ((:file "package") (:module "src" :serial t :components ((:file "x") (:file "y")))'
-                             ' (:module "other" :pathname "elsewhere" :components ((:file "z"))) (:static-file "README"))',
-                     ["package.lisp", "src/x.lisp", "src/y.lisp", "elsewhere/z.lisp"])
+    workspace.system(
+        "mods",
+        ':serial t :components ((:file "package") (:module "src" :serial t :components ((:file "x") (:file "y")))'
+        ' (:module "other" :pathname "elsewhere" :components ((:file "z"))) (:static-file "README"))',
+        ["package.lisp", "src/x.lisp", "src/y.lisp", "elsewhere/z.lisp"],
+    )
     assert workspace.load("mods") == ["package", "x", "y", "z"]
 
 
@@ -79,13 +83,19 @@ def test_the_pathname_of_a_system(workspace):
     assert workspace.load("path") == ["x"]
 
 
-@pytest.mark.parametrize("options", [
-    ':name "n" :version "1.0" :author "A <a@b>" :license "BSD" :description "d" :long-description "ld" :depends-on () '
-    ':components ((:file "x"))',
-    ":components ((:file x))", ":components ((:file #:x))", ":components ((:file :x))", ':components ((:file "x" :description "about"))',
-    ':depends-on ((:version "cram-language" "1.0") (:feature :no-such "unknown")) :components ((:file "x"))',
-    ":depends-on (:roslisp #:cram-language cl-transforms) :components ((:file \"x\"))",
-])
+@pytest.mark.parametrize(
+    "options",
+    [
+        ':name "n" :version "1.0" :author "A <a@b>" :license "BSD" :description "d" :long-description "ld" :depends-on () '
+        ':components ((:file "x"))',
+        ":components ((:file x))",
+        ":components ((:file #:x))",
+        ":components ((:file :x))",
+        ':components ((:file "x" :description "about"))',
+        ':depends-on ((:version "cram-language" "1.0") (:feature :no-such "unknown")) :components ((:file "x"))',
+        ':depends-on (:roslisp #:cram-language cl-transforms) :components ((:file "x"))',
+    ],
+)
 def test_shapes_of_defsystem(workspace, options):
     workspace.system("shape", options, ["x.lisp"])
     assert workspace.load("shape") == ["x"]
@@ -118,10 +128,10 @@ def test_a_macro_of_another_system_that_changed_reaches_its_users(workspace):
     tools = workspace.system("tools", ':components ((:file "macros"))', ["macros.lisp"])
     user = workspace.system("user", ':depends-on (tools-{n}) :components ((:file "use"))', ["use.lisp"])
     macros = workspace.folder / tools / "macros.lisp"
-    macros.write_text("(defmacro cl-user::tool () \"old\")")
+    macros.write_text('(defmacro cl-user::tool () "old")')
     (workspace.folder / user / "use.lisp").write_text("(push (cl-user::tool) cl-user::*load-order*)")
     assert workspace.load("user") == ["old"]
-    macros.write_text("(defmacro cl-user::tool () \"brand new\")")
+    macros.write_text('(defmacro cl-user::tool () "brand new")')
     assert workspace.load("user") == ["brand new"]
 
 
@@ -159,8 +169,9 @@ def test_an_unknown_system_names_its_neighbours(workspace):
 def test_an_unknown_dependency_says_who_wants_it(workspace):
     workspace.system("wanting", ':depends-on ("no-such-system-{n}") :components ((:file "x"))', ["x.lisp"])
     problem = text_of(lambda: workspace.load("wanting"))
-    assert problem.report() == (f'Component "no-such-system-{workspace.number}" not found, required by '
-                                f'#<SYSTEM "wanting-{workspace.number}">')
+    assert problem.report() == (
+        f'Component "no-such-system-{workspace.number}" not found, required by #<SYSTEM "wanting-{workspace.number}">'
+    )
 
 
 def test_a_missing_file_is_named(workspace):
@@ -179,10 +190,22 @@ def test_circles_of_files_and_of_systems(workspace):
     assert workspace.load("one") == ["x"]
 
 
-@pytest.mark.parametrize("options", [
-    ":components", ':components ("x")', ":components ((:file))", ':components ((:file "a" :depends-on ("q")))', ":components 5",
-    ":depends-on 5", ':depends-on "text"', ':components ((:file "a" . 5))', "5 5", ":components ((5 5))", ":components ((:file 5))",
-])
+@pytest.mark.parametrize(
+    "options",
+    [
+        ":components",
+        ':components ("x")',
+        ":components ((:file))",
+        ':components ((:file "a" :depends-on ("q")))',
+        ":components 5",
+        ":depends-on 5",
+        ':depends-on "text"',
+        ':components ((:file "a" . 5))',
+        "5 5",
+        ":components ((5 5))",
+        ":components ((:file 5))",
+    ],
+)
 def test_malformed_definitions_are_errors_of_the_user(workspace, options):
     workspace.system("broken", options, ["a.lisp"])
     problem = text_of(lambda: workspace.load("broken"))

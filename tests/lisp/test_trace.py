@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.conditions import CompileError, Condition
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, TRACE_OUTPUT, StringOutputStream
+from cramhy_runtime.ground.conditions import CompileError, Condition
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, TRACE_OUTPUT, StringOutputStream
 
 DEFINITIONS = """
 (defun fib (n) (if (< n 2) n (+ (fib (- n 1)) (fib (- n 2)))))
@@ -22,6 +22,7 @@ DEFINITIONS = """
 @pytest.fixture
 def lisp(session, monkeypatch):
     """``lisp(text)``: what evaluating ``text`` in CL-USER printed; the values, as text, are in ``lisp.values``."""
+
     def lisp(text):
         output = StringOutputStream()
         for stream in (STANDARD_OUTPUT, ERROR_OUTPUT, TRACE_OUTPUT):
@@ -38,7 +39,9 @@ def lisp(session, monkeypatch):
 def test_calls_are_nested_as_in_sbcl(lisp):
     lisp("(trace fib)")
     assert lisp.values == ["(FIB)"]
-    assert lisp("(fib 3)") == """\
+    assert (
+        lisp("(fib 3)")
+        == """\
   0: (FIB 3)
     1: (FIB 2)
       2: (FIB 1)
@@ -50,6 +53,7 @@ def test_calls_are_nested_as_in_sbcl(lisp):
     1: FIB returned 1
   0: FIB returned 2
 """
+    )
     assert lisp.values == ["2"]
 
 
@@ -127,7 +131,9 @@ def test_all_functions_of_a_package(lisp):
 
 def test_each_task_counts_its_own_depth(lisp):
     lisp("""(defun outer (n) (cpl:sleep 1) (inner n)) (defun inner (n) (cpl:sleep 1) n) (trace outer inner)""")
-    assert lisp("(cpl:top-level (cpl:par (outer 1) (outer 2)))") == """\
+    assert (
+        lisp("(cpl:top-level (cpl:par (outer 1) (outer 2)))")
+        == """\
   0: (OUTER 1)
   0: (OUTER 2)
     1: (INNER 1)
@@ -137,17 +143,21 @@ def test_each_task_counts_its_own_depth(lisp):
     1: INNER returned 2
   0: OUTER returned 2
 """
+    )
 
 
 def test_time(lisp):
     shown = lisp("(time (progn (sleep 5) (values 1 2)))")
     assert lisp.values == ["1", "2"]
-    assert re.fullmatch(r"""Evaluation took:
+    assert re.fullmatch(
+        r"""Evaluation took:
   \d+\.\d{3} seconds of real time
   \d+\.\d{6} seconds of total run time \(\d+\.\d{6} user, \d+\.\d{6} system\)
   \d+\.\d\d% CPU
   5\.000 seconds of plan time
-""", shown), shown
+""",
+        shown,
+    ), shown
 
 
 def test_step_shows_the_calls(lisp):
@@ -161,7 +171,8 @@ def test_disassemble_shows_the_python(lisp):
     assert lisp("(disassemble #'several)") == lisp("(disassemble 'several)")
     assert lisp("(defun hi (x) (list x (fib x))) (disassemble 'hi)") == (
         "; Python of HI\ndef hi(x):\n"
-        "    return LCons(x, LCons(Lv if (Lv := (Lf := «FIB».function)(x)).__class__ is not LMultipleValues else Lone(Lv), None))\n")
+        "    return LCons(x, LCons(Lv if (Lv := (Lf := «FIB».function)(x)).__class__ is not LMultipleValues else Lone(Lv), None))\n"
+    )
     assert lisp("(disassemble (lambda (x) (acons x 1 nil)))").endswith("\nlambda x: acons(x, 1, None)\n")
     assert "return lst.car" in lisp("(disassemble 'car)")
     assert "LOAD_FAST" in lisp("(disassemble '(lambda (x) x))")

@@ -12,7 +12,7 @@ ALL_STRINGS_ARE_OF_CHARACTERS = {(name, "(VECTOR CHARACTER)") for name in ("STRI
 
 
 def answers(session):
-    from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
+    from cramhy_runtime.languages.commonlisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
 
     output = StringOutputStream()
     STANDARD_OUTPUT.value, before = output, STANDARD_OUTPUT.value
@@ -36,9 +36,14 @@ def test_the_names_of_types_mean_what_they_mean_in_sbcl(session):
                 wrong.append((head, theirs, ours))
         elif head.startswith("sub "):
             name = head[4:]
-            wrong += [(head, other, yes, no) for other, yes, no in zip(names, bits, ours.rsplit(": ", 1)[1])
-                      if yes != no and not {name, other} & OF_THE_IMPLEMENTATION and (name, other) not in ALL_STRINGS_ARE_OF_CHARACTERS
-                      and not (name in UNDECIDED and no == "?")]
+            wrong += [
+                (head, other, yes, no)
+                for other, yes, no in zip(names, bits, ours.rsplit(": ", 1)[1])
+                if yes != no
+                and not {name, other} & OF_THE_IMPLEMENTATION
+                and (name, other) not in ALL_STRINGS_ARE_OF_CHARACTERS
+                and not (name in UNDECIDED and no == "?")
+            ]
         elif theirs != ours and head not in OF_THE_IMPLEMENTATION:
             wrong.append((head, theirs, ours))
     assert not wrong

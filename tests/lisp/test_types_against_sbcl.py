@@ -1,5 +1,4 @@
-"""Types and classes of objects answer as in SBCL 2.2.9: see ``test_numbers_against_sbcl.py`` for how to read this.
-"""
+"""Types and classes of objects answer as in SBCL 2.2.9: see ``test_numbers_against_sbcl.py`` for how to read this."""
 
 # ruff: noqa: E501
 
@@ -7,7 +6,7 @@ from __future__ import annotations
 
 from test_numbers_against_sbcl import check
 
-TYPES = r'''
+TYPES = r"""
 (defclass a () ())
 (defclass b (a) ())
 (defstruct tm a)
@@ -309,14 +308,14 @@ TYPES = r'''
 => SIMPLE-TYPE-ERROR: #\a can't be converted to type STRING.
 (coerce "12" 'number)
 => SIMPLE-TYPE-ERROR: "12" can't be converted to type NUMBER.
-'''
+"""
 
 
 def test_types_answer_as_in_sbcl():
     check(TYPES)
 
 
-CLASSES = r'''
+CLASSES = r"""
 (defmethod k ((x function)) :f)
 (defmethod k ((x standard-object)) :s)
 (defmethod k2 ((x generic-function)) :gf)
@@ -417,7 +416,7 @@ CLASSES = r'''
 => T | T
 (subtypep 'character '(or base-char extended-char))
 => T | T
-'''
+"""
 
 
 def test_classes_and_their_types_answer_as_in_sbcl():

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.console import report
 from cramhy_runtime.repl.session import Session, condition_of
 

@@ -6,12 +6,12 @@ from designators.support import facts, lisp, make, python, user
 from cramhy_runtime import cpl
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime.designators.classes import DesignatorError
-from cramhy_runtime.lisp.conditions import Error
-from cramhy_runtime.lisp.data import MultipleValues, UndefinedFunction
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-from cramhy_runtime.lisp.printer.print_controls import PACKAGE
-from cramhy_runtime.lisp.tools.advice import hint_for
+from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.data import MultipleValues, UndefinedFunction
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
+from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.process_modules import executive
 from cramhy_runtime.process_modules.executive import DesignatorReferenceFailure
 
@@ -24,8 +24,10 @@ GROUNDING = [[["desig::motion-grounding", "?d", ["drive", "?speed"]], ["desig::d
 @pytest.fixture
 def navigation():
     define(lambda designator: python(pm.executive.reference(designator)))
-    with facts("matching", ["cpm::matching-process-module", "cpm::available-process-module"], *MATCHING), \
-            facts("grounding", ["desig::motion-grounding"], *GROUNDING):
+    with (
+        facts("matching", ["cpm::matching-process-module", "cpm::available-process-module"], *MATCHING),
+        facts("grounding", ["desig::motion-grounding"], *GROUNDING),
+    ):
         yield
 
 
@@ -33,8 +35,11 @@ def navigation():
 def drawing():
     """An action whose grounding names the plan function DRAW-IT, which is undefined at first."""
     command = user("DRAW-IT")
-    with facts("drawing", ["desig::action-grounding"],
-               [["desig::action-grounding", "?d", ["draw-it", "?shape"]], ["desig::desig-prop", "?d", [":shape", "?shape"]]]):
+    with facts(
+        "drawing",
+        ["desig::action-grounding"],
+        [["desig::action-grounding", "?d", ["draw-it", "?shape"]], ["desig::desig-prop", "?d", [":shape", "?shape"]]],
+    ):
         yield command
     command.function = UndefinedFunction(command)
 
@@ -68,8 +73,10 @@ def test_an_action_calls_the_plan_function_with_what_was_ground(drawing):
 
 def test_an_action_whose_plan_function_is_not_defined(drawing):
     failure = failure_of(lambda: cpl.top_level(lambda: pm.perform(make("action", [":shape", ":house"]))))
-    assert failure.report() == ("Action designator `#<A ACTION\n    (SHAPE HOUSE)>' resolved to cram function `DRAW-IT', "
-                                "but it isn't defined. Cannot perform action.")
+    assert failure.report() == (
+        "Action designator `#<A ACTION\n    (SHAPE HOUSE)>' resolved to cram function `DRAW-IT', "
+        "but it isn't defined. Cannot perform action."
+    )
 
 
 def test_an_action_whose_goal_does_not_hold_afterwards_fails(drawing):
@@ -113,26 +120,39 @@ def advice(body):
 
 def test_a_module_that_matches_but_does_not_run_is_named(navigation):
     assert advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":speed", 3])))) == (
-        "test-navigation would do it, but does not run: write (with-process-modules-running (test-navigation) ...) around the plan.")
+        "test-navigation would do it, but does not run: write (with-process-modules-running (test-navigation) ...) around the plan."
+    )
 
 
 def test_without_a_module_that_matches_the_nearest_clause_is_told():
-    with facts("MATCHING", ["cpm::matching-process-module"], [["cpm::matching-process-module", "?d", "test-navigation"],
-                                                              ["desig::desig-prop", "?d", [":type", ":driving"]]]):
-        assert advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":type", ":drivng"])))) == """\
+    with facts(
+        "MATCHING",
+        ["cpm::matching-process-module"],
+        [["cpm::matching-process-module", "?d", "test-navigation"], ["desig::desig-prop", "?d", [":type", ":driving"]]],
+    ):
+        assert (
+            advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":type", ":drivng"]))))
+            == """\
 There is one clause, clause 1 of matching:
   (matching-process-module ?d test-navigation)
   FAILS  (desig-prop ?d (:type :driving))
            :type is :drivng, not :driving; is that misspelled?
   with ?d = #<a motion (type drivng)>
 (prolog:explain) tries it again and tells all of it."""
+        )
 
 
 def test_a_module_that_is_not_available_is_told():
-    with facts("MATCHING", ["cpm::matching-process-module", "cpm::available-process-module"],
-               [["cpm::matching-process-module", "?d", "test-navigation"]],
-               [["cpm::available-process-module", "other"]]):
-        assert advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":type", ":driving"])))) == """\
+    with facts(
+        "MATCHING",
+        ["cpm::matching-process-module", "cpm::available-process-module"],
+        [["cpm::matching-process-module", "?d", "test-navigation"]],
+        [["cpm::available-process-module", "other"]],
+    ):
+        assert (
+            advice(lambda: cpl.top_level(lambda: pm.perform(make("motion", [":type", ":driving"]))))
+            == """\
 test-navigation would match, but there is no solution of (available-process-module test-navigation).
 The only clause of available-process-module does not match: in clause 1 of matching, argument 1 is other, not test-navigation.
 (prolog:explain) tries it again and tells all of it."""
+        )

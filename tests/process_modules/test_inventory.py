@@ -4,13 +4,13 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
-from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.lisp.evaluation.macros import ensure_loaded
-from cramhy_runtime.lisp.objects.classes import find_class
-from cramhy_runtime.lisp.objects.generic import GenericFunction
-from cramhy_runtime.lisp.packages import find_package
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
+from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
+from cramhy_runtime.languages.commonlisp.objects.classes import find_class
+from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 CPM = {
     "class": "process-module abstract-process-module asynchronous-process-module",
@@ -30,22 +30,38 @@ EXE = {
     "generic": "generic-perform",
     "function": "perform try-reference-designator",
 }
-EVERY = [(package, kind, name) for package, table in (("CPM", CPM), ("EXE", EXE))
-         for kind, names in table.items() for name in names.split()]
+EVERY = [
+    (package, kind, name) for package, table in (("CPM", CPM), ("EXE", EXE)) for kind, names in table.items() for name in names.split()
+]
 
 LAMBDA_LISTS = {
-    "pm-run": "(PROCESS-MODULE &OPTIONAL NAME)", "pm-execute": "(PROCESS-MODULE INPUT &KEY TASK)", "pm-cancel": "(PROCESS-MODULE)",
-    "pm-status": "(PROCESS-MODULE)", "running-fluent": "(PROCESS-MODULE)", "finished-fluent": "(PROCESS-MODULE)",
-    "monitor-process-module": "(PROCESS-MODULE &KEY DESIGNATORS)", "on-input": "(PROCESS-MODULE INPUT-DESIGNATOR)",
-    "on-cancel": "(PROCESS-MODULE INPUT-DESIGNATOR)", "on-run": "(PROCESS-MODULE)",
-    "synchronization-fluent": "(PROCESS-MODULE DESIGNATOR)", "finish-process-module": "(PROCESS-MODULE &KEY DESIGNATOR)",
-    "fail-process-module": "(PROCESS-MODULE ERROR &KEY DESIGNATOR)", "on-process-module-started": "(MODULE INPUT)",
-    "on-process-module-finished": "(MODULE INPUT RESULT)", "get-running-process-module": "(NAME)",
-    "get-running-process-module-name": "(MODULE)", "get-running-process-module-names": "(MODULE)", "get-process-module-names": "NIL",
-    "register-process-module": "(NAME)", "process-module-alias": "(ALIAS NAME)",
-    "wait-for-process-module-running": "(PROCESS-MODULE &KEY TIMEOUT)", "matching-process-module-names": "(ACTION-DESIGNATOR)",
-    "matching-available-process-modules": "(ACTION-DESIGNATOR &KEY FAIL-IF-NONE)", "pm-execute-matching": "(ACTION-DESIGNATOR)",
-    "perform": "(DESIGNATOR)", "generic-perform": "(DESIGNATOR)",
+    "pm-run": "(PROCESS-MODULE &OPTIONAL NAME)",
+    "pm-execute": "(PROCESS-MODULE INPUT &KEY TASK)",
+    "pm-cancel": "(PROCESS-MODULE)",
+    "pm-status": "(PROCESS-MODULE)",
+    "running-fluent": "(PROCESS-MODULE)",
+    "finished-fluent": "(PROCESS-MODULE)",
+    "monitor-process-module": "(PROCESS-MODULE &KEY DESIGNATORS)",
+    "on-input": "(PROCESS-MODULE INPUT-DESIGNATOR)",
+    "on-cancel": "(PROCESS-MODULE INPUT-DESIGNATOR)",
+    "on-run": "(PROCESS-MODULE)",
+    "synchronization-fluent": "(PROCESS-MODULE DESIGNATOR)",
+    "finish-process-module": "(PROCESS-MODULE &KEY DESIGNATOR)",
+    "fail-process-module": "(PROCESS-MODULE ERROR &KEY DESIGNATOR)",
+    "on-process-module-started": "(MODULE INPUT)",
+    "on-process-module-finished": "(MODULE INPUT RESULT)",
+    "get-running-process-module": "(NAME)",
+    "get-running-process-module-name": "(MODULE)",
+    "get-running-process-module-names": "(MODULE)",
+    "get-process-module-names": "NIL",
+    "register-process-module": "(NAME)",
+    "process-module-alias": "(ALIAS NAME)",
+    "wait-for-process-module-running": "(PROCESS-MODULE &KEY TIMEOUT)",
+    "matching-process-module-names": "(ACTION-DESIGNATOR)",
+    "matching-available-process-modules": "(ACTION-DESIGNATOR &KEY FAIL-IF-NONE)",
+    "pm-execute-matching": "(ACTION-DESIGNATOR)",
+    "perform": "(DESIGNATOR)",
+    "generic-perform": "(DESIGNATOR)",
     "try-reference-designator": '(DESIGNATOR &OPTIONAL (ERROR-MESSAGE ""))',
 }
 
@@ -101,17 +117,21 @@ def test_the_packages_and_their_nicknames(text):
 
 
 def test_the_conditions_are_simple_errors_that_are_not_exported(text):
-    assert text("""(mapcar (lambda (name) (list (subtypep name 'simple-error) (nth-value 1 (find-symbol (string name) :cpm))))
-                           '(cpm::unknown-process-module cpm::process-module-running cpm::process-module-not-running))""") \
+    assert (
+        text("""(mapcar (lambda (name) (list (subtypep name 'simple-error) (nth-value 1 (find-symbol (string name) :cpm))))
+                           '(cpm::unknown-process-module cpm::process-module-running cpm::process-module-not-running))""")
         == "((T :INTERNAL) (T :INTERNAL) (T :INTERNAL))"
+    )
 
 
 def test_fluents_are_named_after_the_module_and_modules_print_as_ordinary_objects(text):
     text("(def-process-module pm1 (m) m)")
-    assert text("""(let ((pm (make-instance 'pm1 :name 'base)))
+    assert (
+        text("""(let ((pm (make-instance 'pm1 :name 'base)))
                      (mapcar (lambda (reader) (symbol-name (cpl-impl::name (funcall reader pm))))
-                             '(input status result cancel caller)))""") \
+                             '(input status result cancel caller)))""")
         == '("BASE-INPUT" "BASE-STATUS" "BASE-RESULT" "BASE-CANCEL" "BASE-CALLER")'
+    )
     assert text("(eq (symbol-package (cpl-impl::name (status (make-instance 'pm1 :name 'base)))) *package*)") == "T"
     assert text("(princ-to-string (make-instance 'pm1 :name 'base))").startswith('"#<PM1 {')
     assert text("(def-process-module pm2 (m) m)").startswith("(PM2 PM1")

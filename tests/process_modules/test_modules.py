@@ -6,16 +6,16 @@ from designators.support import lisp, make, user
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime import designators as desig
 from cramhy_runtime import process_modules as pm
-from cramhy_runtime.cpl.failure_types import opened
-from cramhy_runtime.cpl.failures import attempt
-from cramhy_runtime.lisp.conditions import Error, SimpleError, error, handler_bind, invoke_restart
-from cramhy_runtime.lisp.data import NO_VALUES, MultipleValues, lisp_list
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation.evaluator import evaluate
-from cramhy_runtime.lisp.packages import intern, keyword, sym
-from cramhy_runtime.lisp.reader.reader import Reader
+from cramhy_runtime.cpl.failures.failure_types import opened
+from cramhy_runtime.cpl.failures.handling import attempt
+from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, invoke_restart
+from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
+from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.process_modules import asynchronous, executing, modules, registry
-from cramhy_runtime.prolog.facts import define_fact_group, remove_fact_group
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
 
 NAVIGATION, ARM = intern("TEST-NAVIGATION", "CRAM-USER"), intern("TEST-ARM", "CRAM-USER")
 
@@ -165,8 +165,9 @@ def test_a_caller_that_gives_up_while_it_waits_is_never_served():
     first, second = motion(), motion()
 
     def body():
-        cpl.par(lambda: pm.pm_execute(NAVIGATION, first),
-                lambda: cpl.pursue(lambda: pm.pm_execute(NAVIGATION, second), lambda: cpl.sleep(1)))
+        cpl.par(
+            lambda: pm.pm_execute(NAVIGATION, first), lambda: cpl.pursue(lambda: pm.pm_execute(NAVIGATION, second), lambda: cpl.sleep(1))
+        )
 
     with handled_warnings():
         with_modules(body)
@@ -196,15 +197,22 @@ def test_a_run_cancelled_by_somebody_else_is_a_failure_of_its_caller():
     define(lambda designator: cpl.sleep(10))
 
     def body():
-        return cpl.par(lambda: fails_with(lambda: pm.pm_execute(NAVIGATION, motion())),
-                       lambda: (cpl.sleep(1), pm.pm_cancel(NAVIGATION)))
+        return cpl.par(lambda: fails_with(lambda: pm.pm_execute(NAVIGATION, motion())), lambda: (cpl.sleep(1), pm.pm_cancel(NAVIGATION)))
 
     failure = with_modules(body)
     assert failure.format_control == "The execution of ~a by process module ~a was cancelled." and kernel.now() == 1
 
 
-@pytest.mark.parametrize("call", [lambda: pm.pm_execute(ARM, None), lambda: pm.pm_run(ARM), lambda: pm.pm_status(ARM),
-                                  lambda: pm.pm_execute(None, None), lambda: pm.pm_cancel(ARM)])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: pm.pm_execute(ARM, None),
+        lambda: pm.pm_run(ARM),
+        lambda: pm.pm_status(ARM),
+        lambda: pm.pm_execute(None, None),
+        lambda: pm.pm_cancel(ARM),
+    ],
+)
 def test_an_unknown_module_is_an_error_at_once(call):
     with pytest.raises(registry.UnknownProcessModule) as problem:
         cpl.top_level(call)
@@ -254,8 +262,7 @@ def test_aliases_reach_the_module_and_end_with_it():
 
     assert with_modules(body) == "moved"
     assert pm.get_running_process_module(other) is None
-    assert with_modules(lambda: pm.with_process_module_aliases(
-        [(other, NAVIGATION)], lambda: pm.pm_execute(other, motion()))) == "moved"
+    assert with_modules(lambda: pm.with_process_module_aliases([(other, NAVIGATION)], lambda: pm.pm_execute(other, motion()))) == "moved"
     with pytest.raises(registry.UnknownProcessModule) as problem:
         pm.process_module_alias(other, ARM)
     assert problem.value.format_control == "Could not find process module with name `~s'"
@@ -281,9 +288,11 @@ def test_waiting_for_a_module_that_never_starts():
 def test_hooks_run_with_module_input_and_outcome():
     define(lambda designator: cpl.fail("x"))
     events = []
-    hooks = [(modules.on_process_module_started, lambda module, input_: events.append("started")),
-             (modules.on_process_module_failed, lambda module, input_, failure: events.append(("failed", failure.format_control))),
-             (modules.on_process_module_finished, lambda module, input_, result: events.append(("finished", result.format_control)))]
+    hooks = [
+        (modules.on_process_module_started, lambda module, input_: events.append("started")),
+        (modules.on_process_module_failed, lambda module, input_, failure: events.append(("failed", failure.format_control))),
+        (modules.on_process_module_finished, lambda module, input_, result: events.append(("finished", result.format_control))),
+    ]
     for hook, function in hooks:
         hook.add(function, "test")
     try:
@@ -316,9 +325,18 @@ def test_a_debugger_hook_decides_whether_the_module_goes_on(restart, still_there
 @pytest.fixture
 def two_modules():
     matching, available = "cpm::matching-process-module", "cpm::available-process-module"
-    define_fact_group(user("TWO"), lisp([matching, available]), lisp([
-        [[matching, "?d", "test-navigation"], ["desig::desig-prop", "?d", [":type", ":driving"]]],
-        [[matching, "?d", "test-arm"]], [[available, "test-navigation"]], [[available, "test-arm"]]]))
+    define_fact_group(
+        user("TWO"),
+        lisp([matching, available]),
+        lisp(
+            [
+                [[matching, "?d", "test-navigation"], ["desig::desig-prop", "?d", [":type", ":driving"]]],
+                [[matching, "?d", "test-arm"]],
+                [[available, "test-navigation"]],
+                [[available, "test-arm"]],
+            ]
+        ),
+    )
     yield
     remove_fact_group(user("TWO"))
 
@@ -423,6 +441,7 @@ def test_finishing_what_is_not_being_done_is_an_error():
 
 def test_a_module_that_fails_is_the_reason_that_the_user_hears():
     """The request only says that the module is not running; why it is not must not be lost (law 3)."""
+
     def broken(designator):
         raise LookupError("the motor is gone")
 

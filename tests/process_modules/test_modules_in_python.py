@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from image_as_it_was import image_as_it_was
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, Object, action_grounding, equate, motion_grounding
-from cramhy_runtime.lisp.condition_types import Error
-from cramhy_runtime.lisp.data import values
+from cramhy_runtime.ground.condition_types import Error
+from cramhy_runtime.ground.data import values
 from cramhy_runtime.process_modules import (
     AsynchronousModule,
     ProcessModuleRunning,
@@ -37,12 +36,6 @@ class Drawing(Motion):
 
 class Fetching(Action):
     what: str
-
-
-@pytest.fixture(autouse=True)
-def nothing_left():
-    with image_as_it_was():
-        yield
 
 
 @pytest.fixture
@@ -115,7 +108,10 @@ def test_a_module_says_what_it_is_for_by_types_or_by_a_function(navigation, log)
 
     with cpl.plan(), process_modules(pen, painter):
         assert [perform(motion) for motion in (Drawing(shape="o"), Driving(speed=1), Motion(type=kw.any, colour="red"))] == [
-            "pen", "pen", "painter"]
+            "pen",
+            "pen",
+            "painter",
+        ]
         assert findall(V.module, P.matching_process_module(Driving(speed=1), V.module)) == [navigation, pen]
         with pytest.raises(cpl.PlanFailure, match="No matching process module found for #<A MOTION"):
             perform(Motion(type=kw.drawing))  # without shape
@@ -190,8 +186,10 @@ def test_who_is_suspended_has_it_done_anew(navigation, log):
 def test_status_is_a_fluent_and_cancel_ends_what_is_done_now(navigation):
     with cpl.plan(), process_modules(navigation):
         state = status(navigation)
-        with pytest.raises(cpl.PlanFailure, match=r"(?s)^The execution of #<A MOTION.* by process module NAVIGATION was cancelled"), \
-                cpl.par() as branches:
+        with (
+            pytest.raises(cpl.PlanFailure, match=r"(?s)^The execution of #<A MOTION.* by process module NAVIGATION was cancelled"),
+            cpl.par() as branches,
+        ):
             branches.start(perform, Driving(speed=1))
             cpl.sleep(1)
             assert state.value is kw.running
@@ -257,41 +255,65 @@ def test_modules_that_are_not_there(navigation):
     with cpl.plan():
         with pytest.raises(UnknownProcessModule) as problem:
             execute(navigation, Driving(speed=1))
-        assert text_of(problem) == ("Unknown process module: NAVIGATION \n"
-                                    "From Python, modules run in a block: with process_modules(navigation): ...")
+        assert text_of(problem) == (
+            "Unknown process module: NAVIGATION \nFrom Python, modules run in a block: with process_modules(navigation): ..."
+        )
         with process_modules(navigation), pytest.raises(UnknownProcessModule):
             status("other_arm")
         with process_modules(navigation), pytest.raises(ProcessModuleRunning), process_modules(navigation):
             pass
 
 
-@pytest.mark.parametrize("mistake, kind, text", [
-    (lambda: cpl.run(lambda: perform(3)), TypeError, "3 is no designator, and cannot be performed. Make one: Motion(type=kw.driving)."),
-    (lambda: cpl.run(lambda: execute(len, Motion())), TypeError,
-     "<built-in function len> is no process module. Decorate a function with @process_module."),
-    (lambda: process_module(matches=len)(lambda motion: 1), TypeError,
-     "<lambda> cannot name a process module. Write process_module(name=P.navigation)(...)."),
-    (lambda: process_module(Motion)(test_a_block_is_a_plan_too), TypeError,
-     "Motion describes all motions. Say so by a function: matches=lambda designator: True."),
-    (lambda: process_module(int)(test_a_block_is_a_plan_too), TypeError,
-     "<class 'int'> is no declared type of designators. Declare one, class Driving(Motion): ..., or give a function: "
-     "matches=lambda designator: ..."),
-])
+@pytest.mark.parametrize(
+    "mistake, kind, text",
+    [
+        (lambda: cpl.run(lambda: perform(3)), TypeError, "3 is no designator, and cannot be performed. Make one: Motion(type=kw.driving)."),
+        (
+            lambda: cpl.run(lambda: execute(len, Motion())),
+            TypeError,
+            "<built-in function len> is no process module. Decorate a function with @process_module.",
+        ),
+        (
+            lambda: process_module(matches=len)(lambda motion: 1),
+            TypeError,
+            "<lambda> cannot name a process module. Write process_module(name=P.navigation)(...).",
+        ),
+        (
+            lambda: process_module(Motion)(test_a_block_is_a_plan_too),
+            TypeError,
+            "Motion describes all motions. Say so by a function: matches=lambda designator: True.",
+        ),
+        (
+            lambda: process_module(int)(test_a_block_is_a_plan_too),
+            TypeError,
+            "<class 'int'> is no declared type of designators. Declare one, class Driving(Motion): ..., or give a function: "
+            "matches=lambda designator: ...",
+        ),
+    ],
+)
 def test_mistakes_say_what_to_write(mistake, kind, text):
     with pytest.raises(kind) as problem:
         mistake()
     assert text_of(problem) == text
 
 
-@pytest.mark.parametrize("form, use", [
-    ("PERFORM", lambda: perform(Motion())), ("EXECUTE", lambda: execute("arm", Motion())), ("STATUS", lambda: status("arm")),
-    ("CANCEL", lambda: cancel("arm")), ("MONITOR", lambda: monitor("arm")), ("PROCESS-MODULES", lambda: process_modules().__enter__()),
-])
+@pytest.mark.parametrize(
+    "form, use",
+    [
+        ("PERFORM", lambda: perform(Motion())),
+        ("EXECUTE", lambda: execute("arm", Motion())),
+        ("STATUS", lambda: status("arm")),
+        ("CANCEL", lambda: cancel("arm")),
+        ("MONITOR", lambda: monitor("arm")),
+        ("PROCESS-MODULES", lambda: process_modules().__enter__()),
+    ],
+)
 def test_outside_of_a_plan(form, use):
     with kernel.aside(), pytest.raises(Error) as problem:
         use()
-    assert text_of(problem) == (f"'{form}' form not inside a plan.\n"
-                                "From Python, run the plan with cpl.run(main), or write it below `with cpl.plan():`.")
+    assert text_of(problem) == (
+        f"'{form}' form not inside a plan.\nFrom Python, run the plan with cpl.run(main), or write it below `with cpl.plan():`."
+    )
 
 
 # --------------------------------------------------------------------------------------------------------------- asynchronous

@@ -28,7 +28,8 @@ def text(text):
 
 
 def test_perform_is_a_node_of_the_task_tree_with_the_designator_as_its_parameter(text):
-    assert text(f"""(top-level
+    assert (
+        text(f"""(top-level
                       (perform {HOUSE})
                       (perform {HOUSE})
                       (let ((nodes (remove-if-not #'goal-task-tree-node-p (flatten-task-tree *task-tree*))))
@@ -36,10 +37,13 @@ def test_perform_is_a_node_of_the_task_tree_with_the_designator_as_its_parameter
                         (note (goal-task-tree-node-pattern (first nodes)))
                         (note (goal-task-tree-node-goal (first nodes)))
                         (note (mapcar (lambda (node) (value (task-tree-node-status-fluent node))) nodes))
-                        (mapcar #'task-tree-node-result nodes)))""") == "(:HOUSE :HOUSE)"
+                        (mapcar #'task-tree-node-result nodes)))""")
+        == "(:HOUSE :HOUSE)"
+    )
     assert text("(cddr *notes*)") == (
         "((((GOAL (PERFORM CRAM-EXECUTIVE::?DESIGNATOR))) ((GOAL (PERFORM CRAM-EXECUTIVE::?DESIGNATOR) :CALL 2))) "
-        "(PERFORM CRAM-EXECUTIVE::?DESIGNATOR) (PERFORM #<A ACTION (TYPE DRAWING) (SHAPE HOUSE)>) (:SUCCEEDED :SUCCEEDED))")
+        "(PERFORM CRAM-EXECUTIVE::?DESIGNATOR) (PERFORM #<A ACTION (TYPE DRAWING) (SHAPE HOUSE)>) (:SUCCEEDED :SUCCEEDED))"
+    )
 
 
 def test_users_may_define_the_goal_anew_and_ask_what_it_is_for(text):
@@ -63,8 +67,10 @@ def test_methods_around_generic_perform_see_every_designator(text):
             (defmethod generic-perform :around ((designator desig:motion-designator)) (list :around (call-next-method)))""")
     try:
         assert text(f"(plan (nav) (list (perform {HOUSE}) (perform (motion 3))))") == "(:HOUSE (:AROUND 3))"
-        assert text("*notes*") == "((:BEFORE DESIG:ACTION-DESIGNATOR) (:DRAW :HOUSE) (:NAV 3))" or \
-            text("*notes*") == "((:BEFORE CRAM-DESIGNATORS:ACTION-DESIGNATOR) (:DRAW :HOUSE) (:NAV 3))"
+        assert (
+            text("*notes*") == "((:BEFORE DESIG:ACTION-DESIGNATOR) (:DRAW :HOUSE) (:NAV 3))"
+            or text("*notes*") == "((:BEFORE CRAM-DESIGNATORS:ACTION-DESIGNATOR) (:DRAW :HOUSE) (:NAV 3))"
+        )
     finally:
         text("""(flet ((forget (qualifier class)
                          (remove-method #'generic-perform (find-method #'generic-perform (list qualifier) (list (find-class class))))))
@@ -91,7 +97,9 @@ def test_hooks_tell_of_the_choice_of_modules_and_of_its_success(text):
 
 
 def test_perform_outside_of_a_plan_says_where_it_belongs(text):
-    assert text.error(f"(perform {HOUSE})") == """cramhy: TYPE-ERROR
+    assert (
+        text.error(f"(perform {HOUSE})")
+        == """cramhy: TYPE-ERROR
   The value
     NIL
   is not of type
@@ -102,10 +110,13 @@ def-top-level-cram-function.)
     (perform (an action (type drawing) (shape house)))
     ^
 """
+    )
 
 
 def test_a_plan_function_that_takes_other_arguments_is_told_with_the_grounding(text):
-    assert text.error("(top-level (perform (an action (type doodling) (shape house))))") == """cramhy: SB-INT:SIMPLE-PROGRAM-ERROR
+    assert (
+        text.error("(top-level (perform (an action (type doodling) (shape house))))")
+        == """cramhy: SB-INT:SIMPLE-PROGRAM-ERROR
   invalid number of arguments: 3
   at <repl>:1:12
     (top-level (perform (an action (type doodling) (shape house))))
@@ -113,6 +124,7 @@ def test_a_plan_function_that_takes_other_arguments_is_told_with_the_grounding(t
   while #<A ACTION (TYPE DOODLING) (SHAPE HOUSE)> was performed, whose grounding is (DOODLE-IT HOUSE HOUSE HOUSE)
   DOODLE-IT takes 1 argument.
 """
+    )
     for call in ("(perform)", "(perform 1 2)"):
         assert text(f"(top-level (handler-case {call} (program-error () :arity)))") == ":ARITY"
 
@@ -120,20 +132,26 @@ def test_a_plan_function_that_takes_other_arguments_is_told_with_the_grounding(t
 def test_a_grounding_that_is_no_list_is_a_destructuring_error(text):
     assert text("(top-level (text-of (generic-perform (an action (type idling)))))") == (
         '"Error while parsing arguments to DESTRUCTURING-BIND: invalid number of elements in NOTHING-TO-DO to satisfy lambda list '
-        '(CRAM-EXECUTIVE::COMMAND &REST CRAM-EXECUTIVE::ARGUMENTS): at least 1 expected, but got a non-list"')
+        '(CRAM-EXECUTIVE::COMMAND &REST CRAM-EXECUTIVE::ARGUMENTS): at least 1 expected, but got a non-list"'
+    )
     assert "while #<A ACTION (TYPE IDLING)> was performed, whose grounding is NOTHING-TO-DO" in text.error(
-        "(top-level (perform (an action (type idling))))")
+        "(top-level (perform (an action (type idling))))"
+    )
 
 
 def test_the_name_of_a_macro_counts_as_defined_and_fails_as_undefined_function(text):
-    assert text("(top-level (handler-case (generic-perform (an action (type nesting))) (undefined-function (c) (cell-error-name c))))") \
+    assert (
+        text("(top-level (handler-case (generic-perform (an action (type nesting))) (undefined-function (c) (cell-error-name c))))")
         == "TOP-LEVEL"
+    )
 
 
 def test_a_designator_is_referenced_with_a_message_of_ones_own(text):
     assert text("(top-level (try-reference-designator (motion 4)))") == "(DRIVE 4)"
-    assert text("""(top-level (format nil "~a" (failure-of (try-reference-designator (a motion (goal 4)) "Sorry."))))""") \
+    assert (
+        text("""(top-level (format nil "~a" (failure-of (try-reference-designator (a motion (goal 4)) "Sorry."))))""")
         == '"Designator #<A MOTION (GOAL 4)> could not be resolved. Sorry."'
+    )
 
 
 def test_goals_that_were_written_in_the_macro_are_keywords_and_hold_nowhere(text):

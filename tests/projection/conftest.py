@@ -6,18 +6,14 @@ import itertools
 import re
 
 import pytest
-from image_as_it_was import image_as_it_was
+from cramhy_runtime.session import Image
 from lisp_text import LispLine
 
-from cramhy_runtime import image
-from cramhy_runtime.cpl import past_plans, task_variables
-from cramhy_runtime.episodes import auto_tracing, backends, tracing
-from cramhy_runtime.projection import environments
-from cramhy_runtime.prolog import rete
+from cramhy_runtime.session import boot
 from cramhy_runtime.repl.console import report
 from cramhy_runtime.repl.session import Session
 
-image.boot()
+boot()
 
 PRELUDE = """
 (defpackage {name} (:use :cpl :cram-projection))
@@ -42,8 +38,10 @@ class Lisp(LispLine):
     name = "<repl>"
 
     def __init__(self, backend):
-        super().__init__(Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600),
-                         PRELUDE.format(name=f"PROJECTION-TEST-{next(_numbers)}"))
+        super().__init__(
+            Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600),
+            PRELUDE.format(name=f"PROJECTION-TEST-{next(_numbers)}"),
+        )
 
     def __call__(self, text):
         return re.sub(r"\{[0-9A-F]+\}", "{}", super().__call__(text))
@@ -65,16 +63,5 @@ def no_fluents_of_other_files():
 def lisp(request, monkeypatch, tmp_path):
     """What a test defines for all (task variables, environments, fact groups, facts) is forgotten after it."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(task_variables, "_declared", dict(task_variables._declared))
-    monkeypatch.setattr(environments, "_environments", {})
-    monkeypatch.setattr(environments, "_special_variables", {})
-    monkeypatch.setattr(auto_tracing, "_directory", None)
-    monkeypatch.setattr(backends, "_stores", {})
-    monkeypatch.setattr(backends, "_restores", {})
-    past_plans.forget()
-    with image_as_it_was():
+    with Image(as_now=True):
         yield Lisp(request.param)
-    rete.clear_alpha_network()
-    auto_tracing.disable_auto_tracing()
-    tracing.disable_fluent_tracing()
-    past_plans.forget()

@@ -16,8 +16,11 @@ def test_a_variable_has_its_initial_value_inside_and_its_old_one_outside_also_af
 
 @pytest.mark.law("projection-and-events", 1)
 def test_plans_inside_and_around_the_projection_see_its_variables(lisp):
-    lisp(WORLD + """(with-projection-environment imagined (top-level (par (note *world*) (sleep 1))))
-                    (top-level (with-projection-environment imagined (par (note *world*) (sleep 1))))""")
+    lisp(
+        WORLD
+        + """(with-projection-environment imagined (top-level (par (note *world*) (sleep 1))))
+                    (top-level (with-projection-environment imagined (par (note *world*) (sleep 1))))"""
+    )
     assert lisp("(list (notes) *world*)") == "(((:IMAGINED) (:IMAGINED)) :REAL)"
 
 
@@ -62,7 +65,8 @@ def test_the_result_lists_all_values_and_the_variables_at_the_end_of_the_body(li
     package = "(let ((*print-pretty* nil)) (prin1-to-string {}))"
     lisp(WORLD + "(define-special-projection-variable *belief* 1)")
     assert lisp(package.format("(with-projection-environment imagined (setf *belief* 2 *world* '(a)) (values 1 2))")) == (
-        '"#S(CRAM-PROJECTION::PROJECTION-ENVIRONMENT-RESULT :NAME IMAGINED :RESULT (1 2) :ENVIRONMENT ((*WORLD* A) (*BELIEF* . 2)))"')
+        '"#S(CRAM-PROJECTION::PROJECTION-ENVIRONMENT-RESULT :NAME IMAGINED :RESULT (1 2) :ENVIRONMENT ((*WORLD* A) (*BELIEF* . 2)))"'
+    )
     assert lisp("(cram-projection::projection-environment-result-result (with-projection-environment imagined (values)))") == "NIL"
     assert lisp("(slot-value (with-projection-environment imagined 5) 'cram-projection::result)") == "(5)"
 
@@ -73,7 +77,8 @@ def test_an_unknown_environment_is_an_error_that_names_the_nearest_one(lisp):
     assert lisp.error("(with-projection-environment imagine 1)") == "Cannot find projection environment `IMAGINE'."
     assert lisp.shown_error("(with-projection-environment imagine 1)") == (
         "cramhy: SIMPLE-ERROR\n  Cannot find projection environment `IMAGINE'.\n  at <repl>:1:1\n"
-        "    (with-projection-environment imagine 1)\n    ^\n  Did you mean IMAGINED?\n")
+        "    (with-projection-environment imagine 1)\n    ^\n  Did you mean IMAGINED?\n"
+    )
     assert "  Defined are IMAGINED.\n" in lisp.shown_error("(with-projection-environment pr2 1)")
 
 
@@ -84,7 +89,8 @@ def test_an_error_says_how_to_define_the_first_environment(lisp):
 def test_a_definition_that_is_malformed_says_what_is_wrong(lisp):
     assert lisp.error("(define-projection-environment e :starup (note 1))") == (
         "DEFINE-PROJECTION-ENVIRONMENT has no option :STARUP: it has :SPECIAL-VARIABLE-INITIALIZERS, :PROCESS-MODULE-DEFINITIONS, "
-        ":STARTUP, :SHUTDOWN.")
+        ":STARTUP, :SHUTDOWN."
+    )
     assert "is malformed" in lisp.error("(define-projection-environment e :special-variable-initializers (*world*))")
 
 
@@ -92,7 +98,8 @@ def test_a_definition_that_is_malformed_says_what_is_wrong(lisp):
 def test_defining_an_environment_again_replaces_it(lisp):
     assert lisp(WORLD) == "(#<CRAM-PROJECTION::PROJECTION-ENVIRONMENT IMAGINED>)"
     assert lisp("(define-projection-environment other)") == (
-        "(#<CRAM-PROJECTION::PROJECTION-ENVIRONMENT OTHER> #<CRAM-PROJECTION::PROJECTION-ENVIRONMENT IMAGINED>)")
+        "(#<CRAM-PROJECTION::PROJECTION-ENVIRONMENT OTHER> #<CRAM-PROJECTION::PROJECTION-ENVIRONMENT IMAGINED>)"
+    )
     lisp("(define-projection-environment imagined :special-variable-initializers ((*world* :again)))")
     assert lisp("(with-projection-environment imagined (note *world*)) (notes)") == "(:AGAIN)"
 

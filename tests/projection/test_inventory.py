@@ -4,30 +4,30 @@ import re
 
 import pytest
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp.data import UNBOUND, UndefinedFunction
-from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.lisp.evaluation.macros import ensure_loaded
-from cramhy_runtime.lisp.objects.classes import find_class
-from cramhy_runtime.lisp.packages import delete_package, find_package, register
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.types.types import is_known_type
-from cramhy_runtime.prolog.database import functors
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
+from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
+from cramhy_runtime.languages.commonlisp.objects.classes import find_class
+from cramhy_runtime.ground.packages import delete_package, find_package, register
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.types.types import is_known_type
+from cramhy_runtime.prolog.engine.database import functors
 
-image.boot()
+boot()
 ensure_loaded()
 
 EXPORTS = {
     "CRAM-PROJECTION": {
         "macro": "define-projection-environment define-special-projection-variable with-projection-environment "
-                 "with-partially-ordered-clock-disabled",
+        "with-partially-ordered-clock-disabled",
         "function": "clock-time clock-wait partially-ordered-clock-enabled",
         "class": "linear-clock partially-ordered-clock",
         "variable": "*projection-environment*",
     },
     "CRAM-EXECUTION-TRACE": {
         "macro": "defstore-episode-knowledge-backend defrestore-episode-knowledge-backend with-episode-knowledge "
-                 "with-last-episode-knowledge with-top-level-episode-knowledge with-offline-episode-knowledge",
+        "with-last-episode-knowledge with-top-level-episode-knowledge with-offline-episode-knowledge",
         "function": """durable-copy get-top-level-episode-knowledge register-top-level-episode-knowledge episode-knowledge-zero-time
             episode-knowledge-max-time episode-knowledge-task-tree episode-knowledge-task-list episode-knowledge-goal-task-list
             episode-knowledge-traced-fluent-names episode-knowledge-fluent-changes episode-knowledge-fluent-durations
@@ -49,24 +49,41 @@ EXPORTS = {
 }
 NICKNAMES = {"CRAM-PROJECTION": ["PROJ"], "CRAM-EXECUTION-TRACE": ["CET"], "CRAM-OCCASIONS-EVENTS": ["COE", "OCCASIONS-EVENTS"]}
 LAMBDA_LISTS = {
-    "proj:clock-time": "(CLOCK)", "proj:clock-wait": "(CLOCK DURATION)", "proj:partially-ordered-clock-enabled": "(CLOCK)",
-    "coe:on-event": "(EVENT)", "coe:clear-belief": "NIL", "coe:event-timestamp": "(EVENT)",
-    "coe:holds": "(OCCASION &OPTIONAL TIME-SPECIFICATION)", "coe:assert-occasion": "(OCCASION)", "coe:retract-occasion": "(OCCASION)",
+    "proj:clock-time": "(CLOCK)",
+    "proj:clock-wait": "(CLOCK DURATION)",
+    "proj:partially-ordered-clock-enabled": "(CLOCK)",
+    "coe:on-event": "(EVENT)",
+    "coe:clear-belief": "NIL",
+    "coe:event-timestamp": "(EVENT)",
+    "coe:holds": "(OCCASION &OPTIONAL TIME-SPECIFICATION)",
+    "coe:assert-occasion": "(OCCASION)",
+    "coe:retract-occasion": "(OCCASION)",
     "coe:holds-occasion": "(OCCASION)",
-    "cet:get-top-level-episode-knowledge": "(NAME)", "cet:register-top-level-episode-knowledge": "(NAME)",
-    **{f"cet:episode-knowledge-{name}": "(&OPTIONAL EPISODE)"
-       for name in ("zero-time", "max-time", "task-tree", "task-list", "goal-task-list", "traced-fluent-names")},
+    "cet:get-top-level-episode-knowledge": "(NAME)",
+    "cet:register-top-level-episode-knowledge": "(NAME)",
+    **{
+        f"cet:episode-knowledge-{name}": "(&OPTIONAL EPISODE)"
+        for name in ("zero-time", "max-time", "task-tree", "task-list", "goal-task-list", "traced-fluent-names")
+    },
     "cet:episode-knowledge-fluent-changes": "(FLUENT-NAME &OPTIONAL EPISODE)",
     "cet:episode-knowledge-fluent-durations": "(FLUENT-NAME &OPTIONAL EPISODE)",
     "cet:save-episode-knowledge": "(DESTINATION &OPTIONAL (EPISODE *EPISODE-KNOWLEDGE*) &REST KEY-ARGS)",
-    "cet:save-last-episode-knowledge": "(DESTINATION &KEY IF-EXISTS)", "cet:load-episode-knowledge": "(SOURCE)",
-    "cet:durable-copy": "(OBJ)", "cet:enable-fluent-tracing": "NIL", "cet:disable-fluent-tracing": "NIL",
-    "cet:fluent-tracing-enabled": "NIL", "cet:enable-auto-tracing": "NIL", "cet:disable-auto-tracing": "NIL",
-    "cet:auto-tracing-enabled": "NIL", "cet:set-auto-tracing-directory": "(PATH &KEY ENSURE-DIRECTORY)",
+    "cet:save-last-episode-knowledge": "(DESTINATION &KEY IF-EXISTS)",
+    "cet:load-episode-knowledge": "(SOURCE)",
+    "cet:durable-copy": "(OBJ)",
+    "cet:enable-fluent-tracing": "NIL",
+    "cet:disable-fluent-tracing": "NIL",
+    "cet:fluent-tracing-enabled": "NIL",
+    "cet:enable-auto-tracing": "NIL",
+    "cet:disable-auto-tracing": "NIL",
+    "cet:auto-tracing-enabled": "NIL",
+    "cet:set-auto-tracing-directory": "(PATH &KEY ENSURE-DIRECTORY)",
     "cet:setup-auto-tracing": "(DIRECTORY &KEY ENSURE-DIRECTORY)",
 }
-GENERIC = "proj:clock-time proj:clock-wait proj:partially-ordered-clock-enabled cet:durable-copy coe:on-event " \
-          "coe:clear-belief coe:holds coe:event-timestamp"
+GENERIC = (
+    "proj:clock-time proj:clock-wait proj:partially-ordered-clock-enabled cet:durable-copy coe:on-event "
+    "coe:clear-belief coe:holds coe:event-timestamp"
+)
 
 
 def names(*packages):
@@ -129,7 +146,7 @@ def test_the_systems_are_there_for_those_that_depend_on_them(system, tmp_path, m
 
 
 def test_the_fact_groups_have_the_names_of_the_original_and_three_of_them_extend_holds():
-    from cramhy_runtime.prolog.facts import fact_group_names
+    from cramhy_runtime.prolog.engine.fact_groups import fact_group_names
 
     groups = {f"{group.package.name}::{group.name}" for group in fact_group_names()}
     assert {*(f"CRAM-OCCASIONS-EVENTS::{name}" for name in ("OCCASIONS", "FLUENTS", "TASKS")), "COMMON-LISP::TIME"} <= groups
@@ -150,7 +167,8 @@ def test_a_program_may_have_packages_that_are_called_like_the_nicknames(lisp):
     try:
         assert lisp("(package-name (defpackage :proj (:use :cl) (:nicknames :coe)))") == '"PROJ"'
         assert lisp("(list (package-name :proj) (package-name :coe) (package-name :occasions-events))") == (
-            '("PROJ" "PROJ" "CRAM-OCCASIONS-EVENTS")')
+            '("PROJ" "PROJ" "CRAM-OCCASIONS-EVENTS")'
+        )
         assert lisp("(fboundp 'cram-projection:clock-time)") != "NIL"
         assert find_package("CRAM-PROJECTION") is package
     finally:

@@ -33,7 +33,8 @@ def test_all_methods_for_an_event_run_the_most_specific_first(no_methods):
     no_methods("""(defmethod on-event one ((event robot-moved)) (note :moved) (list :moved (pose event)))
                   (defmethod on-event two ((event robot-drove)) (note :drove) :drove)""")
     assert no_methods("(list (on-event (make-instance 'robot-drove :pose 1)) (on-event (make-instance 'robot-moved :pose 2)))") == (
-        "((:DROVE (:MOVED 1)) ((:MOVED 2)))")
+        "((:DROVE (:MOVED 1)) ((:MOVED 2)))"
+    )
     assert no_methods("(notes)") == "(:DROVE :MOVED :MOVED)"
     assert no_methods("(on-event 5)") == "NIL"
 
@@ -70,7 +71,8 @@ def test_other_packages_extend_holds_also_for_a_time(world):
              (defun round-place (time) (if (< time 3) 'sink 'shelf))""")
     assert world("(all '(in ?what sink))") == "(((?WHAT . CUP)))"
     assert world("(list (all '(in cup ?where) '(at 1.0d0)) (all '(in cup ?where) '(at 4.0d0)))") == (
-        "((((?WHERE . SINK))) (((?WHERE . SHELF))))")
+        "((((?WHERE . SINK))) (((?WHERE . SHELF))))"
+    )
     assert world("(list (all '(washed cup) '(at 6.0d0)) (all '(washed cup) '(at 4.0d0)))") == "((NIL) NIL)"
 
 
@@ -85,7 +87,8 @@ def test_holds_is_a_generic_function_that_users_may_extend(world):
 @pytest.mark.law("projection-and-events", 18)
 def test_the_deprecated_functions_warn_and_keep_facts_in_the_rete_network(world):
     assert world("(warnings-of (dolist (fact '((on cup table) (on plate table) (in fork sink))) (assert-occasion fact)))") == (
-        '("ASSERT-OCCASION is deprecated." "ASSERT-OCCASION is deprecated." "ASSERT-OCCASION is deprecated.")')
+        '("ASSERT-OCCASION is deprecated." "ASSERT-OCCASION is deprecated." "ASSERT-OCCASION is deprecated.")'
+    )
     assert world("(prolog:rete-holds '(in fork sink))") == "(NIL)"
     assert world("(warnings-of (note (holds-occasion '(on ?thing table))))") == '("HOLDS-OCCASION is deprecated.")'
     assert world("(warnings-of (retract-occasion '(on ?thing table)))") == '("RETRACT-OCCASION is deprecated.")'
@@ -108,7 +111,8 @@ def test_clear_belief_empties_the_network_and_calls_all_methods(no_methods):
                   (defmethod clear-belief test () (note :cleared))
                   (clear-belief)""")
     assert no_methods("(list (prolog:rete-holds '(on ?x ?y)) (prolog:rete-holds '(a ?x)) (prolog:alpha-network-size) (notes))") == (
-        "(NIL NIL 1 (:CLEARED))")
+        "(NIL NIL 1 (:CLEARED))"
+    )
     assert no_methods("(warnings-of (retract-occasion '(on ?x ?y)))") == '("RETRACT-OCCASION is deprecated.")'
 
 
@@ -125,16 +129,32 @@ def includes(world, time):
 
 
 @pytest.mark.law("projection-and-events", 20)
-@pytest.mark.parametrize("time, included", [
-    ("(at 2.0d0)", True), ("(at 4.9d0)", True), ("(at 5.0d0)", False), ("(at 1.9d0)", False),
-    ("(throughout 2.0d0 5.0d0)", True), ("(throughout 3.0d0 4.0d0)", True), ("(throughout 1.9d0 4.0d0)", False),
-    ("(throughout 3.0d0 5.1d0)", False), ("(throughout 4.0d0 3.0d0)", False),
-    ("(throughout 3.0d0 3.0d0)", False), ("(during 1.0d0 2.1d0)", True), ("(during 4.9d0 9.0d0)", True),
-    ("(during 0.0d0 9.0d0)", True), ("(during 1.0d0 2.0d0)", False),
-    ("(during 5.0d0 6.0d0)", False), ("(during 4.0d0 3.0d0)", False), ("(after 3.0d0)", False),
-    ("(at 3.0d0 4.0d0)", False), ("3.0d0", False),
-    ("(throughout ?a ?b)", False), ("(throughout 3.0d0 ?b)", False),
-])
+@pytest.mark.parametrize(
+    "time, included",
+    [
+        ("(at 2.0d0)", True),
+        ("(at 4.9d0)", True),
+        ("(at 5.0d0)", False),
+        ("(at 1.9d0)", False),
+        ("(throughout 2.0d0 5.0d0)", True),
+        ("(throughout 3.0d0 4.0d0)", True),
+        ("(throughout 1.9d0 4.0d0)", False),
+        ("(throughout 3.0d0 5.1d0)", False),
+        ("(throughout 4.0d0 3.0d0)", False),
+        ("(throughout 3.0d0 3.0d0)", False),
+        ("(during 1.0d0 2.1d0)", True),
+        ("(during 4.9d0 9.0d0)", True),
+        ("(during 0.0d0 9.0d0)", True),
+        ("(during 1.0d0 2.0d0)", False),
+        ("(during 5.0d0 6.0d0)", False),
+        ("(during 4.0d0 3.0d0)", False),
+        ("(after 3.0d0)", False),
+        ("(at 3.0d0 4.0d0)", False),
+        ("3.0d0", False),
+        ("(throughout ?a ?b)", False),
+        ("(throughout 3.0d0 ?b)", False),
+    ],
+)
 def test_a_stretch_of_time_includes_its_start_and_not_its_end(world, time, included):
     assert includes(world, time) == ("(NIL)" if included else "NIL")
 
@@ -149,7 +169,8 @@ def test_an_unbound_point_of_time_becomes_the_start(world):
 def test_times_of_another_type_fit_nothing_and_a_warning_says_what_to_write(world, time):
     double = {"3": "3.0d0", "3.0": "3.0d0", "7/2": "3.5d0"}[time]
     assert world(f"(warnings-of (note (answers '(duration-includes (throughout 2.0d0 5.0d0) (at {time})))))") == (
-        f'("[PROLOG WARNING] The time {time} in (AT {time}) is no double-float, so it fits nothing. Write {double}.")')
+        f'("[PROLOG WARNING] The time {time} in (AT {time}) is not a double-float, so it fits nothing. Write {double}.")'
+    )
     assert world("(notes)") == "(NIL)"
 
 
@@ -172,7 +193,8 @@ def test_an_action_with_a_goal_makes_an_occasion_of_the_users_hold(world):
     world(ACTION)
     assert world("(list (top-level (perform-it :house)) (notes))") == "(NIL (:HOUSE))"
     assert world("(list (top-level (warnings-of (perform-it :house #'exe:generic-perform))) (notes))") == (
-        '(("Action goal `(DRAWN HOUSE)\' already achieved.") NIL)')
+        '(("Action goal `(DRAWN HOUSE)\' already achieved.") NIL)'
+    )
     assert "was not achieved." in world.error("(top-level (perform-it :circle))")
 
 

@@ -82,7 +82,8 @@ def test_an_error_of_lisp_is_taken_out_of_its_envelope(plans):
 
 def test_the_type_of_an_unbound_error_is_a_warning_and_fails(plans):
     assert plans("(warnings-of (note (answers '(error-type ?e ?type))))") == (
-        '("[PROLOG WARNING] Trying to call ERROR-TYPE on unbound variable.")')
+        '("[PROLOG WARNING] Trying to call ERROR-TYPE on unbound variable.")'
+    )
     assert plans("(list (notes) (answers '(error-type 5 ?type)))") == "((NIL) NIL)"
 
 
@@ -95,7 +96,8 @@ def test_who_is_below_whom_in_both_directions(plans):
     plans("(def-top-level-cram-function deep () (outer)) (def-cram-function outer () (grasp 'cup)) (deep)")
     assert plans("(mapcar #'first (paths-of '?s '(prolog:and (top-level ?t) (subtask+ ?t ?s))))") == "((OUTER) (GRASP))"
     assert plans("(mapcar #'first (paths-of '?t '(prolog:and (task-path ?s ((grasp) . ?_)) (subtask+ ?t ?s))))") == (
-        "((OUTER) (TOP-LEVEL DEEP))")
+        "((OUTER) (TOP-LEVEL DEEP))"
+    )
 
 
 def test_siblings_and_the_next_one(plans):
@@ -103,7 +105,8 @@ def test_siblings_and_the_next_one(plans):
     assert plans("(mapcar #'first (paths-of '?s '(prolog:and (goal-task ?t) (coe::task-sibling ?t ?s))))") == "((GRASP) (WAIT))"
     assert plans("(mapcar #'first (paths-of '?s '(prolog:and (goal-task ?t) (coe::task-next-sibling ?t ?s))))") == "((WAIT))"
     assert plans("(mapcar #'first (paths-of '?t '(prolog:and (task-outcome ?s :evaporated) (coe::task-next-sibling ?t ?s))))") == (
-        "((GOAL (REACH ?WHERE)))")
+        "((GOAL (REACH ?WHERE)))"
+    )
 
 
 def test_statuses_at_a_time_and_the_times_of_tasks_as_traced(traced):
@@ -112,13 +115,19 @@ def test_statuses_at_a_time_and_the_times_of_tasks_as_traced(traced):
     assert traced(f"(values-of '?s '{query.format('(at 2.5d0)')})") == "(:SUCCEEDED)"
     assert traced(f"(values-of '?s '{query.format('(during 0.0d0 9.0d0)')})") == "(:CREATED :RUNNING :SUCCEEDED)"
     assert traced("(mapcar #'first (paths-of '?t '(holds (task-status ?t :evaporated) (at 3.05d0))))") == "((WAIT))"
-    assert traced("""(about '(prolog:and (task-path ?t ((grasp) . ?_)) (task-created-at ?t ?c) (task-started-at ?t ?s)
-                                         (task-ended-at ?t ?e)))""").count("1.0d0") == 1
+    assert (
+        traced("""(about '(prolog:and (task-path ?t ((grasp) . ?_)) (task-created-at ?t ?c) (task-started-at ?t ?s)
+                                         (task-ended-at ?t ?e)))""").count("1.0d0")
+        == 1
+    )
     assert traced("(values-of '?e '(prolog:and (goal-task ?t) (task-ended-at ?t ?e)))") == "(1.0d0)"
     assert traced("(values-of '?c '(prolog:and (goal-task ?t) (task-created-at ?t ?c)))") == "(0.0d0)"
     status = "(goal-task ?t) (task-status-fluent ?t ?f)"
-    assert traced(f"""(equal (values-of '?f '(prolog:and {status}))
-                             (values-of '?f '(prolog:and {status} (holds (fluent-value ?f :running) (at 0.5d0)))))""") == "T"
+    assert (
+        traced(f"""(equal (values-of '?f '(prolog:and {status}))
+                             (values-of '?f '(prolog:and {status} (holds (fluent-value ?f :running) (at 0.5d0)))))""")
+        == "T"
+    )
 
 
 def test_statuses_and_times_are_known_without_tracing_too(plans):
@@ -142,9 +151,16 @@ def test_a_plan_may_ask_about_itself_while_it_runs(plans):
 @pytest.mark.law("projection-and-events", 26)
 def test_the_same_questions_to_an_episode_from_a_file(traced):
     traced('(cet:save-last-episode-knowledge "fetch.ek")')
-    asked = ["(task-outcome ?t ?x)", "(task-result ?t ?x)", "(prolog:and (goal-task ?t) (task-ended-at ?t ?x))", "(task-path ?t ?x)",
-             "(holds (fluent-value pose ?x) (at 2.0d0))", "(prolog:and (goal-task ?t) (holds (task-status ?t ?x) (at 0.5d0)))",
-             "(prolog:and (top-level ?t) (subtask ?t ?s) (task-path ?s ?x))", "(task-goal ?t ?x)"]
+    asked = [
+        "(task-outcome ?t ?x)",
+        "(task-result ?t ?x)",
+        "(prolog:and (goal-task ?t) (task-ended-at ?t ?x))",
+        "(task-path ?t ?x)",
+        "(holds (fluent-value pose ?x) (at 2.0d0))",
+        "(prolog:and (goal-task ?t) (holds (task-status ?t ?x) (at 0.5d0)))",
+        "(prolog:and (top-level ?t) (subtask ?t ?s) (task-path ?s ?x))",
+        "(task-goal ?t ?x)",
+    ]
     for goal in asked:
         live = traced(f"(values-of '?x '{goal})")
         loaded = traced(f"""(cet:with-offline-episode-knowledge "fetch.ek"
@@ -152,14 +168,24 @@ def test_the_same_questions_to_an_episode_from_a_file(traced):
         assert live == loaded != "NIL", goal
 
 
-@pytest.mark.parametrize("goal, name", [
-    ("(task ?t)", "TASK"), ("(top-level ?t)", "TOP-LEVEL"), ("(task-outcome ?t ?o)", "TASK-OUTCOME"), ("(fluent ?f)", "FLUENT"),
-    ("(holds (fluent-value pose ?v) (at 1.0d0))", "FLUENT-VALUE"), ("(subtask ?t ?s)", "SUBTASK"),
-    ("(holds (task-status ?t ?s) ?time)", "TASK-STATUS"), ("(goal-task ?t)", "GOAL-TASK")])
+@pytest.mark.parametrize(
+    "goal, name",
+    [
+        ("(task ?t)", "TASK"),
+        ("(top-level ?t)", "TOP-LEVEL"),
+        ("(task-outcome ?t ?o)", "TASK-OUTCOME"),
+        ("(fluent ?f)", "FLUENT"),
+        ("(holds (fluent-value pose ?v) (at 1.0d0))", "FLUENT-VALUE"),
+        ("(subtask ?t ?s)", "SUBTASK"),
+        ("(holds (task-status ?t ?s) ?time)", "TASK-STATUS"),
+        ("(goal-task ?t)", "GOAL-TASK"),
+    ],
+)
 def test_without_an_episode_there_is_a_warning_and_no_answer(plans, goal, name):
     assert plans(f"(warnings-of (note (answers '{goal})))") == (
         f'("[PROLOG WARNING] {name} asks an episode, and *EPISODE-KNOWLEDGE* is nil. Write (with-last-episode-knowledge ...) '
-        'around the query.")')
+        'around the query.")'
+    )
     assert plans("(notes)") == "(NIL)"
 
 

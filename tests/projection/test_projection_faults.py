@@ -2,15 +2,16 @@
 
 import pytest
 
-from cramhy_runtime import cpl, image, testing
+from cramhy_runtime import cpl, testing
+from cramhy_runtime.session import boot
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime import projection as proj
 from cramhy_runtime.designators.classes import make_designator
-from cramhy_runtime.lisp.packages import intern, keyword
+from cramhy_runtime.ground.packages import intern, keyword
 from cramhy_runtime.projection import environments
-from cramhy_runtime.testing import assert_order, faults, mark
+from cramhy_runtime.testing import assert_order, mark, faults
 
-image.boot()
+boot()
 WORLD, ARM, IMAGINED = (intern(f"FAULTY-{name}", "CRAM-USER") for name in ("WORLD", "ARM", "IMAGINED-ARM"))
 
 
@@ -21,8 +22,9 @@ def world(monkeypatch):
 
 
 def define(name):
-    proj.define_projection_environment(WORLD, modules=[(ARM, IMAGINED)], startup=lambda: mark(f"startup {name}"),
-                                       shutdown=lambda: (cpl.sleep(1), mark(f"shutdown {name}")))
+    proj.define_projection_environment(
+        WORLD, modules=[(ARM, IMAGINED)], startup=lambda: mark(f"startup {name}"), shutdown=lambda: (cpl.sleep(1), mark(f"shutdown {name}"))
+    )
 
 
 def project(name):

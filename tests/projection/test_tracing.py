@@ -31,7 +31,8 @@ def test_tracing_is_off_at_first_and_lists_changes_in_order_when_on(fluents):
 def test_durations_partition_the_time_and_the_last_ends_at_the_max_time(fluents):
     fluents("(cet:enable-fluent-tracing) (drive)")
     assert fluents("(durations 'pose)").replace("CRAM-EXECUTION-TRACE:", "") == (
-        "((0 THROUGHOUT 0.0d0 1.0d-4) (1 THROUGHOUT 1.0d-4 2.0d0) (2 THROUGHOUT 2.0d0 5.0d0) (3 THROUGHOUT 5.0d0 5.1d0))")
+        "((0 THROUGHOUT 0.0d0 1.0d-4) (1 THROUGHOUT 1.0d-4 2.0d0) (2 THROUGHOUT 2.0d0 5.0d0) (3 THROUGHOUT 5.0d0 5.1d0))"
+    )
     assert fluents("(cet:episode-knowledge-max-time cet:*last-episode-knowledge*)") == "5.1d0"
 
 
@@ -43,8 +44,11 @@ def test_nothing_changes_in_a_fluent_by_its_being_traced(fluents):
 @pytest.mark.law("projection-and-events", 22)
 def test_many_changes_at_one_moment_have_increasing_times_within_the_millisecond(fluents):
     fluents("(cet:enable-fluent-tracing) (top-level (dotimes (i 50) (setf (value *pose*) (list i))))")
-    assert fluents("""(let ((times (mapcar #'cdr (changes 'pose))))
-                        (list (length times) (apply #'< times) (< (car (last times)) 0.001d0)))""") == "(51 T T)"
+    assert (
+        fluents("""(let ((times (mapcar #'cdr (changes 'pose))))
+                        (list (length times) (apply #'< times) (< (car (last times)) 0.001d0)))""")
+        == "(51 T T)"
+    )
 
 
 def test_a_pulse_is_recorded_though_the_value_is_the_same(fluents):
@@ -99,11 +103,14 @@ def test_fluents_of_one_name_are_merged_and_strings_are_names(fluents):
 
 
 def test_unnamed_fluents_are_told_apart(fluents):
-    fluents("""(cet:enable-fluent-tracing)
+    fluents(
+        """(cet:enable-fluent-tracing)
                (top-level (let ((a (make-fluent :value 1)) (b (make-fluent :value 2))) (setf (value a) 3 (value b) 4)
                             (note (mapcar #'car (changes-of a)) (mapcar #'car (changes-of b)))))
-            """.replace("(changes-of a)", "(cet:episode-knowledge-fluent-changes (cpl-impl:name a))")
-            .replace("(changes-of b)", "(cet:episode-knowledge-fluent-changes (cpl-impl:name b))"))
+            """.replace("(changes-of a)", "(cet:episode-knowledge-fluent-changes (cpl-impl:name a))").replace(
+            "(changes-of b)", "(cet:episode-knowledge-fluent-changes (cpl-impl:name b))"
+        )
+    )
     assert fluents("(notes)") == "(((1 3) (2 4)))"
 
 
@@ -115,7 +122,8 @@ def test_values_are_copied_one_level_deep_and_by_methods_of_the_users(fluents):
                             (setf (value *pose*) things) (setf (first things) 100) (pulse *pose*)
                             (setf (value *pose*) box) (setf (things box) 2) (pulse *pose*)))""")
     assert fluents("(mapcar (lambda (change) (if (typep (car change) 'box) (things (car change)) (car change))) (changes 'pose))") == (
-        "(0 (1 2) (100 2) 1 2)")
+        "(0 (1 2) (100 2) 1 2)"
+    )
     assert fluents("(list (cet:durable-copy '(1 . 2)) (cet:durable-copy nil) (cet:durable-copy 7))") == "((1 . 2) NIL 7)"
 
 
@@ -142,14 +150,16 @@ def test_an_unknown_fluent_is_a_warning_with_the_nearest_name(fluents, query):
     asked = "(cet:with-last-episode-knowledge (warnings-of (note (cet:episode-knowledge-fluent-{} '{}))))"
     assert fluents(asked.format(query, "poes")) == '("No fluent named POES was traced in this episode. Did you mean POSE?")'
     assert fluents(asked.format(query, "laser-scanner")).startswith(
-        '("No fluent named LASER-SCANNER was traced in this episode. Traced were ')  # fluents of other tests may live still
+        '("No fluent named LASER-SCANNER was traced in this episode. Traced were '
+    )  # fluents of other tests may live still
     assert fluents("(notes)") == "(NIL NIL)"
 
 
 def test_the_warning_tells_of_tracing_that_is_off(fluents):
     fluents("(drive)")
     assert fluents("(cet:with-last-episode-knowledge (warnings-of (cet:episode-knowledge-fluent-changes 'pose)))") == (
-        '("No fluent named POSE was traced in this episode. Nothing was traced: call (enable-fluent-tracing) before the plan.")')
+        '("No fluent named POSE was traced in this episode. Nothing was traced: call (enable-fluent-tracing) before the plan.")'
+    )
 
 
 # ------------------------------------------------------------------------------------------------------------ auto tracing
@@ -168,7 +178,8 @@ def test_auto_tracing_writes_a_file_for_each_plan_with_time_and_name(fluents, tm
     assert fluents("""(cet:with-offline-episode-knowledge "traces/20101218161114-DRIVE.ek"
                         (list (cet:episode-knowledge-fluent-changes 'pose)
                               (task-tree-node-result (cet:episode-knowledge-task-tree))))""") == (
-        "(((0 . 0.0d0) (1 . 1.0d-4) (2 . 2.0d0) (3 . 5.0d0)) :THERE)")
+        "(((0 . 0.0d0) (1 . 1.0d-4) (2 . 2.0d0) (3 . 5.0d0)) :THERE)"
+    )
     assert fluents("(list (cet:disable-auto-tracing) (cet:auto-tracing-enabled))") == "(NIL NIL)"
     fluents("(drive)")
     assert len(files(tmp_path)) == 3
@@ -183,10 +194,12 @@ def test_names_of_files_have_no_strange_characters_and_failed_plans_are_saved(fl
 
 def test_a_directory_that_is_not_there(fluents, tmp_path):
     assert fluents.error('(cet:set-auto-tracing-directory "nowhere/")') == (
-        'Pathspec #P"nowhere/" does not designate a valid path for auto tracing.')
+        'Pathspec #P"nowhere/" does not designate a valid path for auto tracing.'
+    )
     assert fluents.error("(cet:enable-auto-tracing)") == (
         "The value NIL is not of type PATHNAME (Auto tracing needs a directory: call (set-auto-tracing-directory path) before, or "
-        "(setup-auto-tracing path).)")
+        "(setup-auto-tracing path).)"
+    )
 
 
 def test_a_plan_does_not_suffer_from_a_directory_that_vanished(fluents, tmp_path):

@@ -20,7 +20,7 @@ def warnings_given():
 @pytest.fixture(autouse=True)
 def no_groups_left():
     """Fact groups that a test defines are gone after it."""
-    from cramhy_runtime.prolog import facts
+    from cramhy_runtime.prolog.engine import fact_groups as facts
 
     before = set(facts.fact_group_names())
     yield

@@ -1,19 +1,21 @@
 """Prolog as text: reading goals, proving them, and showing the answers the way Lisp prints them."""
 
-from cramhy_runtime.lisp import cl_names, conditions
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import COMMON_LISP, find_package, make_package, sym
+from cramhy_runtime.ground import cl_names, conditions
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import COMMON_LISP, find_package, make_package, sym
 
 for name in cl_names.NAMES.split():
     if name not in ("nil", "t"):
         COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
 
-import cramhy_runtime.prolog.package  # noqa: E402, F401  after the names of Common Lisp are there
-from cramhy_runtime.lisp.printer.printer import prin1_to_string  # noqa: E402
-from cramhy_runtime.lisp.reader.reader import read_from_string  # noqa: E402
-from cramhy_runtime.prolog import facts, query  # noqa: E402
+from cramhy_runtime.session import boot  # noqa: E402  after the names of Common Lisp are there
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string  # noqa: E402
+from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string  # noqa: E402
+from cramhy_runtime.prolog.engine import fact_groups as facts  # noqa: E402
+from cramhy_runtime.prolog import query  # noqa: E402
 from cramhy_runtime.utilities.lazy_lists import force_ll  # noqa: E402
 
+boot()  # so that what tests read are the symbols of Prolog
 HERE = find_package("PROLOG-TESTS-HERE") or make_package("PROLOG-TESTS-HERE", use=["COMMON-LISP", "CRAM-PROLOG"])
 _PACKAGE = sym("*PACKAGE*")
 _PRETTY = sym("*PRINT-PRETTY*")
@@ -64,7 +66,7 @@ class RegisteredWarnings:
     """``with RegisteredWarnings() as given:`` collects the texts of warnings and muffles them."""
 
     def __enter__(self):
-        from cramhy_runtime.lisp.conditions import Warning_, _handlers, muffle_warning
+        from cramhy_runtime.ground.conditions import Warning_, _handlers, muffle_warning
 
         texts = []
 
@@ -83,5 +85,3 @@ class RegisteredWarnings:
 def error_text(thunk, kind=conditions.Error):
     """The report of the error that ``thunk`` signals."""
     return conditions.handler_case([(kind, lambda condition: condition.report())], thunk)
-
-

@@ -8,7 +8,7 @@ import random
 
 from prolog_text import HERE, read
 
-from cramhy_runtime.lisp.data import Cons, list_from
+from cramhy_runtime.ground.data import Cons, list_from
 
 VARIABLES = [read(f"?{letter}") for letter in "uvwxyz"]
 ATOMS = [read(text) for text in "a a a b b nil 1 1 2 2 3".split()] + [read(text) for text in ("0", "-1", '"s"', ":k", "1.5")]
@@ -93,12 +93,31 @@ class Program:
     def goal(self, depth):
         """A goal; control constructs nest ``depth`` deep."""
         rng = self.rng
-        simple = [self.call, self.call, self.call, self.call, self.unification, self.member, self.arithmetic, self.comparison,
-                  self.of_lists, self.test]
+        simple = [
+            self.call,
+            self.call,
+            self.call,
+            self.call,
+            self.unification,
+            self.member,
+            self.arithmetic,
+            self.comparison,
+            self.of_lists,
+            self.test,
+        ]
         if depth == 0:
             return rng.choice(simple)()
-        return rng.choice([*simple, *simple, lambda: form("not", self.conjunction(1, depth - 1)), lambda: self.disjunction(depth - 1),
-                           lambda: self.condition(depth - 1), lambda: self.collection(depth - 1), lambda: self.committed(depth - 1)])()
+        return rng.choice(
+            [
+                *simple,
+                *simple,
+                lambda: form("not", self.conjunction(1, depth - 1)),
+                lambda: self.disjunction(depth - 1),
+                lambda: self.condition(depth - 1),
+                lambda: self.collection(depth - 1),
+                lambda: self.committed(depth - 1),
+            ]
+        )()
 
     def conjunction(self, count, depth):
         goals = [self.goal(depth) for _ in range(count)]
@@ -119,10 +138,13 @@ class Program:
         return form(self.rng.choice(COMPARISONS).name.lower(), self.number(), self.number())
 
     def of_lists(self):
-        return self.rng.choice([
-            lambda: form("length", self.rng.choice([self.list(1, 0.3), self.rng.choice(VARIABLES)]), self.term(0, 0.7)),
-            lambda: form("append", self.numbers(), self.term(1), self.term(1)),
-            lambda: form("append", self.term(1), self.term(1), self.numbers())])()
+        return self.rng.choice(
+            [
+                lambda: form("length", self.rng.choice([self.list(1, 0.3), self.rng.choice(VARIABLES)]), self.term(0, 0.7)),
+                lambda: form("append", self.numbers(), self.term(1), self.term(1)),
+                lambda: form("append", self.term(1), self.term(1), self.numbers()),
+            ]
+        )()
 
     def test(self):
         return form(self.rng.choice(["ground", "bound"]), self.term(1, 0.7))
@@ -140,7 +162,10 @@ class Program:
         return form(self.rng.choice(["findall", "findall", "bagof", "setof"]), self.term(1, 0.8), goal, result)
 
     def committed(self, depth):
-        return self.rng.choice([
-            lambda: form("once", *[self.goal(depth) for _ in range(self.rng.randint(1, 2))]),
-            lambda: form("call", self.conjunction(1, depth)),
-            lambda: form("forall", self.conjunction(1, depth), self.goal(depth))])()
+        return self.rng.choice(
+            [
+                lambda: form("once", *[self.goal(depth) for _ in range(self.rng.randint(1, 2))]),
+                lambda: form("call", self.conjunction(1, depth)),
+                lambda: form("forall", self.conjunction(1, depth), self.goal(depth)),
+            ]
+        )()

@@ -7,7 +7,7 @@ are those with endless terms and long proofs.
 
 import subprocess
 
-from cramhy_runtime.lisp.data import Cons, Keyword, Symbol
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 LIBRARY = r"""
@@ -134,7 +134,10 @@ def run(programs, limit, folder):
     path.write_text(text)
     done = subprocess.run(
         ["swipl", "-q", "-f", str(path), "-g", f"forall(between(0, {count - 1}, N), run(N, {limit}))", "-t", "halt"],
-        capture_output=True, text=True, timeout=600)
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
     assert not done.stderr.strip(), done.stderr[:2000]
     found = []
     for line in done.stdout.splitlines():

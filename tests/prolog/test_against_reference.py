@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 from prolog_text import HERE, read
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.lisp.data import Cons, Symbol, list_from
-from cramhy_runtime.prolog import facts, query
+from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.prolog.engine import fact_groups as facts
+from cramhy_runtime.prolog import query
 from cramhy_runtime.utilities import patterns
 from cramhy_runtime.utilities.lazy_lists import LazyTail, elements
 
@@ -55,8 +56,11 @@ def test_unification_makes_both_sides_the_same(a, b):
 
 
 def calls(callable_names):
-    return st.builds(lambda name, arguments: Cons(_FUNCTORS[name], list_from(arguments)), st.sampled_from(callable_names),
-                     st.lists(terms, min_size=2, max_size=2))
+    return st.builds(
+        lambda name, arguments: Cons(_FUNCTORS[name], list_from(arguments)),
+        st.sampled_from(callable_names),
+        st.lists(terms, min_size=2, max_size=2),
+    )
 
 
 def compound(name, *parts):
@@ -67,20 +71,34 @@ def goals_over(names):
     """Goals that call only the predicates ``names``, so that programs end."""
     basic = compound("==", terms, terms)
     simple = st.one_of(basic, calls(names), st.just(list_from([read("cut")]))) if names else basic
-    return st.one_of(simple, simple, simple, st.recursive(
+    return st.one_of(
         simple,
-        lambda inner: st.one_of(
-            *(st.lists(inner, max_size=3).map(lambda goals, name=name: Cons(read(name), list_from(goals)))
-              for name in ("and", "or", "once")),
-            compound("not", inner), compound("call", inner), compound("forall", inner, inner),
-            *(compound(name, terms, inner, terms) for name in ("findall", "bagof")),
-            *(compound(name, *[inner] * count) for name in ("->", "*->") for count in (2, 3))),
-        max_leaves=5))
+        simple,
+        simple,
+        st.recursive(
+            simple,
+            lambda inner: st.one_of(
+                *(
+                    st.lists(inner, max_size=3).map(lambda goals, name=name: Cons(read(name), list_from(goals)))
+                    for name in ("and", "or", "once")
+                ),
+                compound("not", inner),
+                compound("call", inner),
+                compound("forall", inner, inner),
+                *(compound(name, terms, inner, terms) for name in ("findall", "bagof")),
+                *(compound(name, *[inner] * count) for name in ("->", "*->") for count in (2, 3)),
+            ),
+            max_leaves=5,
+        ),
+    )
 
 
 def clauses_of(name, below):
-    clause = st.builds(lambda arguments, goals: Cons(Cons(_FUNCTORS[name], list_from(arguments)), list_from(goals)),
-                       st.lists(terms, min_size=2, max_size=2), st.lists(goals_over(below), max_size=2))
+    clause = st.builds(
+        lambda arguments, goals: Cons(Cons(_FUNCTORS[name], list_from(arguments)), list_from(goals)),
+        st.lists(terms, min_size=2, max_size=2),
+        st.lists(goals_over(below), max_size=2),
+    )
     return st.lists(clause, min_size=1, max_size=4)
 
 
@@ -133,32 +151,45 @@ def test_random_programs_have_the_answers_of_the_textbook(program, goal):
     compare_with_textbook(head, [*clauses, list_from([head, goal])])
 
 
-values = st.one_of(st.sampled_from([read("a"), read("b"), read("c"), None, True, 1, 2, 1.0, "s", read(":k")]),
-                   st.sampled_from([read("(a 1)"), read("(a b)"), read("(b)"), read("(1 a)")]))
+values = st.one_of(
+    st.sampled_from([read("a"), read("b"), read("c"), None, True, 1, 2, 1.0, "s", read(":k")]),
+    st.sampled_from([read("(a 1)"), read("(a b)"), read("(b)"), read("(1 a)")]),
+)
 plain_values = st.sampled_from([read("a"), read("b"), read("c"), 1, "s"])
-patterns_of_values = st.one_of(variables, variables, variables, values,
-                               st.sampled_from([read("(a ?x)"), read("(?x . ?y)"), read("(b . ?z)")]))
+patterns_of_values = st.one_of(
+    variables, variables, variables, values, st.sampled_from([read("(a ?x)"), read("(?x . ?y)"), read("(b . ?z)")])
+)
 
 
 def table(name, arity, of):
-    return st.lists(st.lists(of, min_size=arity, max_size=arity).map(lambda row: list_from([Cons(HERE.intern(name), list_from(row))])),
-                    min_size=1, max_size=8)
+    return st.lists(
+        st.lists(of, min_size=arity, max_size=arity).map(lambda row: list_from([Cons(HERE.intern(name), list_from(row))])),
+        min_size=1,
+        max_size=8,
+    )
 
 
 def asked(name, arity, arguments):
     return st.lists(arguments, min_size=arity, max_size=arity).map(lambda row: Cons(HERE.intern(name), list_from(row)))
 
 
-@given(st.tuples(table("R1", 1, values), table("R2", 2, values), table("R3", 3, values)),
-       st.lists(st.one_of(*(asked(f"R{arity}", arity, patterns_of_values) for arity in (1, 2, 3))), min_size=1, max_size=3))
+@given(
+    st.tuples(table("R1", 1, values), table("R2", 2, values), table("R3", 3, values)),
+    st.lists(st.one_of(*(asked(f"R{arity}", arity, patterns_of_values) for arity in (1, 2, 3))), min_size=1, max_size=3),
+)
 @settings(max_examples=100, deadline=None)
 def test_facts_have_the_answers_of_the_textbook(tables, goals):
     compare_with_textbook(Cons(read("and"), list_from(goals)), sum(tables, []))
 
 
-@given(st.tuples(table("R1", 1, plain_values), table("R2", 2, plain_values), table("R3", 3, plain_values)),
-       st.lists(st.one_of(*(asked(f"R{arity}", arity, st.one_of(variables, variables, plain_values)) for arity in (1, 2, 3))),
-                min_size=1, max_size=4))
+@given(
+    st.tuples(table("R1", 1, plain_values), table("R2", 2, plain_values), table("R3", 3, plain_values)),
+    st.lists(
+        st.one_of(*(asked(f"R{arity}", arity, st.one_of(variables, variables, plain_values)) for arity in (1, 2, 3))),
+        min_size=1,
+        max_size=4,
+    ),
+)
 @settings(max_examples=100, deadline=None)
 def test_joins_that_are_asked_again_have_the_answers_of_the_textbook(tables, goals):
     compare_with_textbook(Cons(read("and"), list_from(goals)) if len(goals) > 1 else goals[0], sum(tables, []), times=3)
@@ -185,8 +216,9 @@ def test_a_loop_that_runs_along_the_list_that_it_builds_never_ends():
     kernel.start(clock="virtual")
     facts.define_fact_group(read("loop"), None, APPEND)
     ended = []
-    cpl.top_level(lambda: cpl.pursue(
-        lambda: cpl.sleep(0.01), lambda: ended.append(query.prolog(read("(and (== ?l (1 . ?rest)) (app ?l () ?rest))")))))
+    cpl.top_level(
+        lambda: cpl.pursue(lambda: cpl.sleep(0.01), lambda: ended.append(query.prolog(read("(and (== ?l (1 . ?rest)) (app ?l () ?rest))"))))
+    )
     assert not ended
 
 

@@ -11,9 +11,10 @@ import swi_text
 from prolog_text import RegisteredWarnings, read, show
 from random_programs import Program
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp.data import Cons, Keyword, Symbol
-from cramhy_runtime.prolog import facts, query
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.prolog.engine import fact_groups as facts
+from cramhy_runtime.prolog import query
 from cramhy_runtime.utilities.lazy_lists import LazyTail, elements
 from cramhy_runtime.utilities.patterns import ANONYMOUS, var_value, variable, variables_of
 
@@ -53,7 +54,7 @@ def answers(goal, variables):
 
 @pytest.mark.skipif(shutil.which("swipl") is None, reason="swi-prolog is not installed")
 def test_random_programs_have_the_answers_of_swi_prolog_in_its_order(tmp_path):
-    image.boot()
+    boot()
     programs = []
     for seed in range(WANTED):
         program = Program(seed)

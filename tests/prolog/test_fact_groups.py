@@ -3,12 +3,14 @@
 import pytest
 from prolog_text import ask, error_text, first, function, group, read, show
 
-from cramhy_runtime.lisp.data import list_from
-from cramhy_runtime.lisp.tools.advice import hint_for
-from cramhy_runtime.prolog import facts, natives, query
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
+from cramhy_runtime.prolog.engine import fact_groups as facts
+from cramhy_runtime.prolog.builtins import native_predicates as natives
+from cramhy_runtime.prolog import query
 from cramhy_runtime.repl.session import Session, condition_of
 from cramhy_runtime.utilities.lazy_lists import elements, lazy_cdr
-from cramhy_runtime.prolog.terms import Var
+from cramhy_runtime.prolog.terms.terms import Var
 
 
 def test_a_group_returns_its_facts_by_functor():
@@ -33,7 +35,8 @@ def test_a_redefined_group_moves_to_the_end_and_warns(warnings_given):
 def test_extending_without_permission_is_an_error():
     group("g1", "((p 1))")
     assert error_text(lambda: group("g2", "((p 2))")) == (
-        "Functor P is being redefined in fact-group G2.\n                Other definitions were in fact-groups (G1).")
+        "Functor P is being redefined in fact-group G2.\n                Other definitions were in fact-groups (G1)."
+    )
     assert ask("(p ?x)") == "(((?X . 1)))"
 
 
@@ -43,10 +46,15 @@ def test_a_head_needs_a_symbol(head):
     assert text.startswith("Functor ") and text.endswith(" is not valid.")
 
 
-@pytest.mark.parametrize("clause, text", [
-    ("()", "The value\n  NIL\nis not of type\n  CONS"), ("(nil)", "The value\n  NIL\nis not of type\n  CONS"),
-    ("(7)", "The value\n  7\nis not of type\n  LIST"), ("((:p 1) . :q)", "The value\n  ((:P 1) . :Q)\nis not of type\n  LIST"),
-])
+@pytest.mark.parametrize(
+    "clause, text",
+    [
+        ("()", "The value\n  NIL\nis not of type\n  CONS"),
+        ("(nil)", "The value\n  NIL\nis not of type\n  CONS"),
+        ("(7)", "The value\n  7\nis not of type\n  LIST"),
+        ("((:p 1) . :q)", "The value\n  ((:P 1) . :Q)\nis not of type\n  LIST"),
+    ],
+)
 def test_a_clause_that_is_none_leaves_the_old_group(warnings_given, clause, text):
     group("g", "((p 1))")
     assert error_text(lambda: group("g", "((p 2))", clause)) == text
@@ -55,7 +63,8 @@ def test_a_clause_that_is_none_leaves_the_old_group(warnings_given, clause, text
 
 def test_an_extendable_name_must_be_a_functor():
     assert error_text(lambda: group("g", extendable="(?x)")) == (
-        "Extendible predicates in the definition of fact group G\n            contained an invalid functor ?X.")
+        "Extendible predicates in the definition of fact group G\n            contained an invalid functor ?X."
+    )
 
 
 def test_built_in_groups_are_protected_and_extendable():
@@ -145,15 +154,35 @@ def test_the_anonymous_variable_in_a_head():
     assert ask("(p 1 2 ?x)") == "(((?X . 1)))"
 
 
-@pytest.mark.parametrize("goal, answer", [
-    ("(kind 1 ?k)", "(((?K . ONE)))"), ("(kind 1.0 ?k)", "(((?K . FLOAT)))"), ("(kind t ?k)", "(((?K . TRUE)))"),
-    ('(kind "s" ?k)', "(((?K . STRING)))"), ("(kind nil ?k)", "(((?K . EMPTY)))"), ("(kind (1) ?k)", "(((?K LIST 1)))"),
-    ("(kind :k ?k)", "(((?K . KEY)))"), ("(kind 2 ?k)", "NIL"), ("(kind 1/2 ?k)", "(((?K . HALF)))"), ("(kind #\\a ?k)", "(((?K . A)))"),
-    ("(kind 1.0d0 ?k)", "NIL"),
-])
+@pytest.mark.parametrize(
+    "goal, answer",
+    [
+        ("(kind 1 ?k)", "(((?K . ONE)))"),
+        ("(kind 1.0 ?k)", "(((?K . FLOAT)))"),
+        ("(kind t ?k)", "(((?K . TRUE)))"),
+        ('(kind "s" ?k)', "(((?K . STRING)))"),
+        ("(kind nil ?k)", "(((?K . EMPTY)))"),
+        ("(kind (1) ?k)", "(((?K LIST 1)))"),
+        ("(kind :k ?k)", "(((?K . KEY)))"),
+        ("(kind 2 ?k)", "NIL"),
+        ("(kind 1/2 ?k)", "(((?K . HALF)))"),
+        ("(kind #\\a ?k)", "(((?K . A)))"),
+        ("(kind 1.0d0 ?k)", "NIL"),
+    ],
+)
 def test_the_first_argument_selects_clauses(goal, answer):
-    group("g", "((kind 1 one))", "((kind 1.0 float))", "((kind t true))", '((kind "s" string))', "((kind nil empty))",
-          "((kind (?x) (list ?x)))", "((kind :k key))", "((kind 1/2 half))", "((kind #\\a a))")
+    group(
+        "g",
+        "((kind 1 one))",
+        "((kind 1.0 float))",
+        "((kind t true))",
+        '((kind "s" string))',
+        "((kind nil empty))",
+        "((kind (?x) (list ?x)))",
+        "((kind :k key))",
+        "((kind 1/2 half))",
+        "((kind #\\a a))",
+    )
     assert ask(goal) == answer
 
 
@@ -167,8 +196,14 @@ def test_ground_facts_form_a_table_that_answers_in_order():
     assert ask("(and (edge ?a ?b) (edge ?b ?c))") == "(((?A . A) (?B . B) (?C . C)) ((?A . E) (?B . E) (?C . E)))"
 
 
-LISTS = ("((app nil ?l ?l))", "((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))", "((nrev nil nil))",
-         "((nrev (?h . ?t) ?r) (nrev ?t ?rt) (app ?rt (?h) ?r))", "((mem ?x (?x . ?_)))", "((mem ?x (?_ . ?t)) (mem ?x ?t))")
+LISTS = (
+    "((app nil ?l ?l))",
+    "((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))",
+    "((nrev nil nil))",
+    "((nrev (?h . ?t) ?r) (nrev ?t ?rt) (app ?rt (?h) ?r))",
+    "((mem ?x (?x . ?_)))",
+    "((mem ?x (?_ . ?t)) (mem ?x ?t))",
+)
 
 
 def test_naive_reverse():
@@ -286,7 +321,8 @@ def test_a_handler_whose_result_is_no_list_of_binding_lists(fresh_kernel, result
         session.evaluate_text(f"(def-prolog-handler slip (bdgs) (declare (ignore bdgs)) {result}) (prolog '(slip))")
     assert str(condition_of(problem.value)).replace("SLIPS::", "") == (
         f"The value\n  {datum}\nis not of type\n  LIST\n"
-        "(A handler returns a list of binding lists, one for each solution: (list bdgs) for one that binds nothing, nil for none.)")
+        "(A handler returns a list of binding lists, one for each solution: (list bdgs) for one that binds nothing, nil for none.)"
+    )
 
 
 def test_t_is_a_functor_like_any_other(warnings_given):

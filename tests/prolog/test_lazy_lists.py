@@ -4,8 +4,8 @@ import pytest
 from prolog_text import error_text, read, show
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.data import Cons, MultipleValues, Symbol, lisp_list, list_from
-from cramhy_runtime.lisp.dynamic import binding
+from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.utilities import lazy_lists as ll
 
 
@@ -50,28 +50,35 @@ def test_cont_of_an_outer_list_leaves_the_inner_one():
     assert show(ll.lazy_list([0], outer)) == '("outer")'
 
 
-@pytest.mark.parametrize("make, expected", [
-    (lambda: ll.lazy_mapcar(lambda a, b: a + b, lisp_list(1, 2, 3), lisp_list(10, 20)), "(11 22)"),
-    (lambda: ll.lazy_mapcan(lambda x: x, lisp_list(lisp_list(1), None, lisp_list(2, 3))), "(1 2 3)"),
-    (lambda: ll.lazy_filter(lambda x: x % 2 or None if x % 2 else None, list_from(range(6))), "(1 3 5)"),
-    (lambda: ll.lazy_filter(lambda x: True, None), "NIL"),
-    (lambda: ll.lazy_filter(lambda x: MultipleValues((True, x == 2 or None)), list_from(range(6))), "(0 1 2)"),
-    (lambda: ll.lazy_append(None, lisp_list(1), None, lisp_list(2, 3), None), "(1 2 3)"),
-    (lambda: ll.lazy_append(), "NIL"),
-    (lambda: ll.lazy_take(2, list_from(range(5))), "(0 1)"),
-    (lambda: ll.lazy_take(0, list_from(range(5))), "NIL"),
-    (lambda: ll.lazy_skip(3, list_from(range(5))), "(3 4)"),
-    (lambda: ll.lazy_flatten(lisp_list(1, lisp_list(2, lisp_list(3), None), None, 4)), "(1 2 3 4)"),
-    (lambda: ll.lazy_rests(lisp_list(1, 2)), "((1 2) (2))"),
-])
+@pytest.mark.parametrize(
+    "make, expected",
+    [
+        (lambda: ll.lazy_mapcar(lambda a, b: a + b, lisp_list(1, 2, 3), lisp_list(10, 20)), "(11 22)"),
+        (lambda: ll.lazy_mapcan(lambda x: x, lisp_list(lisp_list(1), None, lisp_list(2, 3))), "(1 2 3)"),
+        (lambda: ll.lazy_filter(lambda x: x % 2 or None if x % 2 else None, list_from(range(6))), "(1 3 5)"),
+        (lambda: ll.lazy_filter(lambda x: True, None), "NIL"),
+        (lambda: ll.lazy_filter(lambda x: MultipleValues((True, x == 2 or None)), list_from(range(6))), "(0 1 2)"),
+        (lambda: ll.lazy_append(None, lisp_list(1), None, lisp_list(2, 3), None), "(1 2 3)"),
+        (lambda: ll.lazy_append(), "NIL"),
+        (lambda: ll.lazy_take(2, list_from(range(5))), "(0 1)"),
+        (lambda: ll.lazy_take(0, list_from(range(5))), "NIL"),
+        (lambda: ll.lazy_skip(3, list_from(range(5))), "(3 4)"),
+        (lambda: ll.lazy_flatten(lisp_list(1, lisp_list(2, lisp_list(3), None), None, 4)), "(1 2 3 4)"),
+        (lambda: ll.lazy_rests(lisp_list(1, 2)), "((1 2) (2))"),
+    ],
+)
 def test_functions(make, expected):
     assert show(ll.force_ll(make())) == expected
 
 
 def test_functions_compute_one_element_at_creation():
-    for wrap in (lambda lazy: ll.lazy_mapcar(lambda x: x, lazy), lambda lazy: ll.lazy_filter(lambda x: True, lazy),
-                 lambda lazy: ll.lazy_take(3, lazy), lambda lazy: ll.lazy_append(lazy, lazy),
-                 lambda lazy: ll.lazy_mapcan(lambda x: lisp_list(x), lazy)):
+    for wrap in (
+        lambda lazy: ll.lazy_mapcar(lambda x: x, lazy),
+        lambda lazy: ll.lazy_filter(lambda x: True, lazy),
+        lambda lazy: ll.lazy_take(3, lazy),
+        lambda lazy: ll.lazy_append(lazy, lazy),
+        lambda lazy: ll.lazy_mapcan(lambda x: lisp_list(x), lazy),
+    ):
         calls = []
         wrap(counting(calls))
         assert calls == [0]
@@ -84,8 +91,7 @@ def test_take_of_an_endless_list_computes_no_more_than_it_takes():
 
 
 def test_a_result_that_is_no_list_is_an_error_of_mapcan():
-    assert error_text(lambda: ll.force_ll(ll.lazy_mapcan(lambda x: x, lisp_list(lisp_list(1), 5)))).endswith(
-        "but result 5 is not a list\n")
+    assert error_text(lambda: ll.force_ll(ll.lazy_mapcan(lambda x: x, lisp_list(lisp_list(1), 5)))).endswith("but result 5 is not a list\n")
 
 
 def test_elements_by_number_and_folding():
@@ -108,8 +114,9 @@ def test_lists_remember_the_environment_they_are_created_in():
     special, values = Symbol("*SPECIAL*"), iter([1, 2, 3])
     special.value, special.special = 0, True
     with binding(special, 9):
-        lazy = ll.with_lazy_list_dynamic_environment([(special, lambda: next(values))], lambda: ll.lazy_list(
-            [0], lambda cont, next_, finish, i: cont(special.value, i + 1)))
+        lazy = ll.with_lazy_list_dynamic_environment(
+            [(special, lambda: next(values))], lambda: ll.lazy_list([0], lambda cont, next_, finish, i: cont(special.value, i + 1))
+        )
     assert ll.lazy_car(lazy) == 9
     assert [ll.lazy_elt(lazy, i) for i in (1, 2)] == [1, 2]
     assert special.value == 0

@@ -3,12 +3,12 @@
 import pytest
 from prolog_text import ask, error_text, function, group, read, show
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.data import MultipleValues, Symbol, lisp_list
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.prolog.lisp_calls import BREAK_ON_LISP_ERRORS
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import MultipleValues, Symbol, lisp_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.prolog.builtins.function_calls import BREAK_ON_LISP_ERRORS
 
 
 @pytest.fixture(autouse=True)
@@ -21,25 +21,28 @@ def functions():
     function("broken")(lambda *ignored: conditions.error("It is ~a.", read("broken")))
 
 
-@pytest.mark.parametrize("goal, answer", [
-    ("(lisp-fun plus 1 2 ?x)", "(((?X . 3)))"),
-    ("(lisp-fun plus 1 2 3)", "(NIL)"),
-    ("(lisp-fun plus 1 2 4)", "NIL"),
-    ("(lisp-fun two-values ?x)", "(((?X . 1)))"),
-    ("(lisp-fun nothing 1 ?x)", "(((?X)))"),
-    ("(lisp-fun nothing)", "(NIL)"),
-    ("(lisp-fun two-values)", "NIL"),
-    ("(and (== ?f plus) (lisp-fun ?f 1 1 ?x))", "(((?F . PLUS) (?X . 2)))"),
-    ("(and (== ?a 5) (lisp-fun make-pair ?a b ?x))", "(((?A . 5) (?X 5 B)))"),
-    ("(and (== ?a 5) (lisp-fun same (?a b) ?x))", "(((?A . 5) (?X 5 B)))"),
-    ("(lisp-fun make-pair 1 2 (?p ?q))", "(((?P . 1) (?Q . 2)))"),
-    ("(lisp-fun make-pair 1 2 (?p ?p))", "NIL"),
-    ("(and (== ?x (1 2)) (lisp-fun make-pair 1 2 ?x))", "(((?X 1 2)))"),
-    ("(and (lisp-fun same ?v ?x) (== ?v 3))", "(((?V . 3) (?X . 3)))"),
-    ("(lisp-pred same 1)", "(NIL)"),
-    ("(lisp-pred same nil)", "NIL"),
-    ("(and (== ?x 1) (lisp-pred same ?x))", "(((?X . 1)))"),
-])
+@pytest.mark.parametrize(
+    "goal, answer",
+    [
+        ("(lisp-fun plus 1 2 ?x)", "(((?X . 3)))"),
+        ("(lisp-fun plus 1 2 3)", "(NIL)"),
+        ("(lisp-fun plus 1 2 4)", "NIL"),
+        ("(lisp-fun two-values ?x)", "(((?X . 1)))"),
+        ("(lisp-fun nothing 1 ?x)", "(((?X)))"),
+        ("(lisp-fun nothing)", "(NIL)"),
+        ("(lisp-fun two-values)", "NIL"),
+        ("(and (== ?f plus) (lisp-fun ?f 1 1 ?x))", "(((?F . PLUS) (?X . 2)))"),
+        ("(and (== ?a 5) (lisp-fun make-pair ?a b ?x))", "(((?A . 5) (?X 5 B)))"),
+        ("(and (== ?a 5) (lisp-fun same (?a b) ?x))", "(((?A . 5) (?X 5 B)))"),
+        ("(lisp-fun make-pair 1 2 (?p ?q))", "(((?P . 1) (?Q . 2)))"),
+        ("(lisp-fun make-pair 1 2 (?p ?p))", "NIL"),
+        ("(and (== ?x (1 2)) (lisp-fun make-pair 1 2 ?x))", "(((?X 1 2)))"),
+        ("(and (lisp-fun same ?v ?x) (== ?v 3))", "(((?V . 3) (?X . 3)))"),
+        ("(lisp-pred same 1)", "(NIL)"),
+        ("(lisp-pred same nil)", "NIL"),
+        ("(and (== ?x 1) (lisp-pred same ?x))", "(((?X . 1)))"),
+    ],
+)
 def test_calls(goal, answer):
     assert ask(goal) == answer
     group("g", f"((run . ?args) {goal})")
@@ -66,8 +69,10 @@ def test_lists_are_passed_as_they_are_written():
 def test_an_error_becomes_one_warning_and_a_failure(warnings_given):
     assert ask("(lisp-fun broken 1 ?x)") == "NIL"
     assert ask("(lisp-pred broken 1)") == "NIL"
-    assert warnings_given == ["An error occurred while executing the lisp function `BROKEN': `It is BROKEN.'",
-                              "An error occurred while executing the lisp predicate `BROKEN': `It is BROKEN.'"]
+    assert warnings_given == [
+        "An error occurred while executing the lisp function `BROKEN': `It is BROKEN.'",
+        "An error occurred while executing the lisp predicate `BROKEN': `It is BROKEN.'",
+    ]
 
 
 def test_an_undefined_function_warns(warnings_given):
@@ -81,7 +86,7 @@ def test_a_variable_is_no_predicate_even_if_it_is_bound(warnings_given):
 
 
 def test_a_function_object_is_rejected(warnings_given):
-    from cramhy_runtime.lisp.data import list_from
+    from cramhy_runtime.ground.data import list_from
     from cramhy_runtime.prolog import query
 
     goal = list_from([read("lisp-fun"), lambda: 1, read("?x")])
@@ -117,18 +122,21 @@ def test_comparing_what_is_no_number_warns(warnings_given, monkeypatch):
         assert ask("(< a 1)") == "NIL"
     finally:
         assert len(warnings_given) == 1 and warnings_given[0].startswith(
-            "An error occurred while executing the lisp predicate `<': `The value")
+            "An error occurred while executing the lisp predicate `<': `The value"
+        )
 
 
 def test_error_and_warn_goals(warnings_given):
-    assert ask("(error \"no way\")") == "NIL"
-    assert ask("(warn \"careful\")") == "(NIL)"
-    assert warnings_given == ["An error occurred while executing the lisp function `APPLY': `[PROLOG ERROR] no way'",
-                              "[PROLOG WARNING] careful"]
+    assert ask('(error "no way")') == "NIL"
+    assert ask('(warn "careful")') == "(NIL)"
+    assert warnings_given == [
+        "An error occurred while executing the lisp function `APPLY': `[PROLOG ERROR] no way'",
+        "[PROLOG WARNING] careful",
+    ]
 
 
 def test_symbol_values():
-    image.boot()  # the functions that the predicates call are Lisp's
+    boot()  # the functions that the predicates call are Lisp's
     read("*thing*").value = 4
     assert ask("(symbol-value *thing* ?x)") == "(((?X . 4)))"
     assert ask("(set-symbol-value *thing* (1 2))") == "(NIL)"

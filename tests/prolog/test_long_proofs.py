@@ -4,13 +4,14 @@ import pytest
 from prolog_text import HERE, RegisteredWarnings, ask, error_text, function, group, read
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.lisp.condition_types import StorageCondition
-from cramhy_runtime.lisp.data import list_from
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.prolog import facts, query
-from cramhy_runtime.prolog.machine import DEPTH_LIMIT
-from cramhy_runtime.prolog.terms import Var
+from cramhy_runtime.ground.condition_types import StorageCondition
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.prolog.engine import fact_groups as facts
+from cramhy_runtime.prolog import query
+from cramhy_runtime.prolog.engine.machine import DEPTH_LIMIT
+from cramhy_runtime.prolog.terms.terms import Var
 
 MANY = 50_000
 
@@ -29,16 +30,27 @@ def run(functor, *arguments):
     return m
 
 
-@pytest.mark.parametrize("start, clauses", [
-    ("count", ["((count 0))", "((count ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (count ?m))"]),
-    ("count", ["((count ?n) (-> (== ?n 0) (true) (and (lisp-fun minus-one ?n ?m) (count ?m))))"]),
-    ("count", ["((count ?n) (or (and (== ?n 0) (cut)) (and (> ?n 0) (lisp-fun minus-one ?n ?m) (cut) (count ?m))))"]),
-    ("count", ["((zero 0))", "((count ?n) (-> (zero ?n) (true) (and (lisp-fun minus-one ?n ?m) (count ?m))))"]),
-    ("count", ["((zero 0))", "((count ?n) (not (zero ?n)) (lisp-fun minus-one ?n ?m) (once (member ?m (?m ?m))) (count ?m))",
-               "((count 0))"]),
-    ("even", ["((even 0))", "((even ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (odd ?m))",
-              "((odd ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (even ?m))"]),
-])
+@pytest.mark.parametrize(
+    "start, clauses",
+    [
+        ("count", ["((count 0))", "((count ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (count ?m))"]),
+        ("count", ["((count ?n) (-> (== ?n 0) (true) (and (lisp-fun minus-one ?n ?m) (count ?m))))"]),
+        ("count", ["((count ?n) (or (and (== ?n 0) (cut)) (and (> ?n 0) (lisp-fun minus-one ?n ?m) (cut) (count ?m))))"]),
+        ("count", ["((zero 0))", "((count ?n) (-> (zero ?n) (true) (and (lisp-fun minus-one ?n ?m) (count ?m))))"]),
+        (
+            "count",
+            ["((zero 0))", "((count ?n) (not (zero ?n)) (lisp-fun minus-one ?n ?m) (once (member ?m (?m ?m))) (count ?m))", "((count 0))"],
+        ),
+        (
+            "even",
+            [
+                "((even 0))",
+                "((even ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (odd ?m))",
+                "((odd ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (even ?m))",
+            ],
+        ),
+    ],
+)
 def test_a_loop_leaves_neither_trail_nor_choice_points_behind(start, clauses):
     group("loop", *clauses)
     m = run(start, MANY)
@@ -47,8 +59,14 @@ def test_a_loop_leaves_neither_trail_nor_choice_points_behind(start, clauses):
 
 def test_a_loop_above_an_open_choice_forgets_what_nobody_can_see():
     """The trail must keep what failing would unset, but not the variables of turns that are over."""
-    group("count", "((count 0))", "((count ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (next ?m))", "((next ?n) (count ?n))",
-          "((start ?n) (count ?n))", "((start ?n))")
+    group(
+        "count",
+        "((count 0))",
+        "((count ?n) (> ?n 0) (lisp-fun minus-one ?n ?m) (next ?m))",
+        "((next ?n) (count ?n))",
+        "((start ?n) (count ?n))",
+        "((start ?n))",
+    )
     m = run("start", MANY)
     assert len(m.trail) < 12_000 and len(m.choices) <= 2
 
@@ -66,8 +84,13 @@ def test_goals_with_lisp_functions_wait_for_one_another():
 
 
 def test_a_long_list_is_built_measured_and_appended():
-    group("lists", "((upto ?n ?n (?n)))", "((upto ?n ?m (?n . ?r)) (< ?n ?m) (lisp-fun plus-one ?n ?o) (upto ?o ?m ?r))",
-          "((app () ?l ?l))", "((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))")
+    group(
+        "lists",
+        "((upto ?n ?n (?n)))",
+        "((upto ?n ?m (?n . ?r)) (< ?n ?m) (lisp-fun plus-one ?n ?o) (upto ?o ?m ?r))",
+        "((app () ?l ?l))",
+        "((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))",
+    )
     assert query.first(read(f"(and (once (upto 1 {MANY} ?l)) (length ?l ?n))"), read("?n")) == MANY
     many = list_from(range(500_000))
     assert len(query.first(list_from([read("app"), many, list_from([1]), read("?l")]), read("?l"))) == 500_001
@@ -93,13 +116,19 @@ def test_a_left_recursion_ends_in_an_error_that_shows_the_clause():
         "A proof is more than 20,000 goals deep and goes on, perhaps without end.\n"
         "The goals that wait are of this clause, again and again:\n"
         "  (<- (p ?x) (p ?y) (q ?y ?x)) of left\n"
-        "Put a goal that ends the recursion before the one that goes on, or raise CRAM-PROLOG:*PROLOG-DEPTH-LIMIT*.")
+        "Put a goal that ends the recursion before the one that goes on, or raise CRAM-PROLOG:*PROLOG-DEPTH-LIMIT*."
+    )
     assert ask("(q ?x ?y)") == "(((?X . 1) (?Y . 2)))"
 
 
 def test_a_recursion_through_several_clauses_shows_their_circle():
-    group("circle", "((a ?x) (b ?x) (true-of ?x))", "((b ?x) (or (c ?x) (true-of ?x)) (true-of ?x))", "((c ?x) (not (a ?x)))",
-          "((true-of ?x))")
+    group(
+        "circle",
+        "((a ?x) (b ?x) (true-of ?x))",
+        "((b ?x) (or (c ?x) (true-of ?x)) (true-of ?x))",
+        "((c ?x) (not (a ?x)))",
+        "((true-of ?x))",
+    )
     text = too_deep("(a 1)")
     assert "again and again, the innermost first:\n" in text
     assert "  (<- (b ?x) (or (c ?x) (true-of ?x)) (true-of ?x)) of circle\n  (<- (a ?x) (b ?x) (true-of ?x)) of circle\n" in text
@@ -144,8 +173,9 @@ def test_a_group_may_be_removed_while_a_query_waits_in_it():
     function("wait")(lambda n: cpl.sleep(1) or n)
     group("rules", "((step ?x) (item ?x) (lisp-fun wait ?x ?z))", "((item 1))", "((item 2))")
     answers = []
-    cpl.top_level(lambda: cpl.par(lambda: answers.append(ask("(step ?x)")),
-                                  lambda: (cpl.sleep(0.5), facts.remove_fact_group(read("rules")))))
+    cpl.top_level(
+        lambda: cpl.par(lambda: answers.append(ask("(step ?x)")), lambda: (cpl.sleep(0.5), facts.remove_fact_group(read("rules"))))
+    )
     assert answers == ["(((?X . 1)) ((?X . 2)))"]
 
 
@@ -156,8 +186,14 @@ def test_a_proof_that_never_ends_is_evaporated(backend, goal):
         pytest.importorskip("greenlet")
     kernel.stop()
     kernel.start(clock="virtual", backend=backend, time_limit=3600)
-    group("endless", "((forever) (forever))", "((forever-in-turn ?n) (lisp-fun plus-one ?n ?m) (forever-in-turn ?m))",
-          "((or-forever))", "((or-forever) (or-forever))", *(f"((row {n}))" for n in range(30)),
-          "((nothing-ever) (row ?a) (row ?b) (row ?c) (row ?d) (row ?e) (row ?f) (row ?g) (fail))")
+    group(
+        "endless",
+        "((forever) (forever))",
+        "((forever-in-turn ?n) (lisp-fun plus-one ?n ?m) (forever-in-turn ?m))",
+        "((or-forever))",
+        "((or-forever) (or-forever))",
+        *(f"((row {n}))" for n in range(30)),
+        "((nothing-ever) (row ?a) (row ?b) (row ?c) (row ?d) (row ?e) (row ?f) (row ?g) (fail))",
+    )
     cpl.top_level(lambda: cpl.pursue(lambda: cpl.sleep(0.1), lambda: ask(goal)))
     assert ask("(member ?x (1))") == "(((?X . 1)))"

@@ -3,26 +3,29 @@
 import pytest
 from prolog_text import error_text, read, show
 
-from cramhy_runtime.lisp.data import Symbol
+from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.utilities import patterns as p
 
 
-@pytest.mark.parametrize("pattern, data, bindings", [
-    ("(?x b ?y)", "(a b c)", "((?Y . C) (?X . A))"),
-    ("(?x . ?r)", "(1 2 3)", "((?R 2 3) (?X . 1))"),
-    ("(?p ?p)", "((1) (1))", "((?P 1))"),
-    ("(?p ?p)", "(nil z)", None),
-    ("(?a)", "x", None),
-    ("(a b)", "(a b c)", None),
-    ("(p !?m q)", "(p 1 2 q)", "((?M 1 2))"),
-    ("(p !?m q)", "(p q)", "((?M))"),
-    ("(!?m ?last)", "(1 2 3)", "((?LAST . 3) (?M 1 2))"),
-    ("(!?m ?m)", "(1 2 (1 2))", "((?M 1 2))"),
-    ("(p !?m)", "(p 1 . 2)", None),
-    ("(?_ ?_)", "(1 2)", "NIL"),
-    ('("a b")', '("a b")', None),
-    ("(1)", "(1.0)", None),
-])
+@pytest.mark.parametrize(
+    "pattern, data, bindings",
+    [
+        ("(?x b ?y)", "(a b c)", "((?Y . C) (?X . A))"),
+        ("(?x . ?r)", "(1 2 3)", "((?R 2 3) (?X . 1))"),
+        ("(?p ?p)", "((1) (1))", "((?P 1))"),
+        ("(?p ?p)", "(nil z)", None),
+        ("(?a)", "x", None),
+        ("(a b)", "(a b c)", None),
+        ("(p !?m q)", "(p 1 2 q)", "((?M 1 2))"),
+        ("(p !?m q)", "(p q)", "((?M))"),
+        ("(!?m ?last)", "(1 2 3)", "((?LAST . 3) (?M 1 2))"),
+        ("(!?m ?m)", "(1 2 (1 2))", "((?M 1 2))"),
+        ("(p !?m)", "(p 1 . 2)", None),
+        ("(?_ ?_)", "(1 2)", "NIL"),
+        ('("a b")', '("a b")', None),
+        ("(1)", "(1.0)", None),
+    ],
+)
 def test_pat_match(pattern, data, bindings):
     found, matched = p.pat_match(read(pattern), read(data))
     assert (show(found) if matched else None) == bindings
@@ -35,18 +38,25 @@ def test_pat_match_takes_keywords_in_place_of_bindings():
     assert p.pat_match_p(read("(?x)"), read("(1)"), read("((?x . 2))")) is None
 
 
-@pytest.mark.parametrize("pattern, data, text", [
-    ("(a)", "(?x)", "Found variable ?X on right hand side of pattern match."),
-    ("!?m", "(1)", "Segvar !?M must be car of a cons-cell."),
-])
+@pytest.mark.parametrize(
+    "pattern, data, text",
+    [("(a)", "(?x)", "Found variable ?X on right hand side of pattern match."), ("!?m", "(1)", "Segvar !?M must be car of a cons-cell.")],
+)
 def test_pat_match_errors(pattern, data, text):
     assert error_text(lambda: p.pat_match(read(pattern), read(data))) == text
 
 
-@pytest.mark.parametrize("left, right, bindings", [
-    ("?x", "?y", "((?X . ?Y))"), ("(?u ?v ?u)", "((?v) k (k))", "((?V . K) (?U ?V))"), ("(a)", "(a b)", None), ("1", "1.0", None),
-    ("(?x . ?y)", "(1)", "((?Y) (?X . 1))"), ("?_", "(1 ?z)", "NIL"),
-])
+@pytest.mark.parametrize(
+    "left, right, bindings",
+    [
+        ("?x", "?y", "((?X . ?Y))"),
+        ("(?u ?v ?u)", "((?v) k (k))", "((?V . K) (?U ?V))"),
+        ("(a)", "(a b)", None),
+        ("1", "1.0", None),
+        ("(?x . ?y)", "(1)", "((?Y) (?X . 1))"),
+        ("?_", "(1 ?z)", "NIL"),
+    ],
+)
 def test_unify(left, right, bindings):
     found, unified = p.unify(read(left), read(right))
     assert (show(found) if unified else None) == bindings
@@ -56,7 +66,8 @@ def test_segment_variables_in_unify(warnings_given):
     assert show(p.unify(read("(!?a 3)"), read("(1 2 3)"))[0]) == "((?A 1 2))"
     assert warnings_given == ["Using segvars in unify... This is not implementet properly at the moment."]
     assert error_text(lambda: p.unify(read("(a . !?x)"), read("(a b)"))) == (
-        "Found segvar that is not in car of a cons-cell while unifying !?X and (B)")
+        "Found segvar that is not in car of a cons-cell while unifying !?X and (B)"
+    )
 
 
 def test_bindings():
@@ -100,5 +111,6 @@ def test_binding_macros_support():
     assert error_text(lambda: p.with_vars_strictly_bound([read("?z")], bindings, lambda z: z)) == "Couldn't resolve variable ?Z."
     assert p.with_pat_vars_bound(read("(?a b)"), read("(1 b)"), lambda value: value(read("?a"))) == 1
     assert error_text(lambda: p.with_pat_vars_bound(read("(a)"), read("(b)"), lambda value: 1)) == (
-        "Pattern (A) does not match (B) in with-pat-vars-bound.")
+        "Pattern (A) does not match (B) in with-pat-vars-bound."
+    )
     assert isinstance(p.fresh_name("?x"), Symbol)

@@ -6,11 +6,11 @@ import random
 import pytest
 from prolog_text import error_text, read, show
 
-from cramhy_runtime.lisp.conditions import error
-from cramhy_runtime.lisp.data import list_from
-from cramhy_runtime.lisp.equality import equal
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.prolog import productions, rete
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.ground.equality import equal
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.prolog.builtins import productions, rete
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 ASSERT, RETRACT = keyword("ASSERT"), keyword("RETRACT")
@@ -35,9 +35,14 @@ def naive_matches(patterns, facts):
     found = []
     for chosen in itertools.product(facts, repeat=len(patterns)):
         values = {}
-        if all(len(pattern) == len(fact) and all(
+        if all(
+            len(pattern) == len(fact)
+            and all(
                 item is ANONYMOUS or (values.setdefault(item, value) == value if variable(item) else item is value or item == value)
-                for item, value in zip(pattern, fact)) for pattern, fact in zip(patterns, chosen)):
+                for item, value in zip(pattern, fact)
+            )
+            for pattern, fact in zip(patterns, chosen)
+        ):
             found.append(tuple(sorted((item.name, str(value)) for item, value in values.items())))
     return sorted(found)
 
@@ -118,8 +123,10 @@ def test_an_error_in_a_handler_reaches_who_asserts_when_the_others_have_been_tol
 
 def test_a_fact_that_a_body_has_retracted_itself_does_not_keep_the_others():
     facts = [lambda: read("(a 1)"), lambda: read("(b 1)")]
-    assert error_text(lambda: rete.with_facts_asserted(facts, lambda: rete.rete_retract(read("(a 1)")))) \
+    assert (
+        error_text(lambda: rete.with_facts_asserted(facts, lambda: rete.rete_retract(read("(a 1)"))))
         == "wme-memory already empty. Cannot retract."
+    )
     assert rete.alpha_network_size() == 1
 
 
@@ -132,8 +139,9 @@ def test_a_fact_is_a_proper_list(fact):
 def test_a_circular_fact_is_refused():
     fact = read("(a b)")
     fact.cdr.cdr = fact
-    assert error_text(lambda: rete.rete_assert(fact)) == \
-        "The list that starts with PROLOG-TESTS-HERE::A is circular: a fact is a proper list."
+    assert (
+        error_text(lambda: rete.rete_assert(fact)) == "The list that starts with PROLOG-TESTS-HERE::A is circular: a fact is a proper list."
+    )
 
 
 def test_a_pattern_may_end_in_a_variable():

@@ -19,19 +19,24 @@ def entries(text):
         starts = [match.start() for match in PROMPT.finditer(block)] + [len(block)]
         for start, end in zip(starts, starts[1:]):
             prompt = PROMPT.match(block, start).group()
-            first, *lines = block[start + len(prompt):end].splitlines()
+            first, *lines = block[start + len(prompt) : end].splitlines()
             count = 0
             while count < len(lines) and (lines[count].startswith(" " * len(prompt)) or (not lines[count] and count + 1 < len(lines))):
                 count += 1
-            found.append((prompt, "\n".join([first, *(line[len(prompt):] for line in lines[:count])]), "\n".join(lines[count:])))
+            found.append((prompt, "\n".join([first, *(line[len(prompt) :] for line in lines[:count])]), "\n".join(lines[count:])))
     return found
 
 
 def answers(forms):
     """What the REPL prints for each form."""
-    done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual", "--no-turtlesim"], text=True,
-                          input="\n".join(forms) + "\n", stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    return [answer.rstrip("\n") for answer in PROMPT.split(done.stdout)[1:len(forms) + 1]]
+    done = subprocess.run(
+        [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual", "--no-turtlesim"],
+        text=True,
+        input="\n".join(forms) + "\n",
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    return [answer.rstrip("\n") for answer in PROMPT.split(done.stdout)[1 : len(forms) + 1]]
 
 
 def test_the_page_shows_what_the_repl_answers():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 from prolog_text import ask
 from test_python_rules import text_of
@@ -9,7 +11,7 @@ from test_python_rules import text_of
 from cramhy_runtime import cpl
 from cramhy_runtime.prolog import P, UnboundVariable, V, fact_group, findall, first, function, holds, kw, names, predicate, solve
 from cramhy_runtime.prolog import test as check
-from cramhy_runtime.prolog.python_terms import import_predicates
+from cramhy_runtime.prolog.python.terms import import_predicates
 
 EDGES = {"kitchen": [("hall", 3.0), ("balcony", 1.5)], "hall": [("door", 2.0)]}
 
@@ -89,6 +91,14 @@ def test_what_nil_is_for_a_function_is_said_by_its_annotation():
     assert got == [[[], [], False, None, []]]
 
 
+@pytest.mark.skipif(sys.version_info < (3, 14), reason="Python computes annotations when it defines the function")
+def test_an_annotation_may_name_what_is_defined_later():
+    names = {"got": [], "__name__": __name__}
+    program = "def knows(plain: Later, items: list[Later], flag: bool, name: Later | None):\n    return got.extend([plain, items, flag, name]) is None"
+    exec(compile(program, "later.py", "exec", dont_inherit=True), names)
+    assert holds(check(names["knows"])(None, None, None, None)) and names["got"] == [[], [], False, None]
+
+
 def test_lists_are_python_lists_and_may_have_open_places():
     got = []
 
@@ -144,6 +154,7 @@ def test_methods_and_variable_numbers_of_arguments():
 
 def test_a_definition_again_replaces_the_old_one():
     for value in (41, 42):
+
         @function
         def answer(value=value):
             return value
@@ -178,9 +189,11 @@ def test_it_may_wait_in_a_plan():
 def test_an_argument_without_a_value():
     with pytest.raises(UnboundVariable) as problem:
         holds(hours(V.m, V.h))
-    assert text_of(problem) == ("The argument metres has no value in the goal (hours ?m ?h). "
-                                f"The @function hours ({__file__}:{line(hours)}) needs it: "
-                                "put a goal that gives the variable a value in front.")
+    assert text_of(problem) == (
+        "The argument metres has no value in the goal (hours ?m ?h). "
+        f"The @function hours ({__file__}:{line(hours)}) needs it: "
+        "put a goal that gives the variable a value in front."
+    )
 
 
 def test_a_wrong_number_of_arguments():
@@ -198,8 +211,10 @@ def test_a_wrong_number_of_arguments():
 def test_what_the_function_raises_comes_out_with_the_goal_and_the_place():
     with pytest.raises(TypeError) as problem:
         holds(P.member(V.x, [1, "two"]) & ~near(V.x) | near("two"))
-    assert text_of(problem) == ("'<' not supported between instances of 'str' and 'float'\n"
-                                f'This happened in the goal (near "two"), which is solved by the @test near ({__file__}:{line(near)}).')
+    assert text_of(problem) == (
+        "'<' not supported between instances of 'str' and 'float'\n"
+        f'This happened in the goal (near "two"), which is solved by the @test near ({__file__}:{line(near)}).'
+    )
     assert "metres < 2.5" in str(problem.traceback[-1].statement)
 
 
@@ -225,12 +240,18 @@ def test_solutions_of_the_wrong_kind():
         yield "kitchen"
 
     for goal, made, text in [
-        (one_by_mistake(V.x), one_by_mistake,
-         "A predicate yields its solutions, or returns a list of them, not 'kitchen'. Use @function for one value.\n"
-         "This happened in the goal (one-by-mistake ?x), which is solved by the @predicate one_by_mistake ({}:{})."),
-        (too_few(V.x, V.y), too_few,
-         "A solution is 'kitchen', but the goal has 2 arguments for it. Give a tuple of 2.\n"
-         "This happened in the goal (too-few ?x ?y), which is solved by the @predicate too_few ({}:{})."),
+        (
+            one_by_mistake(V.x),
+            one_by_mistake,
+            "A predicate yields its solutions, or returns a list of them, not 'kitchen'. Use @function for one value.\n"
+            "This happened in the goal (one-by-mistake ?x), which is solved by the @predicate one_by_mistake ({}:{}).",
+        ),
+        (
+            too_few(V.x, V.y),
+            too_few,
+            "A solution is 'kitchen', but the goal has 2 arguments for it. Give a tuple of 2.\n"
+            "This happened in the goal (too-few ?x ?y), which is solved by the @predicate too_few ({}:{}).",
+        ),
     ]:
         with pytest.raises(TypeError) as problem:
             holds(goal)
@@ -242,9 +263,11 @@ def test_names_that_cannot_be():
         check(lambda x: True)
     assert str(problem.value).startswith("@test needs a name for <function ") and str(problem.value).endswith("test(name=P.a_name)(...).")
     with pytest.raises(TypeError) as problem:
+
         @predicate
         def findall(x):
             yield x
+
     assert text_of(problem) == ("findall is a name of cramhy's package CRAM-PROLOG. Choose another one: predicate(name=P.a_name).")
 
 
@@ -257,8 +280,10 @@ def test_two_modules_that_give_a_predicate_one_name_are_told():
     clash.__module__ = "another"
     with pytest.warns(RuntimeWarning) as warned:
         check(name=P.clash)(clash)
-    assert str(warned[0].message) == (f"The test clash of the module another replaces that of {__name__}: names are global in Prolog. "
-                                      "Give one of them another: name=P.another_name.")
+    assert str(warned[0].message) == (
+        f"The test clash of the module another replaces that of {__name__}: names are global in Prolog. "
+        "Give one of them another: name=P.another_name."
+    )
     assert (warned[0].filename, warned[0].lineno) == (__file__, clash.__code__.co_firstlineno)
 
 

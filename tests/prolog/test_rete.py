@@ -5,7 +5,7 @@ import re
 import pytest
 from prolog_text import ask, error_text, read, show
 
-from cramhy_runtime.prolog import productions, rete
+from cramhy_runtime.prolog.builtins import productions, rete
 from cramhy_runtime.utilities.lazy_lists import force_ll
 
 
@@ -22,8 +22,9 @@ def events(production, *patterns):
     """Register a production and a handler; returns the list of what the handler is told."""
     seen = []
     productions.register_production(read(production), read("(" + " ".join(patterns) + ")"))
-    productions.register_production_handler(read(production), lambda operation, *arguments: seen.append(
-        " ".join(show(item) for item in (operation, *arguments))))
+    productions.register_production_handler(
+        read(production), lambda operation, *arguments: seen.append(" ".join(show(item) for item in (operation, *arguments)))
+    )
     return seen
 
 
@@ -99,9 +100,13 @@ def test_a_fact_that_matches_two_patterns_is_joined_with_itself_once():
 
 def test_productions_for_the_time_of_a_body():
     seen = []
-    productions.with_productions([(read("tmp"), read("((q ?x))"))], lambda: productions.with_production_handlers(
-        [(read("tmp"), lambda operation, *arguments: seen.append(show(operation)))],
-        lambda: rete.with_facts_asserted([lambda: read("(q 1)")], lambda: None)))
+    productions.with_productions(
+        [(read("tmp"), read("((q ?x))"))],
+        lambda: productions.with_production_handlers(
+            [(read("tmp"), lambda operation, *arguments: seen.append(show(operation)))],
+            lambda: rete.with_facts_asserted([lambda: read("(q 1)")], lambda: None),
+        ),
+    )
     assert seen == [":ASSERT", ":RETRACT"]
     rete.rete_assert(read("(q 2)"))
     assert len(seen) == 2

@@ -3,11 +3,11 @@
 import pytest
 from prolog_text import ask, error_text, function, group, read
 
-from cramhy_runtime import image
-from cramhy_runtime.lisp.conditions import StorageCondition
-from cramhy_runtime.lisp.data import Cons, list_from
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.conditions import StorageCondition
+from cramhy_runtime.ground.data import Cons, list_from
 from cramhy_runtime.prolog import query
-from cramhy_runtime.prolog.terms import import_term, resolve
+from cramhy_runtime.prolog.terms.terms import import_term, resolve
 from cramhy_runtime.utilities.lazy_lists import force_ll
 
 ENDLESS = "A variable was unified with a list that contains it, which makes the list endless."
@@ -15,18 +15,44 @@ ENDLESS = "A variable was unified with a list that contains it, which makes the 
 
 @pytest.fixture(autouse=True)
 def all_of_lisp():
-    image.boot()
+    boot()
 
 
-@pytest.mark.parametrize("goal", [
-    "(== ?x (1 . ?x))", "(== ?x (f ?x))", "(== (?x ?y) ((?y) (?x)))",
-    *(f"(and (== ?x {term}) {rest})" for term in ("(1 . ?x)", "(f ?x)") for rest in (
-        "(findall ?x (true) ?l)", "(setof ?x (true) ?l)", "(ground ?x)", "(lisp-fun first ?x ?y)", '(format "~a" ?x)', "(max ?x ?m)",
-        "(filter-bindings (?x))", "(every (member ?y (1 2)) (== ?x ?z))")),
-    "(and (== ?x (1 . ?x)) (== ?y (1 . ?y)) (== ?x ?y))", "(and (== ?x (f ?x)) (== ?y (f ?y)) (== ?x ?y))",
-    *(f"(and (== ?x (1 . ?x)) {rest})" for rest in (
-        "(length ?x ?n)", "(member 2 ?x)", "(once (member 1 ?x))", "(append ?x (2) ?y)", "(sort ?x < ?y)", "(reduce + ?x ?y)")),
-])
+@pytest.mark.parametrize(
+    "goal",
+    [
+        "(== ?x (1 . ?x))",
+        "(== ?x (f ?x))",
+        "(== (?x ?y) ((?y) (?x)))",
+        *(
+            f"(and (== ?x {term}) {rest})"
+            for term in ("(1 . ?x)", "(f ?x)")
+            for rest in (
+                "(findall ?x (true) ?l)",
+                "(setof ?x (true) ?l)",
+                "(ground ?x)",
+                "(lisp-fun first ?x ?y)",
+                '(format "~a" ?x)',
+                "(max ?x ?m)",
+                "(filter-bindings (?x))",
+                "(every (member ?y (1 2)) (== ?x ?z))",
+            )
+        ),
+        "(and (== ?x (1 . ?x)) (== ?y (1 . ?y)) (== ?x ?y))",
+        "(and (== ?x (f ?x)) (== ?y (f ?y)) (== ?x ?y))",
+        *(
+            f"(and (== ?x (1 . ?x)) {rest})"
+            for rest in (
+                "(length ?x ?n)",
+                "(member 2 ?x)",
+                "(once (member 1 ?x))",
+                "(append ?x (2) ?y)",
+                "(sort ?x < ?y)",
+                "(reduce + ?x ?y)",
+            )
+        ),
+    ],
+)
 def test_a_term_that_contains_itself_is_an_error(goal):
     assert error_text(lambda: ask(goal), StorageCondition) == ENDLESS
 

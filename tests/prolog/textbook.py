@@ -7,7 +7,7 @@ stop, up to its barrier.
 
 from itertools import count
 
-from cramhy_runtime.lisp.data import Cons, Symbol, list_from
+from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from cramhy_runtime.utilities.patterns import variable
 
 _fresh = count()
@@ -85,8 +85,10 @@ def solve(goal, clauses, bindings, barrier):
         if next(solve(arguments[0], clauses, bindings, Barrier()), None) is None:
             yield bindings
     elif name == "FORALL":
-        if all(next(solve(arguments[1], clauses, found, Barrier()), None) is not None
-               for found in solve(arguments[0], clauses, bindings, Barrier())):
+        if all(
+            next(solve(arguments[1], clauses, found, Barrier()), None) is not None
+            for found in solve(arguments[0], clauses, bindings, Barrier())
+        ):
             yield bindings
     elif name == "CALL":
         yield from solve(arguments[0], clauses, bindings, Barrier())

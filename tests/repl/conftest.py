@@ -21,7 +21,7 @@ class Script:
         self.lines = text.splitlines()
 
     def line(self, prompt, interrupted=None):
-        from cramhy_runtime.lisp.streams import streams
+        from cramhy_runtime.languages.commonlisp.streams import streams
 
         if not self.lines:
             return None
@@ -34,7 +34,7 @@ class Script:
 @pytest.fixture
 def type_in(capsys):
     """``type_in(lines)``: what the console shows, the typed lines included. It begins in CRAM-USER, without the turtle."""
-    from cramhy_runtime.lisp.streams import streams
+    from cramhy_runtime.languages.commonlisp.streams import streams
     from cramhy_runtime.repl.console import Console
     from cramhy_runtime.repl.session import Session
 
@@ -57,9 +57,17 @@ def type_in(capsys):
 @pytest.fixture
 def cramhy(tmp_path):
     """``cramhy("run", "x.lisp")``: the finished process of that command in a folder of its own."""
+
     def cramhy(*arguments, input="", text=True):
-        done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", *arguments], cwd=tmp_path, input=input, text=text,
-                              capture_output=True, env=environment(), timeout=120)
+        done = subprocess.run(
+            [sys.executable, "-m", "cramhy_runtime.cli", *arguments],
+            cwd=tmp_path,
+            input=input,
+            text=text,
+            capture_output=True,
+            env=environment(),
+            timeout=120,
+        )
         return done
 
     return cramhy
@@ -82,10 +90,18 @@ def private(tmp_path, monkeypatch):
 @pytest.fixture
 def tool(tmp_path, private):
     """``tool("rosservice call /clear")``: (output, complaints, status) of a ROS command."""
+
     def tool(*words):
         words = words[0].split() if len(words) == 1 else words
-        done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "ros", *words], cwd=tmp_path, text=True, capture_output=True,
-                              env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]}, timeout=60, stdin=subprocess.DEVNULL)
+        done = subprocess.run(
+            [sys.executable, "-m", "cramhy_runtime.cli", "ros", *words],
+            cwd=tmp_path,
+            text=True,
+            capture_output=True,
+            env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]},
+            timeout=60,
+            stdin=subprocess.DEVNULL,
+        )
         return done.stdout, done.stderr, done.returncode
 
     return tool

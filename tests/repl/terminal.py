@@ -20,23 +20,28 @@ PATIENCE = 30  # s; only a test that fails waits so long
 
 
 class Terminal:
-    """``cramhy`` with ``arguments`` in a pseudo-terminal of its own. A context manager.
+    """``cramhy`` with ``arguments`` in a pseudo-terminal of its own, or ``program`` with them. A context manager.
 
     editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used. variables: of the
     environment, ``None`` for one that is not set. size: (lines, columns) of the terminal. wrapped: the terminal is kept open by this
     process, too, as a shell does, so that its modes can be looked at (`slave`); `begin` starts the program.
     """
 
-    def __init__(self, *arguments, editor=False, variables=None, size=None, wrapped=False):
+    def __init__(self, *arguments, editor=False, variables=None, size=None, wrapped=False, program=None):
         self.text = ""
         self.seen = 0
         self.slave = None
-        environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}", "TERM": "dumb",
-                       "PROMPT_TOOLKIT_NO_CPR": "1", **(variables or {})}
+        environment = {
+            **os.environ,
+            "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}",
+            "TERM": "dumb",
+            "PROMPT_TOOLKIT_NO_CPR": "1",
+            **(variables or {}),
+        }
         environment = {name: value for name, value in environment.items() if value is not None}
         hide = "" if editor else "sys.modules['prompt_toolkit'] = None; "
-        program = f"import sys; {hide}from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
-        self.command = [sys.executable, "-c", program, *arguments]
+        cramhy = f"import sys; {hide}from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
+        self.command = [*([sys.executable, "-c", cramhy] if program is None else program), *arguments]
         self.environment = environment
         if wrapped:
             self.pid = None
@@ -46,12 +51,13 @@ class Terminal:
         if self.pid == 0:
             if size is not None:
                 fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
-            os.execve(sys.executable, self.command, environment)
+            os.execve(self.command[0], self.command, environment)
 
     def begin(self):
         """Start the program in a terminal that is ``wrapped``."""
-        self.process = subprocess.Popen(self.command, env=self.environment, stdin=self.slave, stdout=self.slave, stderr=self.slave,
-                                        start_new_session=True)
+        self.process = subprocess.Popen(
+            self.command, env=self.environment, stdin=self.slave, stdout=self.slave, stderr=self.slave, start_new_session=True
+        )
         self.pid = self.process.pid
 
     def __enter__(self):
@@ -107,13 +113,13 @@ class Terminal:
         """Read until ``pattern``, a regular expression, appears after what was expected before: the text up to its end."""
         until = time.monotonic() + PATIENCE
         while True:
-            match = re.search(pattern, self.text[self.seen:])
+            match = re.search(pattern, self.text[self.seen :])
             if match:
-                part = self.text[self.seen:self.seen + match.end()]
+                part = self.text[self.seen : self.seen + match.end()]
                 self.seen += match.end()
                 return part
             if not self._more(until - time.monotonic()):
-                raise AssertionError(f"{pattern!r} never came; after {self.text[:self.seen]!r} came {self.text[self.seen:]!r}")
+                raise AssertionError(f"{pattern!r} never came; after {self.text[: self.seen]!r} came {self.text[self.seen :]!r}")
 
     def _more(self, seconds):
         ready, _, _ = select.select([self.master], [], [], max(0, seconds))

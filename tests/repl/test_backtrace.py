@@ -57,6 +57,8 @@ def test_the_debugger_shows_them_too(cramhy, plan):
 
 
 def test_an_answer_of_cramhy_eval_has_them(cramhy):
-    assert '"backtrace": "calls, the innermost last:\\n  the form at <repl 1>:1:1"' in cramhy(
-        "eval", "--backtrace", "lisp", input='{"form": "(car 5)"}\n').stdout
+    assert (
+        '"backtrace": "calls, the innermost last:\\n  the form at <repl 1>:1:1"'
+        in cramhy("eval", "--backtrace", "lisp", input='{"form": "(car 5)"}\n').stdout
+    )
     assert "backtrace" not in cramhy("eval", input='{"form": "(car 5)"}\n').stdout

@@ -4,14 +4,30 @@ from __future__ import annotations
 
 import json
 import os
-import sys
+import platform
 
 import pytest
+from systems import RUNS_HY_FILES, WHY_NO_HY_FILES
+
+from cramhy_runtime import __version__
 
 from .terminal import Terminal
 
-BAD_REQUEST = {"output": "", "values": [], "error": {
-    "type": "CRAMHY::BAD-REQUEST", "message": 'Not understood: a line must be a JSON object {"form": "..."}.', "restarts": ["ABORT"]}}
+BAD_REQUEST = {
+    "output": "",
+    "values": [],
+    "error": {
+        "type": "CRAMHY::BAD-REQUEST",
+        "message": 'Not understood: a line must be a JSON object {"form": "..."}.',
+        "restarts": ["ABORT"],
+    },
+}
+
+
+def test_version(cramhy):
+    done = cramhy("--version")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith(f"cramhy {__version__} (Python {platform.python_version()}, Hy 1.")
 
 
 class TestRun:
@@ -24,9 +40,11 @@ class TestRun:
         (tmp_path / "bad.lisp").write_text('(princ "first")\n(list\n  (car 5))\n(princ "never")')
         done = cramhy("run", "bad.lisp", "--time", "virtual")
         assert (done.returncode, done.stdout) == (1, "first\n")
-        assert done.stderr == ("cramhy: TYPE-ERROR\n  The value\n    5\n  is not of type\n    LIST\n  when binding LIST\n"
-                               "  at bad.lisp:3:3\n"
-                               "      (car 5))\n      ^\n")
+        assert done.stderr == (
+            "cramhy: TYPE-ERROR\n  The value\n    5\n  is not of type\n    LIST\n  when binding LIST\n"
+            "  at bad.lisp:3:3\n"
+            "      (car 5))\n      ^\n"
+        )
 
     def test_a_failed_plan_has_status_1_and_a_message(self, cramhy, tmp_path):
         (tmp_path / "bad.lisp").write_text('(in-package :cram-user)\n(top-level (fail "Lost."))')
@@ -41,11 +59,13 @@ class TestRun:
         assert cramhy("run", "plan.hy", "--time", "virtual").stdout == "\n1 "
         assert cramhy("run", "my-system.asd", "--time", "virtual").stdout == "\n:LOADED "
 
-    @pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
+    @pytest.mark.skipif(not RUNS_HY_FILES, reason=WHY_NO_HY_FILES)
     def test_a_hy_file_that_goes_into_no_package_stays_hy(self, cramhy, tmp_path):
-        (tmp_path / "plan.hy").write_text("(require cramhy *)\n(import cramhy_runtime.cpl *)\n"
-                                          "(setv slow [])\n(print (top-level (par (do (sleep 2) \"one\") (.append slow 2))) slow)\n"
-                                          "(top-level (par (sleep 1) (fail \"Lost.\")))")
+        (tmp_path / "plan.hy").write_text(
+            "(require cramhy *)\n(import cramhy_runtime.cpl *)\n"
+            '(setv slow [])\n(print (top-level (par (do (sleep 2) "one") (.append slow 2))) slow)\n'
+            '(top-level (par (sleep 1) (fail "Lost.")))'
+        )
         done = cramhy("run", "plan.hy", "--time", "virtual")
         assert (done.returncode, done.stdout) == (1, "one [2]\n")
         assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at plan.hy:5:27\n")
@@ -54,13 +74,22 @@ class TestRun:
         (tmp_path / "leave.lisp").write_text("(exit :code 7)")
         assert cramhy("run", "leave.lisp").returncode == 7
 
-    @pytest.mark.parametrize(("name", "message"), [
-        ("none.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/none.lisp: No such file or directory.\n"),
-        ("folder.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/folder.lisp: Is a directory.\n"),
-        ("note.txt", "cramhy: FILE-ERROR\n  Cannot load note.txt: what is loaded is a .lisp, .hy or .asd file, or a system by its name.\n"),
-        ("latin.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/latin.lisp: it is no UTF-8 text (line 2, byte 10 of the file). "
-                       "Save it as UTF-8.\n"),
-    ])
+    @pytest.mark.parametrize(
+        ("name", "message"),
+        [
+            ("none.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/none.lisp: No such file or directory.\n"),
+            ("folder.lisp", "cramhy: FILE-ERROR\n  Cannot load {folder}/folder.lisp: Is a directory.\n"),
+            (
+                "note.txt",
+                "cramhy: FILE-ERROR\n  Cannot load note.txt: what is loaded is a .lisp, .hy or .asd file, or a system by its name.\n",
+            ),
+            (
+                "latin.lisp",
+                "cramhy: FILE-ERROR\n  Cannot load {folder}/latin.lisp: it is no UTF-8 text (line 2, byte 10 of the file). "
+                "Save it as UTF-8.\n",
+            ),
+        ],
+    )
     def test_what_cannot_be_loaded(self, cramhy, tmp_path, name, message):
         (tmp_path / "folder.lisp").mkdir()
         (tmp_path / "note.txt").write_text("hello")
@@ -87,9 +116,12 @@ class TestRun:
 @pytest.fixture
 def answers(cramhy):
     """The answers of ``cramhy eval`` to lines; a line that is no text of JSON is wrapped into a request."""
+
     def answers(*forms, options=()):
-        lines = [form if form[:1] in ("{", "[", '"') and form[-1:] in "}]\"" and "form" in form[:8] else json.dumps({"form": form})
-                 for form in forms]
+        lines = [
+            form if form[:1] in ("{", "[", '"') and form[-1:] in '}]"' and "form" in form[:8] else json.dumps({"form": form})
+            for form in forms
+        ]
         done = cramhy("eval", *options, input="\n".join(lines))
         assert done.returncode == 0, done.stderr
         return [json.loads(line) for line in done.stdout.splitlines()]
@@ -101,8 +133,7 @@ class TestEval:
     @pytest.mark.parametrize("line", ["nonsense", '{"form": 3}', '{"from": "3"}', "[1]", '"x"', "null", '{"form": "1"', "[" * 100000])
     def test_a_line_that_is_no_request_gets_an_error_and_the_next_is_read(self, cramhy, line):
         done = cramhy("eval", input=f'{line}\n\n{{"form": "(+ 1 2)"}}\n')
-        assert [json.loads(answer) for answer in done.stdout.splitlines()] == [
-            BAD_REQUEST, {"output": "", "values": ["3"], "error": None}]
+        assert [json.loads(answer) for answer in done.stdout.splitlines()] == [BAD_REQUEST, {"output": "", "values": ["3"], "error": None}]
         assert (done.returncode, done.stderr) == (0, "")
 
     def test_binary_garbage_gets_an_error_too(self, cramhy):
@@ -110,8 +141,10 @@ class TestEval:
         assert [json.loads(answer)["values"] for answer in done.stdout.splitlines()] == [[], ["3"]]
 
     def test_the_values_of_the_last_form_and_all_output(self, answers):
-        assert answers('(princ "a") (princ "b") (values 1 :two)', "", ";only a comment") == [
-            {"output": "ab", "values": ["1", ":TWO"], "error": None}] + [{"output": "", "values": [], "error": None}] * 2
+        assert (
+            answers('(princ "a") (princ "b") (values 1 :two)', "", ";only a comment")
+            == [{"output": "ab", "values": ["1", ":TWO"], "error": None}] + [{"output": "", "values": [], "error": None}] * 2
+        )
 
     def test_a_form_that_prints_and_fails(self, answers):
         (answer,) = answers('(progn (princ "before") (/ 1 0))')
@@ -144,12 +177,18 @@ class TestEval:
         assert answers(*forms, options=("--seed", "5")) == answers(*forms, options=("--seed", "5"))
         assert answers(*forms, options=("--seed", "5")) != answers(*forms, options=("--seed", "6"))
 
-    @pytest.mark.parametrize(("options", "message"), [
-        (("--load", "no-such-system"), 'cramhy: ASDF:MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
-        (("--package", "no-such-package"), 'cramhy: SB-EXT:PACKAGE-DOES-NOT-EXIST\n  The name "NO-SUCH-PACKAGE" does not designate any'),
-        (("--eval", "(+ 1"), "cramhy: END-OF-FILE\n"),
-        (("--eval", '(cpl:fail "x")'), "cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n"),
-    ])
+    @pytest.mark.parametrize(
+        ("options", "message"),
+        [
+            (("--load", "no-such-system"), 'cramhy: ASDF:MISSING-COMPONENT\n  Component "no-such-system" not found\n'),
+            (
+                ("--package", "no-such-package"),
+                'cramhy: SB-EXT:PACKAGE-DOES-NOT-EXIST\n  The name "NO-SUCH-PACKAGE" does not designate any',
+            ),
+            (("--eval", "(+ 1"), "cramhy: END-OF-FILE\n"),
+            (("--eval", '(cpl:fail "x")'), "cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  x\n"),
+        ],
+    )
     def test_options_that_cannot_be_followed(self, cramhy, options, message):
         done = cramhy("eval", *options, input='{"form": "1"}')
         assert (done.returncode, done.stdout) == (1, "") and done.stderr.startswith(message)

@@ -18,18 +18,22 @@ def shown(expected, transcript):
 
 
 def test_the_prompt_is_the_shortest_name_of_the_package(type_in):
-    shown("""\
+    shown(
+        """\
 CPL-USER> (in-package :cl-user)
 #<PACKAGE "COMMON-LISP-USER">
 CL-USER> (defpackage :my-plans (:nicknames :mine) (:use :cpl))
 #<PACKAGE "MY-PLANS">
 CL-USER> (in-package :my-plans)
 #<PACKAGE "MY-PLANS">
-MINE>""", type_in("(in-package :cl-user)\n(defpackage :my-plans (:nicknames :mine) (:use :cpl))\n(in-package :my-plans)\n") + "MINE>")
+MINE>""",
+        type_in("(in-package :cl-user)\n(defpackage :my-plans (:nicknames :mine) (:use :cpl))\n(in-package :my-plans)\n") + "MINE>",
+    )
 
 
 def test_values_come_one_a_line(type_in):
-    shown("""\
+    shown(
+        """\
 CPL-USER> (values 1 "two" #\\3)
 1
 "two"
@@ -37,21 +41,29 @@ CPL-USER> (values 1 "two" #\\3)
 CPL-USER> (values)
 ; No value
 CPL-USER> (list cl:* 'nil)
-(1 NIL)""", type_in('(values 1 "two" #\\3)\n(values)\n(list cl:* \'nil)\n'))
+(1 NIL)""",
+        type_in('(values 1 "two" #\\3)\n(values)\n(list cl:* \'nil)\n'),
+    )
 
 
-@pytest.mark.parametrize("form, told", [
-    ("(lambda (x) x)", "(LAMBDA (X))"), ("(lambda (x &optional y) (list x y))", "(LAMBDA (X &OPTIONAL Y))"),
-    ("(let ((y 3)) (lambda () y))", "(LAMBDA ())"), ("(lambda (x &key k) (list x k))", "(LAMBDA (X &KEY ...))"),
-    ("(flet ((turn-left (x) x)) #'turn-left)", "(FLET TURN-LEFT)"),
-    ("(progn (defun outer (x) (lambda (z) (list x z))) (outer 1))", "(LAMBDA (Z) :IN OUTER)"),
-])
+@pytest.mark.parametrize(
+    "form, told",
+    [
+        ("(lambda (x) x)", "(LAMBDA (X))"),
+        ("(lambda (x &optional y) (list x y))", "(LAMBDA (X &OPTIONAL Y))"),
+        ("(let ((y 3)) (lambda () y))", "(LAMBDA ())"),
+        ("(lambda (x &key k) (list x k))", "(LAMBDA (X &KEY ...))"),
+        ("(flet ((turn-left (x) x)) #'turn-left)", "(FLET TURN-LEFT)"),
+        ("(progn (defun outer (x) (lambda (z) (list x z))) (outer 1))", "(LAMBDA (Z) :IN OUTER)"),
+    ],
+)
 def test_a_function_without_a_name_is_shown_as_lisp_calls_it(type_in, form, told):
     assert re.search(r"^#<FUNCTION (.*) \{[0-9A-F]+\}>$", type_in(form), re.MULTILINE)[1] == told
 
 
 def test_a_form_may_have_many_lines_and_comments(type_in):
-    shown("""\
+    shown(
+        """\
 CPL-USER> (+ 1 ; one
    #| two
       (( |#
@@ -61,7 +73,9 @@ CPL-USER> ; nothing
 CPL-USER> "a (
 b"
 "a (
-b\"""", type_in('(+ 1 ; one\n   #| two\n      (( |#\n   2)\n; nothing\n"a (\nb"\n'))
+b\"""",
+        type_in('(+ 1 ; one\n   #| two\n      (( |#\n   2)\n; nothing\n"a (\nb"\n'),
+    )
 
 
 def test_several_forms_on_a_line_are_evaluated_in_turn(type_in):
@@ -69,25 +83,32 @@ def test_several_forms_on_a_line_are_evaluated_in_turn(type_in):
 
 
 def test_what_is_printed_and_warnings_stand_in_the_transcript(type_in):
-    shown("""\
+    shown(
+        """\
 CPL-USER> (progn (format t "no newline") (warn "careful with ~a" 3) 5)
 no newline
 WARNING: careful with 3
-5""", type_in('(progn (format t "no newline") (warn "careful with ~a" 3) 5)'))
+5""",
+        type_in('(progn (format t "no newline") (warn "careful with ~a" 3) 5)'),
+    )
 
 
 def test_an_unmatched_parenthesis_is_a_warning(type_in):
-    shown("""\
+    shown(
+        """\
 CPL-USER> (+ 1 2))
 3
 STYLE-WARNING: unmatched close parenthesis at <repl 1>:1:8, ignored
   There is one ) too many here, or a ( is missing before it.
 CPL-USER> 4
-4""", type_in("(+ 1 2))\n4"))
+4""",
+        type_in("(+ 1 2))\n4"),
+    )
 
 
 def test_an_error_opens_the_debugger_and_a_number_leaves_it(type_in):
-    shown(f"""\
+    shown(
+        f"""\
 CPL-USER> (list 1 (car 2))
 
 debugger invoked on a TYPE-ERROR:
@@ -104,12 +125,16 @@ debugger invoked on a TYPE-ERROR:
 There is no choice 1; they go from 0 to 0.
 0] 0
 CPL-USER> 5
-5""", type_in("(list 1 (car 2))\n1\n0\n5"))
+5""",
+        type_in("(list 1 (car 2))\n1\n0\n5"),
+    )
 
 
 def test_restarts_are_chosen_by_name_too(type_in):
-    text = type_in('(restart-case (error "stuck") (go-round (n) :report "Go round." :interactive (lambda () (list 9)) n))\n:go-round\n'
-                   '(cerror "Go on." "stopped")\n:continue\n(no-such-function)\n:return-nothing\n')
+    text = type_in(
+        '(restart-case (error "stuck") (go-round (n) :report "Go round." :interactive (lambda () (list 9)) n))\n:go-round\n'
+        '(cerror "Go on." "stopped")\n:continue\n(no-such-function)\n:return-nothing\n'
+    )
     assert "  0: [GO-ROUND] Go round.\n  1: [ABORT   ] Exit debugger, returning to top level.\n0] :go-round\n9\n" in text
     assert "  0: [CONTINUE] Go on.\n" in text and "0] :continue\nNIL\n" in text
     assert text.endswith("0] :return-nothing\n; No value\n")
@@ -118,8 +143,10 @@ def test_restarts_are_chosen_by_name_too(type_in):
 def test_forms_are_evaluated_in_the_debugger_and_errors_there_nest(type_in):
     text = type_in("(car 1)\n(+ 40 2)\n(car 2)\n:abort\n(list 'still 'here)\n0\n5")
     assert "0] (+ 40 2)\n42\n0] (car 2)\n" in text
-    assert ("  0: [ABORT] Return to debugger level 0.\n  1: [ABORT] Exit debugger, returning to top level.\n1] :abort\n"
-            "0] (list 'still 'here)\n(STILL HERE)\n0] 0\nCPL-USER> 5\n5\n") in text
+    assert (
+        "  0: [ABORT] Return to debugger level 0.\n  1: [ABORT] Exit debugger, returning to top level.\n1] :abort\n"
+        "0] (list 'still 'here)\n(STILL HERE)\n0] 0\nCPL-USER> 5\n5\n"
+    ) in text
 
 
 def test_the_outermost_restart_leaves_all_levels(type_in):
@@ -137,7 +164,8 @@ def test_the_end_of_input_leaves_the_debugger_and_the_console(type_in):
 
 
 def test_the_end_of_input_inside_a_form_is_an_error_with_its_place(type_in):
-    shown(f"""\
+    shown(
+        f"""\
 CPL-USER> (list 1
   (list 2)
 
@@ -148,11 +176,14 @@ debugger invoked on a END-OF-FILE:
   ^
   The ( at line 1, column 1 is never closed.
 
-{ABORT}""", type_in("(list 1\n  (list 2)"))
+{ABORT}""",
+        type_in("(list 1\n  (list 2)"),
+    )
 
 
 def test_a_failure_of_a_branch_is_shown_with_its_own_place(type_in, backend):
-    shown(f"""\
+    shown(
+        f"""\
 CPL-USER> (top-level
   (par (sleep 1)
        (fail "No ~a." 'cup)))
@@ -163,11 +194,14 @@ debugger invoked on a CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE:
            (fail "No ~a." 'cup)))
            ^
 
-{ABORT}0] 0""", type_in('(top-level\n  (par (sleep 1)\n       (fail "No ~a." \'cup)))\n0', backend=backend))
+{ABORT}0] 0""",
+        type_in('(top-level\n  (par (sleep 1)\n       (fail "No ~a." \'cup)))\n0', backend=backend),
+    )
 
 
 def test_a_plan_form_outside_of_a_plan_says_what_to_write(type_in):
-    shown(f"""\
+    shown(
+        f"""\
 CPL-USER> (par 1)
 
 debugger invoked on a SIMPLE-ERROR:
@@ -177,7 +211,9 @@ debugger invoked on a SIMPLE-ERROR:
     ^
   Plan forms run inside of a plan: write (top-level (par ...)).
 
-{ABORT}0] 0""", type_in("(par 1)\n0"))
+{ABORT}0] 0""",
+        type_in("(par 1)\n0"),
+    )
 
 
 def test_a_plan_that_waits_for_ever_says_what_it_waits_for(type_in, backend):
@@ -201,10 +237,12 @@ def test_the_same_seed_gives_the_same_random_numbers(type_in):
 
 
 def test_a_condition_is_shown_by_its_method_of_print_object(type_in):
-    shown = type_in("(define-condition lost (error) ((at :initarg :at)))\n"
-                    "(defmethod print-object ((lost lost) stream)\n"
-                    "  (if *print-escape* (call-next-method) (format stream \"Lost at ~A.\" (slot-value lost 'at))))\n"
-                    "(error 'lost :at 3)")
+    shown = type_in(
+        "(define-condition lost (error) ((at :initarg :at)))\n"
+        "(defmethod print-object ((lost lost) stream)\n"
+        '  (if *print-escape* (call-next-method) (format stream "Lost at ~A." (slot-value lost \'at))))\n'
+        "(error 'lost :at 3)"
+    )
     assert "Lost at 3." in shown and "was signalled" not in shown
 
 

@@ -15,12 +15,15 @@ FORMS = {
     "a loop": "(unwind-protect (progn (print :running) (loop)) (print :cleaned))",
     BUSY: "(top-level (unwind-protect (par (progn (print :running) (loop)) (sleep 1000000)) (print :cleaned)))",
     "a plan that waits": "(top-level (unwind-protect (par (progn (print :running) (loop (sleep 0.01))) (wait-for (make-fluent))) "
-                         "(print :cleaned)))",
+    "(print :cleaned)))",
 }
 
 
-@pytest.fixture(params=[(time, backend) for time in ("virtual", "wall") for backend in ("threads", "greenlet")],
-                ids=lambda pair: "-".join(pair), scope="module")
+@pytest.fixture(
+    params=[(time, backend) for time in ("virtual", "wall") for backend in ("threads", "greenlet")],
+    ids=lambda pair: "-".join(pair),
+    scope="module",
+)
 def terminal(request):
     clock, backend = request.param
     if backend == "greenlet":
@@ -137,3 +140,14 @@ def test_ctrl_c_ends_a_program_that_is_run(tmp_path):
         terminal.control_c()
         terminal.expect(":CLEANED ")
         assert terminal.status() == 130
+
+
+@pytest.mark.parametrize("way, prompt", [([], PROMPT), (["--hy"], "=> ")], ids=["Lisp", "Hy"])
+def test_ctrl_c_in_a_form_of_the_command_line_leads_to_the_prompt(way, prompt):
+    with Terminal("repl", *way, "--package", "cram-user", "--eval", FORMS["a loop"], "--eval", "(print :never)") as terminal:
+        terminal.expect(r"\n:RUNNING ")
+        terminal.control_c()
+        answer = terminal.expect(prompt)
+        assert ":CLEANED" in answer and "; Interrupted.\n" in answer and "NEVER" not in answer and "INTERRUPTION" not in answer
+        terminal.type("(+ 1 2)")
+        terminal.expect(r"\n3\n")  # the line editor of Hy draws its prompt more than once

@@ -70,8 +70,9 @@ def test_a_token_comes_from_a_file_or_a_variable(write, monkeypatch):
 
 def test_an_address_with_a_token_among_the_arguments_is_warned_of_and_taken(capsys):
     assert chosen("ws://robot:9090/secret", None) == "ws://robot:9090/secret"
-    assert capsys.readouterr().err == ("; Every user of this machine can see the token in --ros ws://robot:9090/.... Write the address "
-                                       "into a file: --ros @FILE\n")
+    assert capsys.readouterr().err == (
+        "; Every user of this machine can see the token in --ros ws://robot:9090/.... Write the address into a file: --ros @FILE\n"
+    )
     assert chosen("ws://robot:9090", None) == "ws://robot:9090"
     assert capsys.readouterr().err == ""
 
@@ -97,9 +98,15 @@ def test_an_address_with_a_token_among_the_arguments_is_warned_of_and_taken(caps
     (None, "word", "--ros-token is the token for a robot; give its address with --ros, too."),
 ])  # fmt: skip
 def test_what_is_wrong_is_told(write, option, token_file, message):
-    for name, text, mode in (("empty", "\n", 0o600), ("two", "ws://a\nws://b\n", 0o600), ("bytes", b"\xff\xfe", 0o600),
-                             ("word", "secret", 0o600), ("wordopen", "secret", 0o644), ("open", "ws://robot:9090/secret", 0o640),
-                             ("strange", "a#b", 0o600)):
+    for name, text, mode in (
+        ("empty", "\n", 0o600),
+        ("two", "ws://a\nws://b\n", 0o600),
+        ("bytes", b"\xff\xfe", 0o600),
+        ("word", "secret", 0o600),
+        ("wordopen", "secret", 0o644),
+        ("open", "ws://robot:9090/secret", 0o640),
+        ("strange", "a#b", 0o600),
+    ):
         write(text, name, mode)
     with pytest.raises(Unusable) as caught:
         chosen(option, token_file)
@@ -129,14 +136,15 @@ def test_an_address_is_shown_without_its_token(url, seen):
 def test_a_session_joins_another_one_and_no_argument_of_a_process_has_the_token(tmp_path, monkeypatch, ways):
     pytest.importorskip("roslibpy")
     pytest.importorskip("uvicorn")
-    from cramhy_runtime import image, rosbridge
+    from cramhy_runtime import rosbridge
+    from cramhy_runtime.session import boot
     from cramhy_runtime.turtlesim.node import start_turtlesim
 
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     kernel.start(clock="wall")
     with ExitStack() as closings:
         closings.callback(kernel.stop)
-        image.boot()
+        boot()
         start_turtlesim()
         address = rosbridge.start().address
         place, token = address.rpartition("/")[0], address.rpartition("/")[2]
@@ -144,16 +152,27 @@ def test_a_session_joins_another_one_and_no_argument_of_a_process_has_the_token(
         file.write_text(address if ways == "@file" else token)
         file.chmod(stat.S_IRUSR)
         words, variables = {
-            "@file": (["--ros", f"@{file}"], {}), "token file": (["--ros", place, "--ros-token", str(file)], {}),
-            "CRAMHY_ROS": ([], {ADDRESS: address}), "CRAMHY_ROS_TOKEN": (["--ros", place], {TOKEN: token}),
+            "@file": (["--ros", f"@{file}"], {}),
+            "token file": (["--ros", place, "--ros-token", str(file)], {}),
+            "CRAMHY_ROS": ([], {ADDRESS: address}),
+            "CRAMHY_ROS_TOKEN": (["--ros", place], {TOKEN: token}),
         }[ways]
-        child = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", *words], stdin=subprocess.PIPE,
-                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env={**os.environ, **variables})
+        child = subprocess.Popen(
+            [sys.executable, "-m", "cramhy_runtime.cli", "repl", *words],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={**os.environ, **variables},
+        )
         closings.callback(child.kill)
 
         def talk():
-            answer, _ = child.communicate('(roslisp:start-ros-node "x")\n(roslisp:get-param "/turtlesim/background_b")\n'
-                                          '(with-open-file (s "/proc/self/cmdline") (read-line s))\n', timeout=90)
+            answer, _ = child.communicate(
+                '(roslisp:start-ros-node "x")\n(roslisp:get-param "/turtlesim/background_b")\n'
+                '(with-open-file (s "/proc/self/cmdline") (read-line s))\n',
+                timeout=90,
+            )
             return answer
 
         answer = kernel.run_blocking(talk)

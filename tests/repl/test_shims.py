@@ -13,10 +13,16 @@ import pytest
 
 from cramhy_runtime.cli import options, shims
 
-NO_SESSION = ("No master is needed: the ROS graph lives in the process of roslisp_repl.\n"
-              "No session serves here yet. Start one with: roslisp_repl --serve, or rosrun turtlesim turtlesim_node\n")
+NO_SESSION = (
+    "No master is needed: the ROS graph lives in the process of roslisp_repl.\n"
+    "No session serves here yet. Start one with: roslisp_repl --serve, or rosrun turtlesim turtlesim_node\n"
+)
 SHELLS = {  # how each reads a program: functions, then the commands that follow
-    "bash": ["bash", "--norc", "--noprofile"], "zsh": ["zsh", "-f"], "dash": ["dash"], "mksh": ["mksh"], "busybox": ["busybox", "sh"],
+    "bash": ["bash", "--norc", "--noprofile"],
+    "zsh": ["zsh", "-f"],
+    "dash": ["dash"],
+    "mksh": ["mksh"],
+    "busybox": ["busybox", "sh"],
     "fish": ["fish", "--no-config"],
 }
 FOLDERS = ["plain", "with a space", """it's "$HOME" `id` \\ and * too"""]
@@ -50,8 +56,13 @@ def bare(tmp_path, **more):
 
 def functions(clone, tmp_path, *words):
     """What ``cramhy ros-shims`` of that clone prints."""
-    done = subprocess.run([clone / ".venv/bin/python", "-m", "cramhy_runtime.cli", "ros-shims", *words], env=bare(tmp_path), text=True,
-                          capture_output=True, timeout=60)
+    done = subprocess.run(
+        [clone / ".venv/bin/python", "-m", "cramhy_runtime.cli", "ros-shims", *words],
+        env=bare(tmp_path),
+        text=True,
+        capture_output=True,
+        timeout=60,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
@@ -61,8 +72,9 @@ def typed(shell, text, tmp_path, folder=None):
     program = shutil.which(SHELLS[shell][0])
     if program is None:
         pytest.skip(f"{shell} is not installed here")
-    done = subprocess.run([program, *SHELLS[shell][1:]], input=text, text=True, capture_output=True, env=bare(tmp_path), timeout=120,
-                          cwd=folder or tmp_path)
+    done = subprocess.run(
+        [program, *SHELLS[shell][1:]], input=text, text=True, capture_output=True, env=bare(tmp_path), timeout=120, cwd=folder or tmp_path
+    )
     return done.stdout, done.stderr, done.returncode
 
 
@@ -72,7 +84,10 @@ def test_the_functions_work_where_nothing_is_on_the_path(shell, clone, tmp_path)
     status = "echo $status" if shell == "fish" else "echo $?"
     (tmp_path / "cramhy_runtime").mkdir(exist_ok=True)  # the current folder is not where modules are looked for
     (tmp_path / "cramhy_runtime" / "__init__.py").write_text("raise SystemExit('the wrong cramhy')")
-    out, complaints, _ = typed(shell, functions(clone, tmp_path, "--shell", language) + f"""
+    out, complaints, _ = typed(
+        shell,
+        functions(clone, tmp_path, "--shell", language)
+        + f"""
 roscore
 rosversion 'no such package'
 {status}
@@ -84,21 +99,26 @@ pwd
 roscd no_such_package
 {status}
 pwd
-""", tmp_path)
+""",
+        tmp_path,
+    )
     lines = out.splitlines()
     folder = next(line for line in lines if line.endswith("/turtlesim"))
     assert lines == [*NO_SESSION.splitlines(), "1", "float64 x", "float64 y", "float64 z", "", "1", folder, "1", folder]
-    assert complaints == ("Cannot locate [no such package]\n"
-                          f"cramhy: FILE-ERROR\n  Cannot load {tmp_path}/nothing.lisp: No such file or directory.\n"
-                          "roscd: No such package/stack 'no_such_package'\n")
+    assert complaints == (
+        "Cannot locate [no such package]\n"
+        f"cramhy: FILE-ERROR\n  Cannot load {tmp_path}/nothing.lisp: No such file or directory.\n"
+        "roscd: No such package/stack 'no_such_package'\n"
+    )
 
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_roslisp_repl_serves_so_that_other_terminals_find_it(shell, clone, tmp_path):
     pytest.importorskip("uvicorn")
     language = "fish" if shell == "fish" else "sh"
-    out, complaints, status = typed(shell, functions(clone, tmp_path, "--shell", language)
-                                    + "roslisp_repl --eval '(print (list 1 \"a b\"))'\n", tmp_path)
+    out, complaints, status = typed(
+        shell, functions(clone, tmp_path, "--shell", language) + "roslisp_repl --eval '(print (list 1 \"a b\"))'\n", tmp_path
+    )
     assert '(1 "a b")' in out and status == 0
     assert complaints.startswith("; Clients of rosbridge: ws://127.0.0.1:")
 
@@ -126,17 +146,24 @@ def test_the_shells_of_the_option_are_those_that_are_known():
 # ------------------------------------------------------------------------------------------------------- without ``ros``
 
 
-@pytest.mark.parametrize(("words", "meant"), [
-    (["rostopic", "echo", "/turtle1/pose"], "ros rostopic echo /turtle1/pose"),
-    (["rosservice", "call", "/spawn", "1 2"], "ros rosservice call /spawn '1 2'"),
-    (["roscd"], "ros roscd"), (["catkin_make"], "ros catkin_make"), (["roslaunch", "-h"], "ros roslaunch -h"),
-    (["roslisp_repl", "--view"], "repl --view"),
-])
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["rostopic", "echo", "/turtle1/pose"], "ros rostopic echo /turtle1/pose"),
+        (["rosservice", "call", "/spawn", "1 2"], "ros rosservice call /spawn '1 2'"),
+        (["roscd"], "ros roscd"),
+        (["catkin_make"], "ros catkin_make"),
+        (["roslaunch", "-h"], "ros roslaunch -h"),
+        (["roslisp_repl", "--view"], "repl --view"),
+    ],
+)
 def test_a_ros_command_without_ros_is_told_its_right_shape(cramhy, words, meant):
     done = cramhy(*words)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == (f"cramhy: {words[0]} is a command of ROS. Type: cramhy {meant}\n"
-                           'Or make it a command of this shell first: eval "$(cramhy ros-shims)"\n')
+    assert done.stderr == (
+        f"cramhy: {words[0]} is a command of ROS. Type: cramhy {meant}\n"
+        'Or make it a command of this shell first: eval "$(cramhy ros-shims)"\n'
+    )
 
 
 @pytest.mark.parametrize("words", [["rosbag"], ["rosnothing", "list"], ["catkin"]])
@@ -151,10 +178,16 @@ def test_ros_alone_tells_its_usage(cramhy):
         assert done.returncode == status and "usage: cramhy ros COMMAND [WORD ...]" in done.stdout + done.stderr
 
 
-@pytest.mark.parametrize(("called", "on_path", "name"), [
-    ("cramhy_runtime/cli/__main__.py", None, "cramhy"), (".venv/bin/cramhy", None, ".venv/bin/cramhy"),
-    ("a b/cramhy", None, "'a b/cramhy'"), ("bin/cramhy", "bin", "cramhy"), ("bin/cramhy", "other", "bin/cramhy"),
-])
+@pytest.mark.parametrize(
+    ("called", "on_path", "name"),
+    [
+        ("cramhy_runtime/cli/__main__.py", None, "cramhy"),
+        (".venv/bin/cramhy", None, ".venv/bin/cramhy"),
+        ("a b/cramhy", None, "'a b/cramhy'"),
+        ("bin/cramhy", "bin", "cramhy"),
+        ("bin/cramhy", "other", "bin/cramhy"),
+    ],
+)
 def test_the_hint_calls_cramhy_as_the_user_did(tmp_path, monkeypatch, called, on_path, name):
     for folder in ("bin", "other"):
         (tmp_path / folder).mkdir()
@@ -171,16 +204,22 @@ def test_the_hint_calls_cramhy_as_the_user_did(tmp_path, monkeypatch, called, on
 
 def test_they_are_installed_into_a_folder(clone, tmp_path):
     def install():
-        return subprocess.run([clone / ".venv/bin/python", "-m", "cramhy_runtime.cli", "ros-shims", "--install", tmp_path / "bin"],
-                              env=bare(tmp_path), text=True, capture_output=True, timeout=60)
+        return subprocess.run(
+            [clone / ".venv/bin/python", "-m", "cramhy_runtime.cli", "ros-shims", "--install", tmp_path / "bin"],
+            env=bare(tmp_path),
+            text=True,
+            capture_output=True,
+            timeout=60,
+        )
 
     first = install()
     assert (first.returncode, first.stderr) == (0, "") and first.stdout.startswith("Wrote cramhy, roslisp_repl, catkin_create_pkg, ")
     hint = first.stdout.rpartition("must be a shell function: ")[2]
     done = subprocess.run([tmp_path / "bin" / "roscore"], capture_output=True, text=True, env=bare(tmp_path), timeout=60)
     assert (done.returncode, done.stdout) == (0, NO_SESSION)
-    done = subprocess.run([tmp_path / "bin" / "cramhy", "ros", "rosversion", "-d"], capture_output=True, text=True, env=bare(tmp_path),
-                          timeout=60)
+    done = subprocess.run(
+        [tmp_path / "bin" / "cramhy", "ros", "rosversion", "-d"], capture_output=True, text=True, env=bare(tmp_path), timeout=60
+    )
     assert (done.returncode, done.stdout) == (0, "noetic\n")
     assert typed("bash", f"{hint}\nrosversion -d", tmp_path) == ("noetic\n", "", 0)
     assert install().returncode == 0  # over our own, once more
@@ -210,7 +249,9 @@ def test_a_folder_that_cannot_be_had_is_named(cramhy, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     done = cramhy("ros-shims", "--install", "file")
     assert (done.returncode, done.stderr) == (
-        1, "cramhy: the programs cannot be written into file: file: File exists. Choose another name.\n")
+        1,
+        "cramhy: the programs cannot be written into file: file: File exists. Choose another name.\n",
+    )
     done = cramhy("ros", "catkin_create_pkg", "file")
     assert (done.returncode, done.stderr) == (1, f"catkin_create_pkg: {tmp_path / 'file'}: File exists. Choose another name.\n")
 
@@ -230,15 +271,18 @@ def pretend(folder, *names):
 def test_a_real_ros_on_the_path_is_left_alone(cramhy, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", pretend(tmp_path / "real", "roscore"))
     done = cramhy("ros-shims")
-    assert done.stderr == ("cramhy: a ROS is installed here, so roscore stays as it is. "
-                           "Those of cramhy are called like this: cramhy ros roscore\n")
+    assert done.stderr == (
+        "cramhy: a ROS is installed here, so roscore stays as it is. Those of cramhy are called like this: cramhy ros roscore\n"
+    )
     assert "roscore()" not in done.stdout and "catkin_make()" in done.stdout
 
 
 def test_the_functions_and_the_repl_of_a_real_ros_are_left_alone(cramhy, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", pretend(tmp_path / "real", "rospack", "roslisp_repl"))
     done = cramhy("ros-shims")
-    assert done.stderr == ("cramhy: a ROS is installed here, so roslisp_repl, rospack, roscd, rosls stay as they are. "
-                           "Those of cramhy are called like this: cramhy ros rosls\n")
+    assert done.stderr == (
+        "cramhy: a ROS is installed here, so roslisp_repl, rospack, roscd, rosls stay as they are. "
+        "Those of cramhy are called like this: cramhy ros rosls\n"
+    )
     assert not {"roslisp_repl", "rospack", "roscd", "rosls"} & {line.partition("(")[0] for line in done.stdout.splitlines()}
     assert "cramhy() {" in done.stdout

@@ -40,8 +40,13 @@ FORMS = [
     "(dotimes (i 30) (print i))",
     "(ros-load:load-system \"cram_my_beginner_tutorial\" :cram-my-beginner-tutorial)", "(break)", ":abort", "0",
 ]  # fmt: skip
-COMBINATIONS = [(clock, backend, editor, way) for clock in ("virtual", "wall") for backend in ("threads", "greenlet")
-                for editor in ("edited", "plain") for way in ("typed", "sent")]
+COMBINATIONS = [
+    (clock, backend, editor, way)
+    for clock in ("virtual", "wall")
+    for backend in ("threads", "greenlet")
+    for editor in ("edited", "plain")
+    for way in ("typed", "sent")
+]
 
 
 @pytest.fixture(params=COMBINATIONS, ids="-".join)
@@ -53,8 +58,19 @@ def storm(request, tmp_path, monkeypatch):
         pytest.importorskip("prompt_toolkit")
     (tmp_path / "setup.lisp").write_text(SETUP)
     monkeypatch.chdir(tmp_path)
-    with Terminal("repl", "--time", clock, "--backend", backend, "--load", "setup.lisp", "--package", "cram-user",
-                  editor=editor == "edited", variables={"TERM": "xterm" if editor == "edited" else "dumb"}) as terminal:
+    with Terminal(
+        "repl",
+        "--time",
+        clock,
+        "--backend",
+        backend,
+        "--load",
+        "setup.lisp",
+        "--package",
+        "cram-user",
+        editor=editor == "edited",
+        variables={"TERM": "xterm" if editor == "edited" else "dumb"},
+    ) as terminal:
         terminal.expect("CPL-USER> ")
         terminal.way = way
         yield terminal
@@ -141,9 +157,9 @@ def test_no_line_that_is_typed_is_lost(storm, tmp_path):
 def test_ctrl_c_right_after_enter_interrupts_the_form(storm, tmp_path):
     for number in range(5 if not SOAK else 50):
         if storm.way == "typed":
-            os.write(storm.master, b"(unwind-protect (loop) (note \"log\" \"cleaned\"))\n\x03")
+            os.write(storm.master, b'(unwind-protect (loop) (note "log" "cleaned"))\n\x03')
         else:
-            storm.type("(unwind-protect (progn (note \"log\" \"busy\") (loop)) (note \"log\" \"cleaned\"))")
+            storm.type('(unwind-protect (progn (note "log" "busy") (loop)) (note "log" "cleaned"))')
             wait_for_words(storm, tmp_path, ["busy", "cleaned"] * number + ["busy"])
             interrupt(storm)
         storm.expect("; Interrupted.\nCPL-USER> ")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.cpl import debugging
+from cramhy_runtime.cpl.failures import debugging
 
 PLAN = """
 (top-level (with-failure-handling (((or error simple-plan-failure) (c) (format t "parent: ~a~%" c) (return :handled)))
@@ -21,8 +21,8 @@ def variables_as_at_first():
 def test_an_error_stops_its_task_in_the_debugger_when_that_is_wanted(type_in, backend):
     shown = type_in(f"(setf *debug-on-lisp-errors* t){PLAN}\n(list :task (not (null *current-task*)))\n0", backend=backend)
     assert "debugger invoked on a SIMPLE-ERROR:\n  boom 5\n" in shown
-    assert "  0: [RETHROW ] Rethrow condition `#<SIMPLE-ERROR \"boom ~a\" {" in shown
-    assert "  1: [TEARDOWN] Tear down #<TASK \"[PAR-CHILD-#2/2]-" in shown
+    assert '  0: [RETHROW ] Rethrow condition `#<SIMPLE-ERROR "boom ~a" {' in shown
+    assert '  1: [TEARDOWN] Tear down #<TASK "[PAR-CHILD-#2/2]-' in shown
     assert "0] (list :task (not (null *current-task*)))\n(:TASK T)\n0] 0\ncleanup\nparent: boom 5\n:HANDLED\n" in shown
     assert "\nother" not in shown
 
@@ -44,11 +44,14 @@ def test_the_default_goes_on_to_the_parent(type_in, backend):
 
 
 def test_a_plan_failure_of_the_wanted_type_stops_before_its_handlers(type_in, backend):
-    shown = type_in("""(setf *break-on-plan-failures* 'simple-plan-failure)
+    shown = type_in(
+        """(setf *break-on-plan-failures* 'simple-plan-failure)
 (top-level (with-failure-handling ((plan-failure (c) (format t "handler: ~a~%" c) (return :handled))) (fail "f ~a" 1)))
 0
 (top-level (with-failure-handling ((plan-failure () (return :other))) (fail 'composite-failure)))
-(setf *break-on-plan-failures* nil)""".replace("()", "(c) c"), backend=backend)
+(setf *break-on-plan-failures* nil)""".replace("()", "(c) c"),
+        backend=backend,
+    )
     assert "  f 1\n" in shown and "  0: [CONTINUE] Continue failure signalling.\n" in shown
     assert "] 0\nhandler: f 1\n:HANDLED\n" in shown
     assert shown.count("debugger invoked") == 1 and "\n:OTHER\n" in shown
@@ -66,8 +69,10 @@ def test_the_end_of_input_in_a_tasks_debugger_ends_the_session(type_in, backend)
 
 
 def test_a_script_never_stops(cramhy, tmp_path):
-    (tmp_path / "plan.lisp").write_text("(in-package :cpl-user)\n(setf *debug-on-lisp-errors* t *break-on-plan-failures* t)\n"
-                                        f"(print {PLAN})\n(top-level (par (error \"the end\")))")
+    (tmp_path / "plan.lisp").write_text(
+        "(in-package :cpl-user)\n(setf *debug-on-lisp-errors* t *break-on-plan-failures* t)\n"
+        f'(print {PLAN})\n(top-level (par (error "the end")))'
+    )
     done = cramhy("run", "plan.lisp", "--time", "virtual", "--no-turtlesim")
     assert done.returncode == 1 and ":HANDLED" in done.stdout and "the end" in done.stderr
 
@@ -83,8 +88,15 @@ MODULE = """
       (list (drive :fast) (sleep 1) (if (cpm:get-running-process-module 'debugged) (drive 2) :gone)))))"""
 
 
-@pytest.mark.parametrize("answer, result", [("0", "(TYPE-ERROR NIL 3)"), ("1", "(TYPE-ERROR NIL :GONE)"),
-                                            (":continue-pm", "(TYPE-ERROR NIL 3)"), (":terminate-pm", "(TYPE-ERROR NIL :GONE)")])
+@pytest.mark.parametrize(
+    "answer, result",
+    [
+        ("0", "(TYPE-ERROR NIL 3)"),
+        ("1", "(TYPE-ERROR NIL :GONE)"),
+        (":continue-pm", "(TYPE-ERROR NIL 3)"),
+        (":terminate-pm", "(TYPE-ERROR NIL :GONE)"),
+    ],
+)
 def test_an_error_in_a_process_module_offers_to_let_the_module_go_on_or_end(type_in, backend, answer, result):
     """Both let the caller have the error."""
     looking = "(desig:desig-prop-value (cpl:value (cpm:input (cpm:get-running-process-module 'debugged))) :speed)"

@@ -9,7 +9,7 @@ import termios
 import pytest
 
 from cramhy_runtime.cli import shims
-from cramhy_runtime.ros_tools import there
+from cramhy_runtime.ros_tools import remote_graph
 
 from .terminal import Terminal
 
@@ -19,7 +19,7 @@ pytest.importorskip("websockets")
 
 def nodes():
     """The nodes of the session of this machine, as another terminal sees them."""
-    graph = there.current()
+    graph = remote_graph.current()
     try:
         return graph.nodes()
     finally:
@@ -60,7 +60,7 @@ def test_the_arrow_keys_drive_the_turtle_and_leave_the_terminal_as_it_was(privat
         repl.expect("CL-USER> ")
         repl.type('(roslisp:start-ros-node "a")')
         repl.expect("startup complete")
-        graph = there.current()
+        graph = remote_graph.current()
         for end in ("q", "ctrl-c", "sigterm"):
             with Terminal("teleop") as keys:
                 before = termios.tcgetattr(keys.master)
@@ -92,13 +92,15 @@ def test_a_session_in_virtual_time_answers_at_the_prompt(private, tool):
         repl.type('(roslisp:start-ros-node "a")')
         repl.expect("startup complete")
         repl.expect("CL-USER> ")
-        graph = there.current()
+        graph = remote_graph.current()
         try:
             assert graph.call("/spawn", "turtlesim/Spawn", {"x": 2, "y": 2, "theta": 0, "name": "mimi"}) == {"name": "mimi"}
             assert graph.parameter("/turtlesim/background_r") == 69
             assert "/mimi/pose" in graph.topics()
             core = tool("roscore")[0]
-            assert core == f"""\
+            assert (
+                core
+                == f"""\
 No master is needed: the ROS graph lives in the process of roslisp_repl.
 It runs already, as process {repl.pid}, and serves at {graph.address}.
 
@@ -120,6 +122,7 @@ NODES
     turtlesim
 
 """
+            )
         finally:
             graph.close()
         repl.type("(+ 1 2)")
@@ -130,32 +133,43 @@ NODES
 def test_two_simulators_from_a_launch_file(private):
     with Terminal("ros", "roslaunch", "turtlesim", "multisim.launch") as terminal:
         terminal.expect(
-            r"NODES\n  /turtlesim1/\n    sim \(turtlesim/turtlesim_node\)\n  /turtlesim2/\n    sim \(turtlesim/turtlesim_node\)\n")
+            r"NODES\n  /turtlesim1/\n    sim \(turtlesim/turtlesim_node\)\n  /turtlesim2/\n    sim \(turtlesim/turtlesim_node\)\n"
+        )
         terminal.expect(r"process\[turtlesim1/sim-1\]: started with pid \[\d+\]\n")
         terminal.expect(r"process\[turtlesim2/sim-2\]: started with pid \[\d+\]\n")
         terminal.expect("node name /turtlesim2/sim")
         assert nodes() == ["/rosout", "/turtlesim1/sim", "/turtlesim2/sim"]
         terminal.control_c()
-        terminal.expect(r"\[turtlesim2/sim-2\] killing on exit\n\[turtlesim1/sim-1\] killing on exit\nshutting down processing monitor...\n"
-                        r"... shutting down processing monitor complete\ndone\n")
+        terminal.expect(
+            r"\[turtlesim2/sim-2\] killing on exit\n\[turtlesim1/sim-1\] killing on exit\nshutting down processing monitor...\n"
+            r"... shutting down processing monitor complete\ndone\n"
+        )
         assert terminal.status() == 0
 
 
-@pytest.mark.parametrize(("words", "output", "complaint", "status"), [
-    ("rosrun", "Usage: rosrun PACKAGE EXECUTABLE [ARGS]\n"
-     "  rosrun starts EXECUTABLE of PACKAGE with ARGS, such as __name:=x, __ns:=/y, a:=b and _parameter:=value.\n", "", 0),
-    ("rosrun turtlsim turtlesim_node", "", "[rospack] Error: package 'turtlsim' not found\nDid you mean turtlesim?\n", 2),
-    ("rosrun nope nope", "", "[rospack] Error: package 'nope' not found\n", 2),
-    ("rospack find nope", "", "[rospack] Error: package 'nope' not found\n", 1),
-    ("rosversion -d", "noetic\n", "", 0),
-    ("rosversion turtlesim", "0.10.2\n", "", 0),
-    ("rosversion nope", "", "Cannot locate [nope]\n", 1),
-    ("roscd nope", "", "roscd: No such package/stack 'nope'\n", 1),
-    ("roscd a b", "", "usage: roscd package\n", 1),
-    ("rosls turtlesim/launch", "multisim.launch\n", "", 0),
-    ("roslaunch nope.launch", "", "RLException: [nope.launch] is not a launch file name\n", 1),
-    ("turtlesim", "", None, 2),
-])
+@pytest.mark.parametrize(
+    ("words", "output", "complaint", "status"),
+    [
+        (
+            "rosrun",
+            "Usage: rosrun PACKAGE EXECUTABLE [ARGS]\n"
+            "  rosrun starts EXECUTABLE of PACKAGE with ARGS, such as __name:=x, __ns:=/y, a:=b and _parameter:=value.\n",
+            "",
+            0,
+        ),
+        ("rosrun turtlsim turtlesim_node", "", "[rospack] Error: package 'turtlsim' not found\nDid you mean turtlesim?\n", 2),
+        ("rosrun nope nope", "", "[rospack] Error: package 'nope' not found\n", 2),
+        ("rospack find nope", "", "[rospack] Error: package 'nope' not found\n", 1),
+        ("rosversion -d", "noetic\n", "", 0),
+        ("rosversion turtlesim", "0.10.2\n", "", 0),
+        ("rosversion nope", "", "Cannot locate [nope]\n", 1),
+        ("roscd nope", "", "roscd: No such package/stack 'nope'\n", 1),
+        ("roscd a b", "", "usage: roscd package\n", 1),
+        ("rosls turtlesim/launch", "multisim.launch\n", "", 0),
+        ("roslaunch nope.launch", "", "RLException: [nope.launch] is not a launch file name\n", 1),
+        ("turtlesim", "", None, 2),
+    ],
+)
 def test_commands_that_need_no_session(capsys, words, output, complaint, status):
     name, *arguments = words.split()
     assert shims.tool(name, arguments) == status

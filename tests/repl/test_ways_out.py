@@ -25,9 +25,16 @@ ENDING = SIGNALS[1:]
 CLOCKS = ["virtual", "wall"]
 BACKENDS = ["threads", "greenlet"]
 
-SESSIONS = [(clock, backend, number) for clock in CLOCKS for backend in BACKENDS for number in ENDING] if FULL else [
-    ("virtual", "threads", signal.SIGTERM), ("virtual", "greenlet", signal.SIGHUP), ("wall", "threads", signal.SIGQUIT),
-    ("wall", "greenlet", signal.SIGTERM)]
+SESSIONS = (
+    [(clock, backend, number) for clock in CLOCKS for backend in BACKENDS for number in ENDING]
+    if FULL
+    else [
+        ("virtual", "threads", signal.SIGTERM),
+        ("virtual", "greenlet", signal.SIGHUP),
+        ("wall", "threads", signal.SIGQUIT),
+        ("wall", "greenlet", signal.SIGTERM),
+    ]
+)
 """Each clock with each back end; with every signal in the soak."""
 
 
@@ -50,8 +57,11 @@ PLAN = """
               (wait-for (make-fluent)))
       (note "cleaned"))))
 """
-WAITS = {"that sleeps": "(lambda () (sleep 1000000))", "that computes": "(lambda () (loop))",
-         "that steps": "(lambda () (loop (sleep 0.01)))"}
+WAITS = {
+    "that sleeps": "(lambda () (sleep 1000000))",
+    "that computes": "(lambda () (loop))",
+    "that steps": "(lambda () (loop (sleep 0.01)))",
+}
 
 
 @pytest.fixture
@@ -66,9 +76,15 @@ class Process:
     def __init__(self, folder, *arguments, **options):
         self.log = folder / "log"
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "cramhy_runtime.cli", *arguments, "--package", "cram-user"], cwd=folder,
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]}, **options)
+            [sys.executable, "-m", "cramhy_runtime.cli", *arguments, "--package", "cram-user"],
+            cwd=folder,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**environment(), "XDG_RUNTIME_DIR": os.environ["XDG_RUNTIME_DIR"]},
+            **options,
+        )
 
     def __enter__(self):
         return self
@@ -134,13 +150,33 @@ def check(process, folder, status, *, recorded=True):
 
 
 @pytest.mark.parametrize("number", SIGNALS, ids=lambda number: number.name)
-@pytest.mark.parametrize(("clock", "backend", "waits"), [
-    ("virtual", "threads", "that computes"), ("virtual", "greenlet", "that computes"), ("wall", "threads", "that sleeps"),
-    ("wall", "greenlet", "that steps"), ("wall", "threads", "that computes"), ("wall", "greenlet", "that sleeps")])
+@pytest.mark.parametrize(
+    ("clock", "backend", "waits"),
+    [
+        ("virtual", "threads", "that computes"),
+        ("virtual", "greenlet", "that computes"),
+        ("wall", "threads", "that sleeps"),
+        ("wall", "greenlet", "that steps"),
+        ("wall", "threads", "that computes"),
+        ("wall", "greenlet", "that sleeps"),
+    ],
+)
 def test_a_signal_ends_a_program_through_its_cleanup(folder, number, clock, backend, waits):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
-    with Process(folder, "run", "plan.lisp", "--time", clock, "--backend", backend, "--serve", "--record", "run.mcap",
-                 "--eval", f"(drive {WAITS[waits]})") as process:
+    with Process(
+        folder,
+        "run",
+        "plan.lisp",
+        "--time",
+        clock,
+        "--backend",
+        backend,
+        "--serve",
+        "--record",
+        "run.mcap",
+        "--eval",
+        f"(drive {WAITS[waits]})",
+    ) as process:
         process.until_noted("driving")
         assert sessions() != []
         process.send(number)
@@ -165,7 +201,7 @@ def test_a_signal_ends_a_session_that_runs_a_plan(folder, number, command, backe
 def test_a_signal_ends_a_session_that_waits_for_a_line(folder, number, command, backend, clock, options):
     pytest.importorskip(backend if backend == "greenlet" else "websockets")
     with Process(folder, command, "--time", clock, "--backend", backend, "--load", "plan.lisp", *options) as process:
-        process.type("(note \"ready\")" if command == "repl" else json.dumps({"form": "(note \"ready\")"}))
+        process.type('(note "ready")' if command == "repl" else json.dumps({"form": '(note "ready")'}))
         process.until_noted("ready")
         process.send(number)
         status, output, complaints = process.end()
@@ -173,7 +209,9 @@ def test_a_signal_ends_a_session_that_waits_for_a_line(folder, number, command, 
 
 
 LEAVING = {
-    "the end of input": ((), 0), "exit": (("(sb-ext:exit :code 3)",), 3), "quit": (("(sb-ext:quit)",), 0),
+    "the end of input": ((), 0),
+    "exit": (("(sb-ext:exit :code 3)",), 3),
+    "quit": (("(sb-ext:quit)",), 0),
     "sys.exit": (("(py:import sys)", "(sys:exit 4)"), 4),
 }
 
@@ -184,17 +222,20 @@ LEAVING = {
 def test_a_session_is_left_and_what_runs_beside_the_prompt_is_cleaned_up(folder, way, clock, backend):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
     lines, status = LEAVING[way]
-    beside = ("(cut:spawn-thread \"beside\" (lambda () (unwind-protect (progn (send 1.0) (note \"driving\")"
-              " (sleep 1000000)) (sleep 0.05) (send 0.0) (note \"stopped\") (note \"cleaned\"))))")
-    with Process(folder, "repl", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--serve",
-                 "--record", "run.mcap") as process:
+    beside = (
+        '(cut:spawn-thread "beside" (lambda () (unwind-protect (progn (send 1.0) (note "driving")'
+        ' (sleep 1000000)) (sleep 0.05) (send 0.0) (note "stopped") (note "cleaned"))))'
+    )
+    with Process(
+        folder, "repl", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--serve", "--record", "run.mcap"
+    ) as process:
         process.type(beside)
         process.until_noted("driving")
         process.type(*lines)
         check(process, folder, status)
 
 
-IN_A_PLAN = {"exit": ("(sb-ext:exit :code 3)", 3), "sys.exit": ("(py-exit)", 4), "an error": ("(error \"lost\")", 1)}
+IN_A_PLAN = {"exit": ("(sb-ext:exit :code 3)", 3), "sys.exit": ("(py-exit)", 4), "an error": ('(error "lost")', 1)}
 
 
 @pytest.mark.parametrize("way", IN_A_PLAN)
@@ -212,8 +253,9 @@ def test_a_plan_itself_ends_the_program(folder, way, clock, backend):
             (seq (sleep 0.1) {form}))
     (note "cleaned")))
 """)
-    with Process(folder, "run", "leave.lisp", "--time", clock, "--backend", backend, "--load", "plan.lisp",
-                 "--record", "run.mcap") as process:
+    with Process(
+        folder, "run", "leave.lisp", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--record", "run.mcap"
+    ) as process:
         process.process.wait(PATIENCE)
         check(process, folder, status)
 
@@ -250,9 +292,13 @@ kernel.spawn(drive)
 kernel.sleep(0.1)
 {end}
 """
-ENDS = {"it just ends": ("", 0), "sys.exit": ("sys.exit(5)", 5), "an error": ("1 / 0", 1),
-        "an endless main program": ("kernel.park()", None),
-        "a main program that knows no kernel": ("import time\ntime.sleep(100)", None)}
+ENDS = {
+    "it just ends": ("", 0),
+    "sys.exit": ("sys.exit(5)", 5),
+    "an error": ("1 / 0", 1),
+    "an endless main program": ("kernel.park()", None),
+    "a main program that knows no kernel": ("import time\ntime.sleep(100)", None),
+}
 
 
 @pytest.mark.parametrize("number", SIGNALS, ids=lambda number: number.name)
@@ -305,10 +351,23 @@ def script(folder, end, clock, backend, number=None):
 def test_a_closed_terminal_ends_the_session(folder, where, clock, backend, editor, monkeypatch):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
     monkeypatch.chdir(folder)
-    with Terminal("repl", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--package", "cram-user", "--record", "run.mcap",
-                  editor=editor, variables={"TERM": "xterm" if editor else "dumb"}) as terminal:
+    with Terminal(
+        "repl",
+        "--time",
+        clock,
+        "--backend",
+        backend,
+        "--load",
+        "plan.lisp",
+        "--package",
+        "cram-user",
+        "--record",
+        "run.mcap",
+        editor=editor,
+        variables={"TERM": "xterm" if editor else "dumb"},
+    ) as terminal:
         terminal.expect("CPL-USER> ")
-        waits = "(lambda () (error \"stuck\"))" if where == "in the debugger" else WAITS["that steps"]
+        waits = '(lambda () (error "stuck"))' if where == "in the debugger" else WAITS["that steps"]
         if where != "at the prompt":
             terminal.type(f"(drive {waits})")
             wait_for(lambda: "driving" in noted(folder / "log"))
@@ -334,8 +393,18 @@ def wait_for(condition, pause=0.01):
 def test_the_terminal_is_as_it_was(folder, way, editor, clock, backend):
     if backend == "greenlet":
         pytest.importorskip("greenlet")
-    with Terminal("repl", "--time", clock, "--backend", backend, "--package", "cram-user", editor=editor, wrapped=True,
-                  variables={"TERM": "xterm" if editor else "dumb"}) as terminal:
+    with Terminal(
+        "repl",
+        "--time",
+        clock,
+        "--backend",
+        backend,
+        "--package",
+        "cram-user",
+        editor=editor,
+        wrapped=True,
+        variables={"TERM": "xterm" if editor else "dumb"},
+    ) as terminal:
         before = termios.tcgetattr(terminal.slave)
         terminal.begin()
         terminal.expect("CPL-USER> ")
@@ -368,9 +437,23 @@ STUCK = """
 def test_a_second_signal_gives_cleanup_up_and_says_whose(folder, clock, backend):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
     (folder / "stuck.lisp").write_text(STUCK)
-    with Process(folder, "run", "stuck.lisp", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--cleanup-limit", "1000000",
-                 "--eval", '(cut:spawn-thread "ticks" (lambda () (loop (sleep 1))))' if clock == "virtual" else "nil",
-                 "--eval", "(stuck (lambda () (loop)))") as process:
+    with Process(
+        folder,
+        "run",
+        "stuck.lisp",
+        "--time",
+        clock,
+        "--backend",
+        backend,
+        "--load",
+        "plan.lisp",
+        "--cleanup-limit",
+        "1000000",
+        "--eval",
+        '(cut:spawn-thread "ticks" (lambda () (loop (sleep 1))))' if clock == "virtual" else "nil",
+        "--eval",
+        "(stuck (lambda () (loop)))",
+    ) as process:
         process.until_noted("driving")
         process.send(signal.SIGTERM)
         process.until_noted("cleaning")
@@ -385,8 +468,24 @@ def test_a_second_signal_gives_cleanup_up_and_says_whose(folder, clock, backend)
 def test_cleanup_has_a_limit(folder, how, clock, backend):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
     (folder / "stuck.lisp").write_text("(py:import time)\n" + STUCK + "(defun py-sleep (seconds) (time:sleep seconds))")
-    with Process(folder, "run", "stuck.lisp", "--time", clock, "--backend", backend, "--load", "plan.lisp", "--cleanup-limit", "0.5",
-                 "--record", "run.mcap", "--serve", "--eval", f"(stuck (lambda () {how}))") as process:
+    with Process(
+        folder,
+        "run",
+        "stuck.lisp",
+        "--time",
+        clock,
+        "--backend",
+        backend,
+        "--load",
+        "plan.lisp",
+        "--cleanup-limit",
+        "0.5",
+        "--record",
+        "run.mcap",
+        "--serve",
+        "--eval",
+        f"(stuck (lambda () {how}))",
+    ) as process:
         process.until_noted("driving")
         process.send(signal.SIGTERM)
         status, output, complaints = process.end()
@@ -397,10 +496,12 @@ def test_cleanup_has_a_limit(folder, how, clock, backend):
 
 def test_a_process_that_does_not_listen_is_ended_by_force(folder):
     (folder / "deaf.py").write_text("def compute():\n    while True:\n        pass\n")
-    (folder / "deaf.lisp").write_text('(py:import deaf)\n(in-package :cram-user)\n(note "driving")\n'
-                                      '(top-level (par (deaf::compute) (sleep 10)))')
-    with Process(folder, "run", "deaf.lisp", "--time", "wall", "--load", "plan.lisp", "--cleanup-limit", "0.5", "--serve",
-                 "--record", "run.mcap") as process:
+    (folder / "deaf.lisp").write_text(
+        '(py:import deaf)\n(in-package :cram-user)\n(note "driving")\n(top-level (par (deaf::compute) (sleep 10)))'
+    )
+    with Process(
+        folder, "run", "deaf.lisp", "--time", "wall", "--load", "plan.lisp", "--cleanup-limit", "0.5", "--serve", "--record", "run.mcap"
+    ) as process:
         process.until_noted("driving")
         process.send(signal.SIGTERM)
         status, output, complaints = process.end()
@@ -422,8 +523,7 @@ def test_output_that_nobody_reads_any_more_does_not_cost_the_cleanup(folder, clo
             (wait-for (make-fluent)))
     (print :cleaned)
     (note "cleaned")))"""
-    with Process(folder, "run", "plan.lisp", "--time", clock, "--backend", backend, "--record", "run.mcap",
-                 "--eval", form) as process:
+    with Process(folder, "run", "plan.lisp", "--time", clock, "--backend", backend, "--record", "run.mcap", "--eval", form) as process:
         process.until_noted("driving")
         process.process.stdout.close()
         process.process.wait(PATIENCE)
@@ -443,6 +543,7 @@ def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, ba
     """Two at a time, while it waits and while it answers: each request gets one answer."""
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
     with Process(folder, "eval", "--time", clock, "--backend", backend, *options) as process:
+
         def answer(form):
             process.type(json.dumps({"form": form}))
             return json.loads(process.process.stdout.readline())
@@ -465,12 +566,13 @@ def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, ba
 
 @pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])
 def test_the_key_that_ends_the_input_ends_one_read(folder, editor):
-    with Terminal("repl", "--time", "virtual", "--package", "cram-user", editor=editor,
-                  variables={"TERM": "xterm" if editor else "dumb"}) as terminal:
+    with Terminal(
+        "repl", "--time", "virtual", "--package", "cram-user", editor=editor, variables={"TERM": "xterm" if editor else "dumb"}
+    ) as terminal:
         terminal.expect("CPL-USER> ")
         for _ in range(2):
             terminal.type("(list :read (read-line *standard-input* nil :eof))")
-            wait_for(lambda: terminal._more(0.1) or "eof))\n" in terminal.text[terminal.seen:])
+            wait_for(lambda: terminal._more(0.1) or "eof))\n" in terminal.text[terminal.seen :])
             time.sleep(0.3)  # the editor gives the terminal back
             os.write(terminal.master, b"\x04")
             terminal.expect(r"\(:READ :EOF\)\nCPL-USER> ")

@@ -6,8 +6,9 @@ import re
 import pytest
 from lisp_text import LispLine
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ground.packages import sym
 
 OUTPUT = sym("*STANDARD-OUTPUT*")
 ERRORS = sym("*ERROR-OUTPUT*")
@@ -17,8 +18,8 @@ ERRORS = sym("*ERROR-OUTPUT*")
 def session():
     """A fresh kernel; the output of the test in a stream with the attribute ``text``."""
     kernel.start(clock="virtual")
-    image.boot()
-    from cramhy_runtime.lisp.streams.streams import StringOutputStream
+    boot()
+    from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
     from cramhy_runtime.ros.roslisp import master, node, utilities
 
     saved = OUTPUT.value, ERRORS.value
@@ -64,7 +65,7 @@ def simulator(running):
 @pytest.fixture
 def fails():
     """Calls a function and returns the condition it signals."""
-    from cramhy_runtime.lisp.condition_types import Condition
+    from cramhy_runtime.ground.condition_types import Condition
 
     def check(function, *arguments, **keywords):
         with pytest.raises(Condition) as caught:
@@ -92,8 +93,10 @@ class Lisp(LispLine):
         from cramhy_runtime.repl.session import Session
 
         self.output = output
-        super().__init__(Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600),
-                         self.prelude.format(f"ROS-TEXT-{next(self.numbers)}"))
+        super().__init__(
+            Session(time="virtual", turtlesim=False, backend=backend, time_limit=3600),
+            self.prelude.format(f"ROS-TEXT-{next(self.numbers)}"),
+        )
 
     def __call__(self, text):
         return super().__call__(text).replace(self.session.package.name + "::", "")
@@ -109,8 +112,8 @@ class Lisp(LispLine):
 
 @pytest.fixture(params=["threads", "greenlet"])
 def lisp(request, session):
-    from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-    from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 
     yield Lisp(request.param, session)
     PACKAGE.value = COMMON_LISP_USER

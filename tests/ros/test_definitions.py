@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.lisp.packages import find_package, registered
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.lisp.systems import systems
+from cramhy_runtime.ground.packages import find_package, registered
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.ros import definition_files, definition_text, messages, type_texts
 from cramhy_runtime.ros.definition_text import DefinitionError, parse_action, parse_message, parse_service
 
@@ -148,11 +148,13 @@ class TestOurs:
     def test_they_tell_about_themselves_in_lisp(self, lisp):
         assert lisp("(roslisp-msg-protocol:md5sum 'turtlesim-msg:pose)") == '"863b248d5016ca62ea2e895ae5265cf9"'
         assert lisp("(roslisp-msg-protocol:md5sum 'turtlesim-srv:setpen)") == '"9f452acce566bf0c0954594f69a8e41b"'
-        assert lisp("(roslisp-msg-protocol:md5sum (make-msg \"turtlesim/Color\"))".replace("make-msg", "roslisp:make-msg")) == (
-            '"353891e354491c51aabe32df673fb446"')
+        assert lisp('(roslisp-msg-protocol:md5sum (make-msg "turtlesim/Color"))'.replace("make-msg", "roslisp:make-msg")) == (
+            '"353891e354491c51aabe32df673fb446"'
+        )
         assert lisp("(roslisp-msg-protocol:ros-datatype 'turtlesim-srv:spawn)") == '"turtlesim/Spawn"'
         assert lisp("(roslisp-msg-protocol:message-definition 'turtlesim-srv:spawn)") == (
-            '"float32 x float32 y float32 theta string name --- string name "')
+            '"float32 x float32 y float32 theta string name --- string name "'
+        )
 
     def test_nothing_is_read_before_somebody_names_it(self):
         name = "TRAJECTORY_MSGS-MSG"
@@ -185,7 +187,7 @@ class TestOnesOwn:
         "form",
         [
             '(asdf:load-system "own_msgs-msg")',
-            "(ros-load:load-system \"own_msgs\" :own_msgs-msg)",
+            '(ros-load:load-system "own_msgs" :own_msgs-msg)',
             "(roslisp:load-message-types own_msgs)",
             '(roslisp:load-message-types "own_msgs")',
             '(roslisp:load-message-types "own_msgs/Thing")',
@@ -201,8 +203,9 @@ class TestOnesOwn:
     def test_a_system_may_depend_on_them(self, workspace, lisp):
         workspace("own_msgs/msg/Thing.msg", "string name\n")
         workspace("own_msgs/srv/Fetch.srv", "---\n")
-        workspace("own_user/own-user.asd",
-                  '(asdf:defsystem own-user :depends-on (roslisp own_msgs-msg own_msgs-srv) :components ((:file "f")))')
+        workspace(
+            "own_user/own-user.asd", '(asdf:defsystem own-user :depends-on (roslisp own_msgs-msg own_msgs-srv) :components ((:file "f")))'
+        )
         workspace("own_user/f.lisp", "(defpackage own-user (:use :cl :roslisp :own_msgs-msg))\n(in-package :own-user)\n"
                                      '(defun my-name () (name (make-msg "own_msgs/Thing" :name "cup")))')  # fmt: skip
         lisp('(asdf:load-system "own-user")')
@@ -250,10 +253,13 @@ class TestOnesOwn:
 
     def test_the_restart_reads_a_corrected_file(self, workspace, lisp):
         path = workspace("own_msgs/msg/Thing.msg", "what?\n")
-        assert lisp(f"""(in-package :cl-user) (handler-bind ((error (lambda (c)
+        assert (
+            lisp(f"""(in-package :cl-user) (handler-bind ((error (lambda (c)
                           (with-open-file (out "{path}" :direction :output :if-exists :supersede) (format out "string name"))
                           (invoke-restart (find 'retry (compute-restarts c) :key #'restart-name :test #'string=)))))
-                          (roslisp:msg-slot-value (roslisp:make-msg "own_msgs/Thing" :name "cup") "name"))""") == '"cup"'
+                          (roslisp:msg-slot-value (roslisp:make-msg "own_msgs/Thing" :name "cup") "name"))""")
+            == '"cup"'
+        )
 
     def test_a_file_with_an_odd_name(self, workspace, fails):
         path = workspace("own_msgs/msg/my-thing.msg", "int32 a")

@@ -19,7 +19,7 @@ def here():
 def unhandled(monkeypatch):
     """The exceptions that were reported because nobody else heard of them."""
     reported = []
-    monkeypatch.setattr(kernel, "unhandled", lambda task, problem: reported.append(str(problem)))
+    monkeypatch.setattr(kernel.reports.installed.reporter, "unhandled", lambda task, problem: reported.append(str(problem)))
     return reported
 
 
@@ -64,7 +64,7 @@ class TestHiddenNodes:
         assert (publication.connections, publication.hidden) == ([], 0)
 
     def test_the_programs_publications_print_without_it(self, running):
-        from cramhy_runtime.lisp.printer.printer import prin1_to_string
+        from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
         from cramhy_runtime.ros.roslisp import topics
 
         publication = topics.advertise("chatter", "std_msgs/String")
@@ -90,8 +90,16 @@ class TestChanges:
         talker.serve("/add", ADD, add)
         talker.shutdown()
         listener.shutdown()
-        assert changes == ["+ node /talker", "+ node /listener", "+ topic /chatter", "+ service /add",
-                           "- service /add", "- node /talker", "- topic /chatter", "- node /listener"]
+        assert changes == [
+            "+ node /talker",
+            "+ node /listener",
+            "+ topic /chatter",
+            "+ service /add",
+            "- service /add",
+            "- node /talker",
+            "- topic /chatter",
+            "- node /listener",
+        ]
 
     def test_of_hidden_ones_only_what_others_have_too(self, here, changes):
         watcher, talker = here.node("cramhy_view", hidden=True), here.node("talker")
@@ -135,8 +143,14 @@ class TestPythonNodes:
         heard, publication = [], here.node("talker").advertise("/chatter", TEXT)
         listeners = [here.node(f"listener{number}") for number in range(3)]
         for listener in listeners:
-            listener.subscribe("/chatter", TEXT, lambda message, node=listener: (heard.append(node.name), [
-                other.unsubscribe("/chatter") for other in listeners if other is not node]))
+            listener.subscribe(
+                "/chatter",
+                TEXT,
+                lambda message, node=listener: (
+                    heard.append(node.name),
+                    [other.unsubscribe("/chatter") for other in listeners if other is not node],
+                ),
+            )
         publication.publish(TEXT(data="a"))
         assert len(heard) == 1
 

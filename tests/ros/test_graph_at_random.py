@@ -13,9 +13,13 @@ TEXT = message_class_exact("std_msgs/String")
 NODES, HIDDEN, TOPICS = ("a", "b", "c"), ("watcher",), ("/x", "/y")
 who, where = st.sampled_from(NODES + HIDDEN), st.sampled_from(TOPICS)
 actions = st.one_of(
-    st.tuples(st.just("advertise"), who, where, st.booleans()), st.tuples(st.just("unadvertise"), who, where),
-    st.tuples(st.just("subscribe"), who, where), st.tuples(st.just("unsubscribe"), who, where),
-    st.tuples(st.just("publish"), who, where), st.tuples(st.just("end"), who))
+    st.tuples(st.just("advertise"), who, where, st.booleans()),
+    st.tuples(st.just("unadvertise"), who, where),
+    st.tuples(st.just("subscribe"), who, where),
+    st.tuples(st.just("unsubscribe"), who, where),
+    st.tuples(st.just("publish"), who, where),
+    st.tuples(st.just("end"), who),
+)
 
 
 class World:

@@ -5,10 +5,10 @@ import re
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.condition_types import Error, SimpleError
-from cramhy_runtime.lisp.data import lisp_list
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Error, SimpleError
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ros import graph, messages
 from cramhy_runtime.ros.names import Naming, qualify, read_private_value
 from cramhy_runtime.ros.roslisp import logging, node, parameters, services, topics, utilities
@@ -208,12 +208,7 @@ class TestUtilities:
 
     @pytest.mark.parametrize(
         "ros, lisp",
-        [
-            ("HelloWorld", "HELLO-WORLD"),
-            ("FooBAR2Baz", "FOO-BAR2-BAZ"),
-            ("turtle1Pose", "TURTLE1-POSE"),
-            ("foo_bar", "FOO_BAR"),
-        ],
+        [("HelloWorld", "HELLO-WORLD"), ("FooBAR2Baz", "FOO-BAR2-BAZ"), ("turtle1Pose", "TURTLE1-POSE"), ("foo_bar", "FOO_BAR")],
     )
     def test_camel_case_to_lisp(self, ros, lisp):
         assert utilities.lispify_ros_name(ros).name == lisp

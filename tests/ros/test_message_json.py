@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
-from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ros import definition_files, messages, wire
 from cramhy_runtime.ros.definition_text import INTEGERS
 from cramhy_runtime.ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json, type_named

@@ -2,10 +2,10 @@
 
 import pytest
 
-from cramhy_runtime.lisp.condition_types import Error
-from cramhy_runtime.lisp.data import DoubleFloat, python_list
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground.condition_types import Error
+from cramhy_runtime.ground.data import DoubleFloat, python_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ros import messages, wire
 from cramhy_runtime.ros.message_building import (
     code_symbol,
@@ -65,13 +65,13 @@ POSE_STAMPED = """[GEOMETRY_MSGS-MSG:POSESTAMPED
 
 
 def prin1(obj):
-    from cramhy_runtime.lisp.printer.printer import prin1_to_string
+    from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
     return prin1_to_string(obj)
 
 
 def princ(obj):
-    from cramhy_runtime.lisp.printer.printer import princ_to_string
+    from cramhy_runtime.languages.commonlisp.printer.printer import princ_to_string
 
     return princ_to_string(obj)
 
@@ -113,11 +113,7 @@ class TestMaking:
         assert make_message("turtlesim/Pose", [(("X",), "abc")]).x == "abc"
 
     @pytest.mark.parametrize(
-        "type_name, text",
-        [
-            ("nope/Nope", "Can't find package NOPE-MSG"),
-            ("turtlesim/Nope", "Can't find class for turtlesim/Nope"),
-        ],
+        "type_name, text", [("nope/Nope", "Can't find package NOPE-MSG"), ("turtlesim/Nope", "Can't find class for turtlesim/Nope")]
     )
     def test_unknown_types(self, fails, type_name, text):
         assert fails(make_message, type_name).report() == text
@@ -197,10 +193,7 @@ class TestPrinting:
         numbers = [DoubleFloat(1.123456789012345), DoubleFloat(-1.123456789012345), 0.0]
         vector = messages.message_class("geometry_msgs/Vector3")(*numbers)
         text = prin1(make_message("geometry_msgs/Twist", [(("LINEAR",), vector)])).splitlines()
-        assert text[2:4] == [
-            "     (GEOMETRY_MSGS-MSG:VECTOR3 (:X . 1.123456789012345d0)",
-            "      (:Y . -1.123456789012345d0) (:Z . 0.0))",
-        ]
+        assert text[2:4] == ["     (GEOMETRY_MSGS-MSG:VECTOR3 (:X . 1.123456789012345d0)", "      (:Y . -1.123456789012345d0) (:Z . 0.0))"]
 
 
 class TestListForm:

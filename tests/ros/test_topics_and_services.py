@@ -2,12 +2,12 @@
 
 import pytest
 
-import cramhy_runtime.ros.package  # noqa: F401
+import cramhy_runtime.languages.commonlisp.faces.ros.package  # noqa: F401
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.condition_types import Error, SimpleError
-from cramhy_runtime.lisp.data import NO_VALUES, DoubleFloat, MultipleValues, lisp_list, python_list
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Error, SimpleError
+from cramhy_runtime.ground.data import NO_VALUES, DoubleFloat, MultipleValues, lisp_list, python_list
+from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ros import graph, message_building, messages
 from cramhy_runtime.ros.roslisp import clock, node, parameters, services, time, topics
 from cramhy_runtime.ros.roslisp.errors import RosRpcError, ServiceError
@@ -180,7 +180,7 @@ class TestSubscribing:
 
 class TestServices:
     def test_the_simulators_services(self, simulator):
-        from cramhy_runtime.lisp.printer.printer import prin1_to_string
+        from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
         response = services.call_service("/turtle1/set_pen", SET_PEN, sym(":R"), 300, sym(":WIDTH"), 4)
         assert prin1_to_string(response) == "[TURTLESIM-SRV:SETPEN-RESPONSE]"
@@ -266,8 +266,7 @@ class TestServices:
         assert services.wait_for_service("/absent", 0.5) is None
         assert kernel.now() - before == pytest.approx(0.5)
         kernel.call_at(
-            kernel.now() + 1,
-            lambda: graph.active().node("server").serve("late", messages.service_type(EMPTY), lambda request: None),
+            kernel.now() + 1, lambda: graph.active().node("server").serve("late", messages.service_type(EMPTY), lambda request: None)
         )
         assert services.wait_for_service("late") is True
         assert services.wait_for_service("late", 0) is True

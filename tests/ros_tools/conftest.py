@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.ros_tools import here, running
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
+from cramhy_runtime.ros_tools import local_graph, running
 
 
 class Shell:
@@ -19,9 +20,13 @@ class Shell:
     def __call__(self, words, patience=None):
         out, errors = [], []
         try:
-            self.status = self.carry_out(lambda: running.run(words.split() if isinstance(words, str) else words,
-                                                             running.Terminal(out.append, errors.append, lambda: self.reach(patience))))
-        except here.OutOfTime:
+            self.status = self.carry_out(
+                lambda: running.run(
+                    words.split() if isinstance(words, str) else words,
+                    running.Terminal(out.append, errors.append, lambda: self.reach(patience)),
+                )
+            )
+        except local_graph.OutOfTime:
             self.status = None
         self.out, self.errors = "".join(out), "".join(errors)
         return self.out
@@ -36,7 +41,7 @@ class Shell:
 def simulator():
     """turtlesim in a kernel in virtual time."""
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     from cramhy_runtime.turtlesim.node import start_turtlesim
 
     yield start_turtlesim()
@@ -46,7 +51,7 @@ def simulator():
 @pytest.fixture
 def shell(simulator):
     """Runs commands at the prompt of the process."""
-    return Shell(here.HereGraph)
+    return Shell(local_graph.HereGraph)
 
 
 @pytest.fixture
@@ -58,15 +63,15 @@ def far_shell(tmp_path, monkeypatch):
     folder.mkdir(mode=0o700)
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(folder))
     kernel.start(clock="wall")
-    image.boot()
+    boot()
     from cramhy_runtime import rosbridge
-    from cramhy_runtime.ros_tools import there
+    from cramhy_runtime.ros_tools import remote_graph
     from cramhy_runtime.ros_tools.hosting import Host
     from cramhy_runtime.turtlesim.node import start_turtlesim
 
     server = rosbridge.start()
     host = Host()
-    made = Shell(lambda patience: there.current(), kernel.run_blocking)
+    made = Shell(lambda patience: remote_graph.current(), kernel.run_blocking)
     made.server, made.host, made.simulator = server, host, start_turtlesim()
     yield made
     kernel.stop()

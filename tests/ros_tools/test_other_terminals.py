@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 import socket
+import struct
+import threading
+from contextlib import suppress
 from dataclasses import replace
 
 import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.extras import install_command
-from cramhy_runtime.ros_tools import running, there
-from cramhy_runtime.ros_tools.reach import NoSession, Refused, SessionEnded
+from cramhy_runtime.ros_tools import running, remote_graph
+from cramhy_runtime.ros_tools.graph_access import NoSession, Refused, SessionEnded
 
 
 class Enough(KeyboardInterrupt):
@@ -27,7 +30,7 @@ def stream(far_shell, words, lines):
         if len(out) >= lines:
             raise Enough
 
-    status = far_shell.carry_out(lambda: running.run(words.split(), running.Terminal(write, out.append, there.current)))
+    status = far_shell.carry_out(lambda: running.run(words.split(), running.Terminal(write, out.append, remote_graph.current)))
     return "".join(out), status
 
 
@@ -40,13 +43,16 @@ def test_the_rate_of_a_topic_until_ctrl_c(far_shell):
     text, status = stream(far_shell, "rostopic hz /turtle1/pose", 2)
     assert status == 0 and re.fullmatch(
         r"subscribed to \[/turtle1/pose\]\n"
-        r"average rate: \d+\.\d{3}\n\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+\n", text)
+        r"average rate: \d+\.\d{3}\n\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+\n",
+        text,
+    )
 
 
 def test_the_bytes_of_a_topic_until_ctrl_c(far_shell):
     text, status = stream(far_shell, "rostopic bw /turtle1/pose", 2)
     assert status == 0 and re.fullmatch(
-        r"subscribed to \[/turtle1/pose\]\naverage: 1\.\d\dKB/s\n\tmean: 0\.02KB min: 0\.02KB max: 0\.02KB window: \d+\n", text)
+        r"subscribed to \[/turtle1/pose\]\naverage: 1\.\d\dKB/s\n\tmean: 0\.02KB min: 0\.02KB max: 0\.02KB window: \d+\n", text
+    )
 
 
 def test_a_topic_that_nobody_publishes_on_yet_is_waited_for(far_shell):
@@ -69,9 +75,9 @@ def test_a_command_that_is_repeated_keeps_the_turtle_going(far_shell):
     said = []
 
     def carry_out():
-        graph = there.current()
+        graph = remote_graph.current()
 
-        class Impatient(there.ThereGraph):
+        class Impatient(remote_graph.ThereGraph):
             def sleep(self, seconds):
                 said.append(seconds)
                 if len(said) > 10:
@@ -96,7 +102,7 @@ def test_numbers_that_json_does_not_have_arrive(far_shell):
     graph.active().node("hears").subscribe("/numbers", message_class_exact("std_msgs/Float64MultiArray"), arrived.append)
 
     def publish():
-        reached = there.current()
+        reached = remote_graph.current()
         with reached.talk("/numbers", "std_msgs/Float64MultiArray", False) as send:
             send({"data": [1.5, float("nan"), float("inf"), float("-inf")]})
             reached.nodes()  # an answer comes after what was sent before
@@ -114,7 +120,7 @@ def test_who_prints_more_slowly_than_a_plan_publishes_gets_the_newest_messages(f
     session = graph.active()
     publication = session.node("fast").advertise("/fast", string)
     filling = "x" * 2000  # more than the socket's own buffers hold
-    last = there.QUEUE + 8000
+    last = remote_graph.QUEUE + 8000
 
     def burst():
         for number in range(last + 1):
@@ -124,13 +130,13 @@ def test_who_prints_more_slowly_than_a_plan_publishes_gets_the_newest_messages(f
     done = []
 
     def listen():
-        reached = there.current()
+        reached = remote_graph.current()
         taken = []
         try:
             with reached.listen("/fast", "std_msgs/String") as listener:
                 reached.nodes()  # an answer comes after what was asked before
                 session.kernel.post(burst)
-                other = there.current()
+                other = remote_graph.current()
                 while not done:
                     other.nodes()
                 other.close()
@@ -141,7 +147,7 @@ def test_who_prints_more_slowly_than_a_plan_publishes_gets_the_newest_messages(f
         return taken
 
     taken = far_shell.carry_out(listen)
-    assert taken == sorted(set(taken)) and there.QUEUE <= len(taken) <= last
+    assert taken == sorted(set(taken)) and remote_graph.QUEUE <= len(taken) <= last
 
 
 def test_a_node_is_ended(far_shell):
@@ -174,14 +180,15 @@ def test_types_that_only_the_session_knows_are_asked_for(far_shell, tmp_path):
 @pytest.fixture
 def graph(far_shell):
     """The session's graph as another terminal sees it; its methods are to be called by `far_shell.carry_out`."""
-    made = far_shell.carry_out(there.current)
+    made = far_shell.carry_out(remote_graph.current)
     yield made
     far_shell.carry_out(made.close)
 
 
 def start(far_shell, graph, executable, *arguments):
-    return far_shell.carry_out(lambda: graph.call("/cramhy/start_program", "", {
-        "package": "turtlesim", "executable": executable, "arguments": list(arguments)}))
+    return far_shell.carry_out(
+        lambda: graph.call("/cramhy/start_program", "", {"package": "turtlesim", "executable": executable, "arguments": list(arguments)})
+    )
 
 
 def test_a_program_runs_in_the_session_and_its_log_is_heard(far_shell, graph):
@@ -199,7 +206,7 @@ def test_a_program_runs_in_the_session_and_its_log_is_heard(far_shell, graph):
 
 
 def test_a_program_ends_with_the_terminal_that_started_it_even_when_that_is_killed(far_shell, graph):
-    terminal = far_shell.carry_out(there.current)
+    terminal = far_shell.carry_out(remote_graph.current)
     with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log:
         assert start(far_shell, terminal, "turtlesim_node")["there"]  # it only looks on
         for node in ("__name:=first", "__name:=second"):
@@ -237,15 +244,24 @@ def test_keys_of_another_terminal_drive_the_turtle(far_shell, graph):
     assert feed(b"xq") is False and feed(b"A") is False
 
 
-@pytest.mark.parametrize(("service", "request_data", "text"), [
-    ("start_program", {"package": "turtlesim", "executable": "rm"},
-     "cramhy has no executable turtlesim/rm; turtlesim has draw_square, mimic, turtle_teleop_key, turtlesim_node."),
-    ("start_program", {"package": "os", "executable": "draw_square"},
-     "cramhy has no executable os/draw_square; turtlesim has draw_square, mimic, turtle_teleop_key, turtlesim_node."),
-    ("feed_program", {"node": "/turtlesim", "keys": [65]}, "The program /turtlesim reads no keys."),
-    ("end_node", {"node": "/nobody"}, "There is no node /nobody."),
-    ("end_node", {"node": "/cramhy_programs"}, "There is no node /cramhy_programs."),
-])
+@pytest.mark.parametrize(
+    ("service", "request_data", "text"),
+    [
+        (
+            "start_program",
+            {"package": "turtlesim", "executable": "rm"},
+            "cramhy has no executable turtlesim/rm; turtlesim has draw_square, mimic, turtle_teleop_key, turtlesim_node.",
+        ),
+        (
+            "start_program",
+            {"package": "os", "executable": "draw_square"},
+            "cramhy has no executable os/draw_square; turtlesim has draw_square, mimic, turtle_teleop_key, turtlesim_node.",
+        ),
+        ("feed_program", {"node": "/turtlesim", "keys": [65]}, "The program /turtlesim reads no keys."),
+        ("end_node", {"node": "/nobody"}, "There is no node /nobody."),
+        ("end_node", {"node": "/cramhy_programs"}, "There is no node /cramhy_programs."),
+    ],
+)
 def test_what_a_session_does_not_do_for_another_terminal(far_shell, graph, service, request_data, text):
     with pytest.raises(Refused) as caught:
         far_shell.carry_out(lambda: graph.call(f"/cramhy/{service}", "", request_data))
@@ -271,8 +287,12 @@ def test_a_session_that_ends_is_told(far_shell, graph):
 def test_without_a_session(far_shell):
     far_shell.server.close()
     far_shell("rostopic list")
-    assert far_shell.said == ("", "ERROR: Unable to communicate with master!\nNo session serves here. Start one with: roslisp_repl --serve "
-                              '(after eval "$(cramhy ros-shims)" plain roslisp_repl does it).\n', 1)
+    assert far_shell.said == (
+        "",
+        "ERROR: Unable to communicate with master!\nNo session serves here. Start one with: roslisp_repl --serve "
+        '(after eval "$(cramhy ros-shims)" plain roslisp_repl does it).\n',
+        1,
+    )
 
 
 def test_without_the_extra(far_shell, monkeypatch):
@@ -280,37 +300,77 @@ def test_without_the_extra(far_shell, monkeypatch):
 
     monkeypatch.setitem(sys.modules, "websockets.sync.client", None)
     far_shell("rostopic list")
-    assert far_shell.said == ("", "ERROR: Unable to communicate with master!\nA session serves here, but reaching it takes the Python "
-                              f"package websockets. Type: {install_command('web')}\n", 1)
+    assert far_shell.said == (
+        "",
+        "ERROR: Unable to communicate with master!\nA session serves here, but reaching it takes the Python "
+        f"package websockets. Type: {install_command('web')}\n",
+        1,
+    )
 
 
 @pytest.mark.parametrize("token", ["a wrong token", "wrong", "", "a/b?c&d#e"])
 def test_a_session_that_does_not_let_us_in(far_shell, token):
     port = far_shell.server.port
     with pytest.raises(NoSession) as caught:
-        far_shell.carry_out(lambda: there.ThereGraph("127.0.0.1", port, token))
+        far_shell.carry_out(lambda: remote_graph.ThereGraph("127.0.0.1", port, token))
     assert str(caught.value) == (
-        f"The session at 127.0.0.1:{port} does not let us in: This is not the token of this session, or no address of it.")
+        f"The session at 127.0.0.1:{port} does not let us in: This is not the token of this session, or no address of it."
+    )
 
 
 def test_a_session_that_is_full_says_so(far_shell, monkeypatch):
     server = far_shell.server
     monkeypatch.setattr(server, "limits", replace(server.limits, connections=0))
     far_shell("rosnode list")
-    assert far_shell.errors.endswith(f"The session at 127.0.0.1:{server.port} does not let us in: "
-                                     "0 clients are connected; more are not allowed.\n")
+    assert far_shell.errors.endswith(
+        f"The session at 127.0.0.1:{server.port} does not let us in: 0 clients are connected; more are not allowed.\n"
+    )
 
 
 def test_nobody_listens_where_the_session_was(far_shell):
     with pytest.raises(NoSession) as caught:
-        far_shell.carry_out(lambda: there.ThereGraph("127.0.0.1", 1, ""))
+        far_shell.carry_out(lambda: remote_graph.ThereGraph("127.0.0.1", 1, ""))
     assert str(caught.value).startswith("The session at 127.0.0.1:1 does not let us in:")
+
+
+@pytest.fixture
+def dying_port():
+    """A port whose process is being killed: it accepts, and every connection is reset."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+
+        def reset():
+            with suppress(OSError):
+                while True:
+                    connection, _ = listener.accept()
+                    connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                    connection.close()
+
+        threading.Thread(target=reset, daemon=True).start()
+        yield listener.getsockname()[1]
+        listener.shutdown(socket.SHUT_RDWR)
+
+
+def test_a_session_that_resets_the_connection_does_not_let_us_in(dying_port):
+    with pytest.raises(NoSession) as caught:
+        remote_graph.ThereGraph("127.0.0.1", dying_port, "")
+    assert str(caught.value).startswith(f"The session at 127.0.0.1:{dying_port} does not let us in: ")
+
+
+def test_a_session_that_dies_while_it_is_reached_is_no_session(dying_port, far_shell, monkeypatch):
+    from cramhy_runtime.rosbridge import sessions
+
+    (newest,) = sessions.living()
+    looks = iter([[replace(newest, port=dying_port)], []])
+    monkeypatch.setattr(sessions, "living", lambda: next(looks, []))
+    with pytest.raises(NoSession) as caught:
+        remote_graph.current()
+    assert str(caught.value) == "", "as where none ever was, so that a program goes on here"
 
 
 def test_of_two_sessions_the_newest_is_taken_and_named(far_shell, monkeypatch, capsys):
     from cramhy_runtime.rosbridge import sessions
 
-    newest, = sessions.living()
+    (newest,) = sessions.living()
     assert "/turtlesim" in far_shell("rosnode list") and capsys.readouterr().err == ""
     monkeypatch.setattr(sessions, "living", lambda: [newest, replace(newest, pid=1, started=1)])
     assert "/turtlesim" in far_shell("rosnode list")

@@ -37,32 +37,56 @@ MASKS = [
 
 DIFFERENCES = {
     "rosnode info /turtlesim": (
-        ["-    * direction: outbound (54387 - HOST:PORT) [12]", "+    * direction: outbound", "-    * transport: TCPROS",
-         "+    * transport: INTRAPROCESS",
-         "+ * topic: /turtle1/color_sensor", f"+    * to: {COMPANION}", "+    * direction: outbound", "+    * transport: INTRAPROCESS",
-         "+ * topic: /turtle1/pose", f"+    * to: {COMPANION}", "+    * direction: outbound", "+    * transport: INTRAPROCESS",
-         "+ * topic: /turtle1/cmd_vel", f"+    * to: {COMPANION}", "+    * direction: inbound", "+    * transport: INTRAPROCESS"],
-        "a connection is no socket and has no number; the recorded one had not been told of the companion's connections yet"),
+        [
+            "-    * direction: outbound (54387 - HOST:PORT) [12]",
+            "+    * direction: outbound",
+            "-    * transport: TCPROS",
+            "+    * transport: INTRAPROCESS",
+            "+ * topic: /turtle1/color_sensor",
+            f"+    * to: {COMPANION}",
+            "+    * direction: outbound",
+            "+    * transport: INTRAPROCESS",
+            "+ * topic: /turtle1/pose",
+            f"+    * to: {COMPANION}",
+            "+    * direction: outbound",
+            "+    * transport: INTRAPROCESS",
+            "+ * topic: /turtle1/cmd_vel",
+            f"+    * to: {COMPANION}",
+            "+    * direction: inbound",
+            "+    * transport: INTRAPROCESS",
+        ],
+        "a connection is no socket and has no number; the recorded one had not been told of the companion's connections yet",
+    ),
     "rostopic list -v": (
-        ["+ * /rosout [rosgraph_msgs/Log] 1 publisher", "- * /rosout [rosgraph_msgs/Log] 2 publishers",
-         "+ * /turtle1/color_sensor [turtlesim/Color] 1 publisher", "- * /turtle1/color_sensor [turtlesim/Color] 1 publisher",
-         "+ * /turtle1/cmd_vel [geometry_msgs/Twist] 1 subscriber", "+ * /turtle1/color_sensor [turtlesim/Color] 1 subscriber",
-         "- * /turtle1/color_sensor [turtlesim/Color] 1 subscriber", "- * /turtle1/cmd_vel [geometry_msgs/Twist] 1 subscriber"],
-        "topics are sorted by name, where the original keeps them in a dictionary; the companion of the test has no log"),
+        [
+            "+ * /rosout [rosgraph_msgs/Log] 1 publisher",
+            "- * /rosout [rosgraph_msgs/Log] 2 publishers",
+            "+ * /turtle1/color_sensor [turtlesim/Color] 1 publisher",
+            "- * /turtle1/color_sensor [turtlesim/Color] 1 publisher",
+            "+ * /turtle1/cmd_vel [geometry_msgs/Twist] 1 subscriber",
+            "+ * /turtle1/color_sensor [turtlesim/Color] 1 subscriber",
+            "- * /turtle1/color_sensor [turtlesim/Color] 1 subscriber",
+            "- * /turtle1/cmd_vel [geometry_msgs/Twist] 1 subscriber",
+        ],
+        "topics are sorted by name, where the original keeps them in a dictionary; the companion of the test has no log",
+    ),
     "rostopic find turtlesim/Pose": (
         ["-/t2/pose", "-/turtle2/pose", "-/turtle3/pose", "-/far/pose"],
-        "the original's master keeps the types of topics that are gone; here they go with their last node"),
+        "the original's master keeps the types of topics that are gone; here they go with their last node",
+    ),
     "rosmsg show nope/Nope": (
         ["+Unable to load msg [nope/Nope]: Cannot locate message [Nope]: unknown package [nope] on ROS_PACKAGE_PATH"],
-        "the recorded tool failed without a word"),
+        "the recorded tool failed without a word",
+    ),
     "rosservice list": (
         [f"-{COMPANION}/get_loggers", f"-{COMPANION}/set_logger_level"],
-        "the companion of the test is no node of roscpp, which has services for the levels of its log"),
-    "rosparam list": (
-        ["-/roslaunch/uris/host_127_0_0_1__46543"], "no server of roslaunch has run"),
+        "the companion of the test is no node of roscpp, which has services for the levels of its log",
+    ),
+    "rosparam list": (["-/roslaunch/uris/host_127_0_0_1__46543"], "no server of roslaunch has run"),
     "rosparam get /": (
         ["-rosdistro: 'Debian", "+rosdistro: 'noetic", "-roslaunch:", "-  uris:", "-    host_127_0_0_1__46543: http://HOST:PORT/"],
-        "the recorded ROS came with Debian; no server of roslaunch has run"),
+        "the recorded ROS came with Debian; no server of roslaunch has run",
+    ),
     "rospack find turtlesim": (["+FOLDER"], "the recorded machine had no such package, yet the exit status 0; here it is part of cramhy"),
 }
 """The lines that differ, ``-`` recorded and ``+`` ours, and why."""
@@ -73,8 +97,10 @@ def recorded():
     if not RECORDED.exists():
         return []
     blocks = RECORDED.read_text().split("======== $ ")[1:]
-    return [(block.partition("\n")[0], *re.fullmatch(r"(.*?)-------- exit (\d+)\s*", block.partition("\n")[2], re.S).groups())
-            for block in blocks]
+    return [
+        (block.partition("\n")[0], *re.fullmatch(r"(.*?)-------- exit (\d+)\s*", block.partition("\n")[2], re.S).groups())
+        for block in blocks
+    ]
 
 
 def words_of(line):

@@ -26,9 +26,15 @@ PATIENCE = 60
 class Tool:
     """A command in a process of its own, whose lines are read as they come."""
 
-    def __init__(self, folder, *words, stdin=subprocess.DEVNULL):
-        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", *words], stdin=stdin, stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True, env={**os.environ, "XDG_RUNTIME_DIR": str(folder)})
+    def __init__(self, folder, *words, stdin=subprocess.DEVNULL, program=("-m", "cramhy_runtime.cli")):
+        self.process = subprocess.Popen(
+            [sys.executable, *program, *words],
+            stdin=stdin,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "XDG_RUNTIME_DIR": str(folder)},
+        )
         self.out, self.errors = queue.Queue(), queue.Queue()
         for stream, lines in ((self.process.stdout, self.out), (self.process.stderr, self.errors)):
             threading.Thread(target=self._read, args=(stream, lines), daemon=True).start()
@@ -132,8 +138,9 @@ def test_a_session_whose_connection_breaks_is_joined_again(far_shell):
     kernel.call_at(kernel.now() + 1.0, lambda: server.company.call(cut))
     out = far_shell("rostopic echo -n 100 /turtle1/pose")
     assert out.count("---") == 100 and far_shell.status == 0
-    assert far_shell.errors == ("; The session has ended. Waiting for a session to join; Ctrl-C ends.\n"
-                                f"; Joined the session of process {os.getpid()}.\n")
+    assert far_shell.errors == (
+        f"; The session has ended. Waiting for a session to join; Ctrl-C ends.\n; Joined the session of process {os.getpid()}.\n"
+    )
 
 
 def test_echo_that_waits_for_a_topic_waits_for_a_session_too(start, tool):
@@ -205,6 +212,32 @@ def test_a_program_comes_back_here_and_goes_over_to_the_next_session(start, tool
     square.complains("; A session has started: the program runs there now.")
     square.says("New goal")
     assert square.end() == 0
+
+
+BLIND_AT_FIRST = """
+import sys
+from cramhy_runtime.cli import main
+from cramhy_runtime.ros_tools import remote_graph
+from cramhy_runtime.ros_tools.graph_access import NoSession
+
+looks, current = iter([NoSession]), remote_graph.current
+
+
+def look():
+    for nothing in looks:
+        raise nothing
+    return current()
+
+
+remote_graph.current = look
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_a_program_joins_a_session_that_began_while_it_began_here(start, tool):
+    start()
+    square = tool("ros", "rosrun", "turtlesim", "draw_square", program=("-c", BLIND_AT_FIRST))
+    square.complains("; A session has started: the program runs there now.")
 
 
 def test_a_log_that_was_looked_at_is_looked_at_again(start, tool):

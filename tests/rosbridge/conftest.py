@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from bridge_clients import Talk
-from cramhy_runtime import image, kernel
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
 
 
 JAVASCRIPT = Path(__file__).parent / "js"
@@ -28,7 +29,7 @@ def no_session_of_the_user(tmp_path, monkeypatch):
 def graph():
     """The graph of a fresh kernel in virtual time, with the simulator."""
     kernel.start(clock="virtual")
-    image.boot()
+    boot()
     from cramhy_runtime.ros import graph
     from cramhy_runtime.turtlesim.node import start_turtlesim
 
@@ -66,7 +67,7 @@ def serve():
         from cramhy_runtime.turtlesim.node import start_turtlesim
 
         kernel.start(clock=time, backend=backend)
-        image.boot()
+        boot()
         if turtlesim:
             start_turtlesim()
         return rosbridge.start(pages=pages, origins=origins, limits=Limits(**limits))

@@ -30,9 +30,13 @@ class SessionProcess:
 
     def __init__(self, folder, limits=None, before=(), pages=None, time="wall", **environment):
         self.process = subprocess.Popen(
-            [*before, sys.executable, str(PROGRAM), json.dumps(limits or {}), json.dumps(pages or {}), time], stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env={**os.environ, "XDG_RUNTIME_DIR": str(folder), **environment})
+            [*before, sys.executable, str(PROGRAM), json.dumps(limits or {}), json.dumps(pages or {}), time],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "XDG_RUNTIME_DIR": str(folder), **environment},
+        )
         line = self.process.stdout.readline()
         self.told = json.loads(line or '{"problem": "it has ended"}')
         self.problem = self.told.get("problem")

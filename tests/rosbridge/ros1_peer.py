@@ -262,8 +262,9 @@ class Robot:
         from websockets.sync.server import serve
 
         self.graph, self.ops, self.wrong, self.served, self.clients, self.calls = graph, [], [], {}, set(), []
-        self.server = serve(self._serve, "127.0.0.1", port, compression=None, max_size=None, server_header="AutobahnPython/0.17.1",
-                            close_timeout=1)
+        self.server = serve(
+            self._serve, "127.0.0.1", port, compression=None, max_size=None, server_header="AutobahnPython/0.17.1", close_timeout=1
+        )
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
         self.address = f"ws://127.0.0.1:{self.server.socket.getsockname()[1]}"
 

@@ -176,9 +176,12 @@ def run_turtle():
     rospy.set_param("~background_b", 255)
     rospy.Subscriber("turtle1/cmd_vel", Twist, command)
     pose = rospy.Publisher("turtle1/pose", Pose, queue_size=1)
-    services = [rospy.Service("turtle1/teleport_absolute", TeleportAbsolute, teleport),
-                rospy.Service("turtle1/set_pen", SetPen, lambda _: SetPenResponse()),
-                rospy.Service("clear", Empty, lambda _: EmptyResponse()), rospy.Service("reset", Empty, lambda _: EmptyResponse())]
+    services = [
+        rospy.Service("turtle1/teleport_absolute", TeleportAbsolute, teleport),
+        rospy.Service("turtle1/set_pen", SetPen, lambda _: SetPenResponse()),
+        rospy.Service("clear", Empty, lambda _: EmptyResponse()),
+        rospy.Service("reset", Empty, lambda _: EmptyResponse()),
+    ]
     rate = rospy.Rate(62.5)
     while not rospy.is_shutdown() and services:
         with lock:

@@ -5,14 +5,15 @@ import json
 import os
 import sys
 
-from cramhy_runtime import image, kernel, rosbridge
+from cramhy_runtime import kernel, rosbridge
+from cramhy_runtime.session import boot
 from cramhy_runtime.rosbridge.guard import Limits
 from cramhy_runtime.rosbridge.server import ServerError
 
 
 def main(limits="{}", pages="{}", time="wall"):
     kernel.start(clock=time)
-    image.boot()
+    boot()
     from cramhy_runtime.ros_tools.hosting import Host
     from cramhy_runtime.turtlesim.node import start_turtlesim
 
@@ -23,8 +24,10 @@ def main(limits="{}", pages="{}", time="wall"):
         print(json.dumps({"problem": str(problem)}), flush=True)
         return
     Host()
-    print(json.dumps({"port": server.port, "token": server.token, "address": server.address, "file": str(server.file),
-                      "pid": os.getpid()}), flush=True)
+    print(
+        json.dumps({"port": server.port, "token": server.token, "address": server.address, "file": str(server.file), "pid": os.getpid()}),
+        flush=True,
+    )
     kernel.run_blocking(sys.stdin.read)
     kernel.stop()
 

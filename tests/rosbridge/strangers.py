@@ -8,8 +8,10 @@ import sys
 import time
 
 PORT, WAY, MOST = int(sys.argv[1]), sys.argv[2], int(sys.argv[3])
-UPGRADE = (f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{PORT}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-           "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n\r\n").encode()
+UPGRADE = (
+    f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{PORT}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+).encode()
 WRONG = b'\x81\x9d\0\0\0\0{"op": "auth", "token": "no"}'
 SAYS = {
     "silent": b"",  # connects, and says nothing

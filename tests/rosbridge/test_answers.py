@@ -8,7 +8,7 @@ import pytest
 
 from bridge_clients import Wire
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 from cramhy_runtime.rosbridge.rosapi import RosApi
 from cramhy_runtime.ros.wire import NOT_A_NUMBER, POSITIVE_INFINITY
@@ -80,8 +80,10 @@ def test_with_real_sockets_neither_the_connection_nor_the_output_suffers(serve, 
             server.post(lambda: publication.send(kernel_side))
             server.post(lambda: publication.send(kind()))
             told = raw.until(op="status")
-            assert told["msg"] == ("A message of /bad could not be sent to you as cbor-raw: std_msgs/Time: the field data holds 1e+300d0, "
-                                   "which ROS 1 cannot write as time.")
+            assert told["msg"] == (
+                "A message of /bad could not be sent to you as cbor-raw: std_msgs/Time: the field data holds 1e+300d0, "
+                "which ROS 1 cannot write as time."
+            )
             assert isinstance(raw.receive(), bytes)
             assert plain.receive()["op"] == plain.receive()["op"] == "publish"
             assert raw.call("/clear")["result"]
@@ -93,28 +95,47 @@ def test_with_real_sockets_neither_the_connection_nor_the_output_suffers(serve, 
 # ------------------------------------------------------------------------------------------------------------------ answers
 
 
-ODD = {"a list": [1, 2], "an object": {"a": 1}, "a boolean": True, "a long text": "x" * 501, "a large number": 2**70, "an infinity": 1e999,
-       "a lone surrogate": "\ud800"}
+ODD = {
+    "a list": [1, 2],
+    "an object": {"a": 1},
+    "a boolean": True,
+    "a long text": "x" * 501,
+    "a large number": 2**70,
+    "an infinity": 1e999,
+    "a lone surrogate": "\ud800",
+}
 REPEATED = {"a list", "an object", "a boolean", "a large number", "a lone surrogate"}
 
 
 @pytest.mark.parametrize("odd", ODD)
 def test_a_call_with_an_odd_id_is_answered(talk, odd):
-    answer, = talk.say(op="call_service", service="/nobody", id=ODD[odd])
+    (answer,) = talk.say(op="call_service", service="/nobody", id=ODD[odd])
     assert (answer["op"], answer["service"], answer["result"]) == ("service_response", "/nobody", False)
     assert ("id" in answer) == (odd in REPEATED)
     if odd in REPEATED:
         assert answer["id"] == ODD[odd]
-    assert answer["values"] == ("Nobody offers the service /nobody." if odd == "a lone surrogate" else
-                                'An "id" is a string of at most 500 characters, or a number.')
+    assert answer["values"] == (
+        "Nobody offers the service /nobody." if odd == "a lone surrogate" else 'An "id" is a string of at most 500 characters, or a number.'
+    )
 
 
-@pytest.mark.parametrize("operation", [{}, {"service": 7}, {"service": None}, {"service": "/a//b"}, {"service": "/clear", "args": "x"},
-                                       {"service": "/clear", "args": [1]}, {"service": "/clear", "compression": "zip"},
-                                       {"service": "/clear", "fragment_size": "x"}, {"service": "\ud800"},
-                                       {"service": "/spawn", "args": 7}])
+@pytest.mark.parametrize(
+    "operation",
+    [
+        {},
+        {"service": 7},
+        {"service": None},
+        {"service": "/a//b"},
+        {"service": "/clear", "args": "x"},
+        {"service": "/clear", "args": [1]},
+        {"service": "/clear", "compression": "zip"},
+        {"service": "/clear", "fragment_size": "x"},
+        {"service": "\ud800"},
+        {"service": "/spawn", "args": 7},
+    ],
+)
 def test_a_call_that_makes_no_sense_is_answered(talk, operation):
-    answer, = talk.say(op="call_service", id="me", **operation)
+    (answer,) = talk.say(op="call_service", id="me", **operation)
     assert (answer["op"], answer["id"], answer["result"]) == ("service_response", "me", False) and answer["values"]
 
 
@@ -143,16 +164,19 @@ def test_a_call_is_answered_when_the_service_or_its_node_ends(graph, talk, end):
     node.serve("/slow", kind, lambda request: kind.response())
     assert talk.say(op="call_service", service="/slow", id="me") == []
     node.shutdown() if end == "node" else node.withdraw("/slow")
-    answer, = talk.heard()
+    (answer,) = talk.heard()
     assert (answer["id"], answer["result"], answer["values"]) == (
-        "me", False, "The server of the service /slow went away before it answered.")
+        "me",
+        False,
+        "The server of the service /slow went away before it answered.",
+    )
 
 
 def test_a_call_is_answered_when_the_client_that_offers_the_service_goes(talk, other):
     other.say(op="advertise_service", service="/far", type="std_srvs/Empty")
     assert talk.say(op="call_service", service="/far", id="me") == []
     other.session.close()
-    answer, = talk.heard()
+    (answer,) = talk.heard()
     assert (answer["id"], answer["result"]) == ("me", False)
 
 
@@ -177,12 +201,16 @@ def test_calls_are_answered_when_the_session_ends(serve, outside, beside):
     server.close()
     finish()
     assert [(each["id"], each["result"], each["values"]) for each in heard[1:4]] == [
-        (number, False, "The session ended before the service /slow answered.") for number in range(3)]
+        (number, False, "The session ended before the service /slow answered.") for number in range(3)
+    ]
     assert heard[4] == (1001, "The session has ended.")
 
 
-@pytest.mark.parametrize("value", [10**5000, float("nan"), float("inf"), b"bytes", object(), {"deep": [float("nan")]}],
-                         ids=["huge", "nan", "infinity", "bytes", "object", "nested"])
+@pytest.mark.parametrize(
+    "value",
+    [10**5000, float("nan"), float("inf"), b"bytes", object(), {"deep": [float("nan")]}],
+    ids=["huge", "nan", "infinity", "bytes", "object", "nested"],
+)
 def test_a_parameter_that_json_does_not_have_is_refused_and_nothing_is_printed(graph, talk, value, capfd):
     RosApi(graph)
     graph.parameters.set("/odd", value)

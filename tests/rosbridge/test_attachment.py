@@ -12,7 +12,7 @@ import sys
 import threading
 
 import pytest
-from image_as_it_was import image_as_it_was
+from cramhy_runtime.session import Image
 
 from cramhy_runtime import kernel, rosbridge
 from cramhy_runtime.repl.commands import run_line
@@ -23,11 +23,12 @@ pytest.importorskip("roslibpy")
 
 ROBOT = """
 import json, sys
-from cramhy_runtime import image, kernel, rosbridge
+from cramhy_runtime import kernel, rosbridge
+from cramhy_runtime.session import boot
 from cramhy_runtime.turtlesim.node import start_turtlesim, running_simulator
 
 kernel.start(clock="wall")
-image.boot()
+boot()
 start_turtlesim()
 token = None
 
@@ -54,8 +55,13 @@ class Robot:
     """Another process, with a turtle and a server."""
 
     def __init__(self, folder):
-        self.process = subprocess.Popen([sys.executable, "-c", ROBOT], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-                                        env={**os.environ, "XDG_RUNTIME_DIR": str(folder)})
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", ROBOT],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "XDG_RUNTIME_DIR": str(folder)},
+        )
         self.port, self.address = json.loads(self.process.stdout.readline())
         self.shown = f"ws://127.0.0.1:{self.port}/..."
 
@@ -81,29 +87,32 @@ def joined(robot):
     """(evaluate, link) of a session in wall time that is joined to the robot; its own turtle would start, were it not joined."""
     from cramhy_runtime.repl.session import Session
 
-    session = Session(time="wall")
-    session.package = "CRAM-USER"
-    link = rosbridge.attach(robot.address)
-    yield session.evaluate_text, link
-    link.close()
-    kernel.stop()
+    with Image(as_now=True):
+        session = Session(time="wall")
+        session.package = "CRAM-USER"
+        link = rosbridge.attach(robot.address)
+        yield session.evaluate_text, link
+        link.close()
 
 
 def test_the_plan_of_the_course_drives_the_turtle_of_the_other_process(robot, joined):
-    with image_as_it_was():
-        drive_by_the_plan_of_the_course(robot, *joined)
+    drive_by_the_plan_of_the_course(robot, *joined)
 
 
 def drive_by_the_plan_of_the_course(robot, evaluate, link):
     evaluate('(asdf:load-system "cram-my-beginner-tutorial")')
-    evaluate('(in-package :tut)')
+    evaluate("(in-package :tut)")
     evaluate('(start-ros-node "turtle1")')
     evaluate('(init-ros-turtle "turtle1")')
     assert "/turtlesim" not in link.graph.nodes
     evaluate("(top-level (wait-for *turtle-pose*))")  # the first one has come over the bridge
     arrive(robot, lambda: evaluate("(top-level (move-to (make-3d-vector 7 6 0)))"), 7, 6)
-    arrive(robot, lambda: evaluate(
-        "(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) (navigate '(5 5 0))))"), 5, 5)
+    arrive(
+        robot,
+        lambda: evaluate("(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) (navigate '(5 5 0))))"),
+        5,
+        5,
+    )
 
 
 def arrive(robot, drive, x, y):
@@ -119,8 +128,11 @@ def arrive(robot, drive, x, y):
 def test_the_connection_ends_with_the_session_and_after_the_cleanup_of_its_plans(robot, joined):
     evaluate, link = joined
     evaluate('(roslisp:start-ros-node "lisp")')
-    kernel.spawn(evaluate, """(top-level (unwind-protect (sleep 1000)
-        (roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 3 :y 4 :theta 0)))""")
+    kernel.spawn(
+        evaluate,
+        """(top-level (unwind-protect (sleep 1000)
+        (roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 3 :y 4 :theta 0)))""",
+    )
     kernel.sleep(0.1)
     kernel.stop()
     assert link.closed and not link.ros.is_connected
@@ -132,7 +144,7 @@ def test_services_and_parameters_are_the_robots(robot, joined):
     evaluate, _ = joined
     evaluate('(roslisp:start-ros-node "lisp")')
     assert evaluate('(roslisp:wait-for-service "/spawn" 10)') == [True]
-    evaluate('''(roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 1 :y 2 :theta 0)''')
+    evaluate("""(roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 1 :y 2 :theta 0)""")
     assert json.loads(robot.ask("pose"))[:2] == [1.0, 2.0]
     assert evaluate('(roslisp:msg-slot-value (roslisp:call-service "/spawn" "turtlesim/Spawn" :x 1 :y 1 :name "anna") :name)') == ["anna"]
     assert evaluate('(roslisp:get-param "/turtlesim/background_b")') == [255]
@@ -152,8 +164,8 @@ def test_the_robot_calls_a_service_of_the_plan(robot, joined, beside):
 
     evaluate, _ = joined
     evaluate('(roslisp:start-ros-node "lisp")')
-    evaluate('''(roslisp:def-service-callback roscpp_tutorials-srv:TwoInts (a b) (roslisp:make-response :sum (+ a b)))
-                (roslisp:register-service "/sum" roscpp_tutorials-srv:TwoInts)''')
+    evaluate("""(roslisp:def-service-callback roscpp_tutorials-srv:TwoInts (a b) (roslisp:make-response :sum (+ a b)))
+                (roslisp:register-service "/sum" roscpp_tutorials-srv:TwoInts)""")
 
     def client():
         with Wire(robot.address) as wire:
@@ -166,10 +178,10 @@ def test_the_robot_calls_a_service_of_the_plan(robot, joined, beside):
 
 def test_each_message_arrives_once(robot, joined):
     evaluate, _ = joined
-    evaluate('''(roslisp:start-ros-node "lisp")
+    evaluate("""(roslisp:start-ros-node "lisp")
                 (defparameter *heard* nil)
                 (defparameter *pub* (roslisp:advertise "/chatter" "std_msgs/String"))
-                (roslisp:subscribe "/chatter" "std_msgs/String" (lambda (m) (push (std_msgs-msg:data m) *heard*)))''')
+                (roslisp:subscribe "/chatter" "std_msgs/String" (lambda (m) (push (std_msgs-msg:data m) *heard*)))""")
     for _ in range(100):
         evaluate('(unless *heard* (roslisp:publish-msg *pub* :data "first"))')
         kernel.sleep(0.1)
@@ -188,7 +200,7 @@ def test_each_message_arrives_once(robot, joined):
 
 
 def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
-    from cramhy_runtime.lisp.condition_types import Condition
+    from cramhy_runtime.ground.condition_types import Condition
 
     evaluate, link = joined
     evaluate('(roslisp:start-ros-node "lisp")')
@@ -207,8 +219,11 @@ def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
         kernel.sleep(0.02)
     with pytest.raises(Condition) as caught:
         evaluate('(roslisp:get-param "/turtlesim/background_b")')
-    assert re.fullmatch(f"/rosapi/has_param cannot be asked at {robot.shown}: the connection to {robot.shown} is lost since "
-                        r"\d\d:\d\d:\d\d, and is tried again", caught.value.report())
+    assert re.fullmatch(
+        f"/rosapi/has_param cannot be asked at {robot.shown}: the connection to {robot.shown} is lost since "
+        r"\d\d:\d\d:\d\d, and is tried again",
+        caught.value.report(),
+    )
     lines = []
     run_line("rosparam list", lines.append)
     assert lines[0].startswith(f"ERROR: /rosapi/get_param_names cannot be asked at {robot.shown}: the connection to {robot.shown} is lost ")
@@ -223,8 +238,9 @@ def test_virtual_time_cannot_join(serve):
     kernel.start(clock="virtual")
     with pytest.raises(ServerError) as caught:
         rosbridge.attach("ws://robot:9090")
-    assert str(caught.value) == ("A session in virtual time cannot join ws://robot:9090: the robot there lives in wall time. Start it with "
-                                 "--time wall.")
+    assert str(caught.value) == (
+        "A session in virtual time cannot join ws://robot:9090: the robot there lives in wall time. Start it with --time wall."
+    )
 
 
 def test_where_nobody_answers(serve):
@@ -235,7 +251,8 @@ def test_where_nobody_answers(serve):
         rosbridge.attach("ws://127.0.0.1:1", patience=1)
     assert str(caught.value) == (
         "No rosbridge server answers at ws://127.0.0.1:1. Does it run there (roslaunch rosbridge_server rosbridge_websocket.launch, or "
-        "ros2 launch rosbridge_server rosbridge_websocket_launch.xml), and can this machine reach it?")
+        "ros2 launch rosbridge_server rosbridge_websocket_launch.xml), and can this machine reach it?"
+    )
     kernel.stop()
 
 
@@ -294,7 +311,7 @@ def test_what_another_server_answers_is_told(answer, text):
 
 
 def test_an_answer_that_comes_too_late_is_waited_for_no_more(robot, joined, monkeypatch):
-    from cramhy_runtime.lisp.condition_types import Condition
+    from cramhy_runtime.ground.condition_types import Condition
     from cramhy_runtime.rosbridge import attachment
 
     _, link = joined
@@ -343,7 +360,8 @@ def test_where_ros_2_is_a_parameter_stays_here_and_that_is_said_once(graph, caps
     parameters.set("/c", 3)
     assert capsys.readouterr().out.partition(": ")[2] == (
         "The parameter /a/b is set in this session only: at ws://robot:9090 is ROS 2, where each parameter belongs to one node. "
-        "Set it there with: ros2 param set NODE NAME VALUE\n")
+        "Set it there with: ros2 param set NODE NAME VALUE\n"
+    )
     assert parameters.names() == ["/a/b", "/c", "/old"] and parameters.get("/a/b") == 2
 
 

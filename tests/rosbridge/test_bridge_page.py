@@ -17,8 +17,11 @@ PAGE = (Path(__file__).parents[2] / "docs" / "ros-bridge.md").read_text()
 
 def example(word, language="python"):
     """The example with WORD in it, and what the page says that it prints."""
-    return next((code, shown) for code, shown in re.findall(rf"```{language}\n(.*?)```(?:\n\nprints.*?\n\n```\n(.*?)```)?", PAGE, re.S)
-                if word in code)
+    return next(
+        (code, shown)
+        for code, shown in re.findall(rf"```{language}\n(.*?)```(?:\n\nprints.*?\n\n```\n(.*?)```)?", PAGE, re.S)
+        if word in code
+    )
 
 
 @pytest.fixture
@@ -26,8 +29,13 @@ def robot(tmp_path):
     """The address of a session that was started as the page says, in a process of its own."""
     code, _ = example("rosbridge.start()")
     code = code.replace("print(server.address)", "print(server.address, flush=True)") + "import sys\nkernel.run_blocking(sys.stdin.read)\n"
-    process = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-                               env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)})
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
+    )
     yield process.stdout.readline().strip()
     process.communicate("", timeout=60)
 
@@ -49,8 +57,14 @@ def test_the_example_of_roslib(robot, roslib_folder):
 
 @pytest.mark.parametrize("options", [["--serve"], ["--serve", "--time", "virtual", "--origin", "https://app.foxglove.dev"]])
 def test_the_repl_tells_its_address(tmp_path, options):
-    process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", *options], stdin=subprocess.PIPE, text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)})
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cramhy_runtime.cli", "repl", *options],
+        stdin=subprocess.PIPE,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
+    )
     try:
         told = process.stderr.readline()
         address = re.fullmatch(r"; Clients of rosbridge: (ws://127\.0\.0\.1:\d+/[\w-]{32})\n", told).group(1)
@@ -70,8 +84,15 @@ def test_the_repl_tells_its_address(tmp_path, options):
 
 
 def test_what_cannot_be_joined_is_told():
-    done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual", "--ros", "ws://robot:9090"], input="",
-                          capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual", "--ros", "ws://robot:9090"],
+        input="",
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert done.returncode == 2
-    assert ("A session in virtual time cannot join ws://robot:9090: the robot there lives in wall time. Start it with --time wall."
-            in done.stderr)
+    assert (
+        "A session in virtual time cannot join ws://robot:9090: the robot there lives in wall time. Start it with --time wall."
+        in done.stderr
+    )

@@ -14,7 +14,7 @@ import pytest
 
 from bridge_clients import Wire
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.company import Share
+from cramhy_runtime.kernel.asyncio_thread import Share
 
 FULL = os.environ.get("CRAMHY_SOAK") == "1"
 
@@ -69,8 +69,9 @@ def flood():
     programs = []
 
     def start(server, kind):
-        code = (f"import socket\nfrom websockets.sync.client import connect\nport, address = {server.port}, {server.address!r}\n"
-                + FLOODS[kind])
+        code = (
+            f"import socket\nfrom websockets.sync.client import connect\nport, address = {server.port}, {server.address!r}\n" + FLOODS[kind]
+        )
         programs.append(subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL))
 
     yield start
@@ -136,7 +137,9 @@ def test_too_many_clients_are_refused_and_the_others_stay(serve, outside):
         with pytest.raises(InvalidStatus) as refused:
             Wire(server.address)
         assert (refused.value.response.status_code, refused.value.response.body) == (
-            503, b"5 clients are connected; more are not allowed.\n")
+            503,
+            b"5 clients are connected; more are not allowed.\n",
+        )
         assert all(wire.call("/rosapi/get_ros_version")["result"] for wire in wires)
         wires.pop().socket.close()
         deadline = time.monotonic() + 20
@@ -168,12 +171,18 @@ def test_connections_that_say_nothing_do_not_use_up_the_server(serve, outside):
 
 
 LIMITS = {
-    "subscriptions": ([{"op": "subscribe", "topic": f"/t{n}", "type": "std_msgs/String"} for n in range(4)],
-                      "You subscribe to 3 topics; more are not allowed. Unsubscribe from some."),
-    "advertisements": ([{"op": "advertise", "topic": f"/t{n}", "type": "std_msgs/String"} for n in range(4)],
-                       "You advertise 3 topics; more are not allowed. Unadvertise some."),
-    "services": ([{"op": "advertise_service", "service": f"/t{n}", "type": "std_srvs/Empty"} for n in range(4)],
-                 "You offer 3 services; more are not allowed. Unadvertise some."),
+    "subscriptions": (
+        [{"op": "subscribe", "topic": f"/t{n}", "type": "std_msgs/String"} for n in range(4)],
+        "You subscribe to 3 topics; more are not allowed. Unsubscribe from some.",
+    ),
+    "advertisements": (
+        [{"op": "advertise", "topic": f"/t{n}", "type": "std_msgs/String"} for n in range(4)],
+        "You advertise 3 topics; more are not allowed. Unadvertise some.",
+    ),
+    "services": (
+        [{"op": "advertise_service", "service": f"/t{n}", "type": "std_srvs/Empty"} for n in range(4)],
+        "You offer 3 services; more are not allowed. Unadvertise some.",
+    ),
 }
 
 
@@ -209,8 +218,12 @@ def test_a_client_that_does_not_read_is_closed_and_the_plan_goes_on(serve, outsi
     def client():
         with socket.create_connection(("127.0.0.1", server.port), 20) as raw:
             raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            raw.sendall((f"GET /{server.token} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                         "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n\r\n").encode())
+            raw.sendall(
+                (
+                    f"GET /{server.token} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                    "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+                ).encode()
+            )
             from test_hostile import raw_frame
 
             question = json.dumps({"op": "call_service", "service": "/rosapi/topics_and_raw_types"}).encode()
@@ -251,9 +264,11 @@ def test_many_clients_at_60_hertz_lose_nothing(serve, outside, pace):
         sent[0] += 1
 
     timer = kernel.call_every(1 / 60, tick)
-    program = subprocess.Popen([sys.executable, str(CLIENTS), server.address, str(clients), str(seconds)], stdout=subprocess.PIPE,
-                               text=True)
+    program = subprocess.Popen(
+        [sys.executable, str(CLIENTS), server.address, str(clients), str(seconds)], stdout=subprocess.PIPE, text=True
+    )
     try:
+
         def ended():
             return outside(program.poll) is not None
 
@@ -272,7 +287,7 @@ def test_many_clients_at_60_hertz_lose_nothing(serve, outside, pace):
     assert found["lost"] == 0 and found["disorder"] == 0
     assert found["own"] == clients * seconds * 60
     assert found["common"] >= clients * seconds * 60
-    assert abs(behind) < 0.5 + 0.05 * passed  # beside other programs on the machine; docs/reliability.md has the figure
+    assert abs(behind) < 0.5 + 0.05 * passed  # beside other programs on the machine; docs/explanation/reliability.md has the figure
 
 
 def test_the_share_of_the_processor_is_for_who_overspends():

@@ -5,6 +5,9 @@ The cases of law 9 and of the issue: DNS rebinding, other pages, tokens, frames,
 
 from __future__ import annotations
 
+# Tables of what strangers send, a line each:
+# fmt: off
+
 import base64
 import hashlib
 import http.client
@@ -26,12 +29,13 @@ PAGES = {"/": ("<p>turtle</p>", "text/html"), "/secret.txt": ("not for all", "te
 
 PROGRAM = """
 import json, sys
-from cramhy_runtime import image, kernel, rosbridge
+from cramhy_runtime import kernel, rosbridge
+from cramhy_runtime.session import boot
 from cramhy_runtime.rosbridge.guard import Limits
 from cramhy_runtime.turtlesim.node import start_turtlesim
 
 kernel.start(clock="virtual")
-image.boot()
+boot()
 start_turtlesim()
 limits = Limits(first_message=1.0, complaints=20, message=100_000, reassembled=300_000)
 server = rosbridge.start(pages=json.loads(sys.argv[1]), limits=limits)
@@ -375,8 +379,8 @@ def test_who_breaks_off_in_the_middle_harms_nobody(server, data):
 
 DEEP = "[" * 60 + "]" * 60
 TEXTS = {
-    "{": "The message is no JSON: Expecting property name enclosed in double quotes at character 1.",
-    "": "The message is no JSON: Expecting value at character 0.",
+    "{": "The message is not JSON: Expecting property name enclosed in double quotes at character 1.",
+    "": "The message is not JSON: Expecting value at character 0.",
     "[]": "An operation is a JSON object, but this is an array.",
     "null": "An operation is a JSON object, but this is null.",
     "7": "An operation is a JSON object, but this is a number.",
@@ -385,16 +389,16 @@ TEXTS = {
     '{"op": 5}': '"op" must be a string, but it is a number.',
     '{"op": {"a": 1}}': '"op" must be a string, but it is an object.',
     '{"op": null}': '"op" must be a string, but it is null.',
-    '{"op": "publish", "x": NaN}': "The message is no JSON: it has the number NaN, which JSON does not have. Send null for a real that "
-                                   "is no number.",
-    '{"op": "publish", "x": -Infinity}': "The message is no JSON: it has the number -Infinity, which JSON does not have. Send null for a "
-                                         "real that is no number.",
+    '{"op": "publish", "x": NaN}': "The message is not JSON: it has the number NaN, which JSON does not have. Send null for a real that "
+                                   "is not a number.",
+    '{"op": "publish", "x": -Infinity}': "The message is not JSON: it has the number -Infinity, which JSON does not have. Send null for a "
+                                         "real that is not a number.",
     '{"op": "publish", "x": ' + "9" * 5000 + "}": "The message has a number of 5000 digits; 400 are allowed.",
     '{"op": "publish", "x": 0.' + "9" * 5000 + "}": "The message has a number of 5002 digits; 400 are allowed.",
     '{"op": "publish", "x": ' + DEEP + "}": "The message has arrays and objects more than 50 deep in each other.",
     "[" * 90_000: "The message has arrays and objects more than 50 deep in each other.",
     '{"a":' * 15_000: "The message has arrays and objects more than 50 deep in each other.",
-    '{"op": "x", "a": "' + '\\"' * 40_000: "The message is no JSON: Unterminated string starting at at character 17.",
+    '{"op": "x", "a": "' + '\\"' * 40_000: "The message is not JSON: Unterminated string starting at at character 17.",
 }
 
 
@@ -431,7 +435,7 @@ OPERATIONS = [
     ({"op": "subscribe", "topic": "/../../etc/passwd", "type": "std_msgs/String"}, "Character [.] at element [1] is not valid"),
     ({"op": "subscribe", "topic": "/a b", "type": "std_msgs/String"}, "Character [ ] at element [2] is not valid"),
     ({"op": "subscribe", "topic": "/" + "a" * 600}, "The name of the topic has 601 characters; 500 are allowed."),
-    ({"op": "subscribe", "topic": "//x", "type": "std_msgs/String"}, "//x is no name of a topic: a part of it is empty."),
+    ({"op": "subscribe", "topic": "//x", "type": "std_msgs/String"}, "//x is not a name of a topic: a part of it is empty."),
     ({"op": "subscribe", "topic": "/x", "type": "../../etc/passwd"}, "There is no type '../../etc/passwd'."),
     ({"op": "subscribe", "topic": "/x", "type": "std_msgs/../../x"}, "There is no type 'std_msgs/../../x'."),
     ({"op": "subscribe", "topic": "/x", "type": {"a": 1}}, "There is no type {'a': 1}."),
@@ -469,7 +473,7 @@ OPERATIONS = [
     ({"op": "fragment", "id": "a", "data": "x", "num": 1, "total": 1}, 'The "num" of a fragment is a number from 0 to 0'),
     ({"op": "fragment", "id": "a", "data": "x", "num": 0, "total": 10**9}, 'The "total" of a fragment is a number from 1 to 1000.'),
     ({"op": "fragment", "id": "a", "data": "x", "num": 0, "total": True}, 'The "total" of a fragment is a number from 1 to 1000.'),
-    ({"op": "fragment", "id": "a", "data": "{", "num": 0, "total": 1}, "The message is no JSON"),
+    ({"op": "fragment", "id": "a", "data": "{", "num": 0, "total": 1}, "The message is not JSON"),
 ]
 
 

@@ -88,7 +88,7 @@ def test_latched_messages_of_a_client_have_a_size(client, graph):
         assert talk.say(op="advertise", topic=topic, type="std_msgs/String", latch=True) == []
         assert talk.say(op="publish", topic=topic, msg={"data": "x" * 50}) == []
     assert talk.say(op="publish", topic="/a", msg={"data": "x" * 40}) == []  # it takes the other's place
-    told, = talk.say(op="publish", topic="/b", msg={"data": "x" * 61})
+    (told,) = talk.say(op="publish", topic="/b", msg={"data": "x" * 61})
     assert told["msg"] == ("The latched messages that you publish take 40 bytes, and this one 61; 100 are allowed. Unadvertise some.")
     assert talk.say(op="unadvertise", topic="/a") == [] and talk.say(op="publish", topic="/b", msg={"data": "x" * 61}) == []
 
@@ -100,8 +100,12 @@ def test_programs_of_a_client_have_a_number(client, graph):
     talk, other = client(programs=2), client()
 
     def start(each, name):
-        return each.call("/cramhy/start_program", package="turtlesim", executable="mimic",
-                         arguments=[f"__name:={name}", "input:=turtle1", "output:=nobody"])
+        return each.call(
+            "/cramhy/start_program",
+            package="turtlesim",
+            executable="mimic",
+            arguments=[f"__name:={name}", "input:=turtle1", "output:=nobody"],
+        )
 
     assert start(talk, "a")["result"] and start(talk, "b")["result"]
     assert start(talk, "c")["values"] == "You have started 2 programs that still run; more are not allowed. End some."
@@ -118,9 +122,15 @@ def test_fragments_without_text_count_too():
     assert identity < 3 and "fragments wait for others; all were forgotten." in str(caught.value)
 
 
-@pytest.mark.parametrize("ros_type, message", [
-    ("std_msgs/String", {"data": "x" * 1000}), ("std_msgs/UInt8MultiArray", {"data": [0] * 125}),
-    ("turtlesim/Pose", None), ("sensor_msgs/JointState", {"name": ["x" * 100] * 9, "position": [0.0] * 9})])
+@pytest.mark.parametrize(
+    "ros_type, message",
+    [
+        ("std_msgs/String", {"data": "x" * 1000}),
+        ("std_msgs/UInt8MultiArray", {"data": [0] * 125}),
+        ("turtlesim/Pose", None),
+        ("sensor_msgs/JointState", {"name": ["x" * 100] * 9, "position": [0.0] * 9}),
+    ],
+)
 def test_large_messages_that_wait_are_as_limited_as_many(client, ros_type, message):
     """Of small messages the number counts; of large ones their size, before the server's thread has looked at them, and after that."""
     talk, other = client(heavy=20_000, messages=1000), client()
@@ -131,9 +141,10 @@ def test_large_messages_that_wait_are_as_limited_as_many(client, ros_type, messa
     if message is None:
         assert other.outbox.reason is None and len(other.heard()) == 100 and other.outbox.weight == 0
     else:
-        assert other.outbox.reason in ("More than 0 MB of messages wait for you. Subscribe with throttle_rate or queue_length.",
-                                       "Messages of /large come faster than they can be sent. Subscribe with throttle_rate or "
-                                       "queue_length.")
+        assert other.outbox.reason in (
+            "More than 0 MB of messages wait for you. Subscribe with throttle_rate or queue_length.",
+            "Messages of /large come faster than they can be sent. Subscribe with throttle_rate or queue_length.",
+        )
 
 
 def test_a_queue_of_large_messages_keeps_the_newest(client):
@@ -157,7 +168,7 @@ def test_the_thread_that_is_late_keeps_no_more_than_is_allowed(graph):
     publication = node.advertise("/large", message_class_exact("std_msgs/String"))
     for number in range(50):
         publication.send(publication.type(f"{number:1000}"))
-    channel, = hub.sides[False].channels.values()
+    (channel,) = hub.sides[False].channels.values()
     assert len(channel.backlog) == 10
     while handed:
         handed.pop(0)()
@@ -181,8 +192,12 @@ def test_what_programs_of_clients_set_has_an_end_though_they_have_ended(client, 
     talk = client(parameters=4)
 
     def start(name, *arguments):
-        answer = talk.call("/cramhy/start_program", package="turtlesim", executable="mimic",
-                           arguments=[f"__name:={name}", "input:=turtle1", "output:=nobody", *arguments])
+        answer = talk.call(
+            "/cramhy/start_program",
+            package="turtlesim",
+            executable="mimic",
+            arguments=[f"__name:={name}", "input:=turtle1", "output:=nobody", *arguments],
+        )
         if answer["result"]:
             talk.call("/cramhy/end_node", node=f"/{name}")
         return answer["values"]

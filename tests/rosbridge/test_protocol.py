@@ -38,10 +38,14 @@ def test_the_type_of_a_topic_that_is_there_is_known(talk):
 def test_the_type_of_a_topic_that_is_not_there_must_be_given(talk):
     for operation in ("subscribe", "publish"):
         assert talk.say(op=operation, topic="/x", id="here") == [
-            {"op": "status", "level": "error", "id": "here",
-             "msg": "Nobody publishes on /x or listens to it yet, so its type is not known. Give the type, too."}]
-    assert errors(talk.say(op="advertise", topic="/x")) == [
-        'To advertise /x takes its type, such as "type": "geometry_msgs/Twist".']
+            {
+                "op": "status",
+                "level": "error",
+                "id": "here",
+                "msg": "Nobody publishes on /x or listens to it yet, so its type is not known. Give the type, too.",
+            }
+        ]
+    assert errors(talk.say(op="advertise", topic="/x")) == ['To advertise /x takes its type, such as "type": "geometry_msgs/Twist".']
 
 
 def test_another_type_than_the_topic_has_is_refused(talk):
@@ -52,7 +56,8 @@ def test_another_type_than_the_topic_has_is_refused(talk):
 
 def test_an_unknown_type_is_refused(talk):
     assert errors(talk.say(op="advertise", topic="/x", type="no_such_msgs/Thing")) == [
-        "There is no type 'no_such_msgs/Thing'. A type is written \"package/Name\"; its package must be on ROS_PACKAGE_PATH."]
+        "There is no type 'no_such_msgs/Thing'. A type is written \"package/Name\"; its package must be on ROS_PACKAGE_PATH."
+    ]
 
 
 def test_clients_talk_to_each_other(talk, other):
@@ -96,7 +101,8 @@ def test_unsubscribing_without_an_id_ends_all(talk):
 
 def test_a_message_that_does_not_fit_its_type_is_told_with_the_field(talk):
     assert errors(talk.say(op="publish", topic="/turtle1/cmd_vel", msg={"linear": {"x": "fast"}})) == [
-        "geometry_msgs/Twist message requires a float64 for field linear.x, but got a text, 'fast'."]
+        "geometry_msgs/Twist message requires a float64 for field linear.x, but got a text, 'fast'."
+    ]
 
 
 def test_a_throttled_topic_comes_slower_and_brings_the_newest_in_the_end(talk):
@@ -182,7 +188,12 @@ def test_what_a_client_had_goes_with_it(graph, talk):
 
 def test_a_service_of_the_simulator_answers_in_its_next_tick(talk):
     assert talk.call("/spawn", x=2, y=3, theta=0.5, name="anna") == {
-        "op": "service_response", "id": "call", "service": "/spawn", "values": {"name": "anna"}, "result": True}
+        "op": "service_response",
+        "id": "call",
+        "service": "/spawn",
+        "values": {"name": "anna"},
+        "result": True,
+    }
 
 
 def test_arguments_may_be_a_list(talk):
@@ -196,7 +207,8 @@ def test_a_refused_call_brings_the_reason(talk):
     assert (answer["result"], answer["values"]) == (False, "The service /kill refused, without a reason.")
     assert talk.call("/nowhere")["values"] == "Nobody offers the service /nowhere."
     assert talk.call("/spawn", x="left")["values"] == (
-        "turtlesim/SpawnRequest message requires a float32 for field x, but got a text, 'left'.")
+        "turtlesim/SpawnRequest message requires a float32 for field x, but got a text, 'left'."
+    )
 
 
 def test_a_server_that_goes_away_answers_nobody(talk, graph):
@@ -230,14 +242,23 @@ def test_a_plan_calls_a_client_and_no_plan_time_passes_meanwhile(talk):
     assert kernel.now() == began
 
 
-@pytest.mark.parametrize(("answer", "failure"), [
-    ({"result": False, "values": "not today"}, "not today"),
-    ({"result": False}, ""),
-    ({"values": {"sum": "many"}}, "the answer of the client that offers /sum is wrong: roscpp_tutorials/TwoIntsResponse message requires a "
-                                  "int64 for field sum, but got a text, 'many'."),
-    ({"values": {"product": 1}}, "the answer of the client that offers /sum is wrong: Message type roscpp_tutorials/TwoIntsResponse does "
-                                 "not have a field product. The fields of roscpp_tutorials/TwoIntsResponse are sum."),
-])
+@pytest.mark.parametrize(
+    ("answer", "failure"),
+    [
+        ({"result": False, "values": "not today"}, "not today"),
+        ({"result": False}, ""),
+        (
+            {"values": {"sum": "many"}},
+            "the answer of the client that offers /sum is wrong: roscpp_tutorials/TwoIntsResponse message requires a "
+            "int64 for field sum, but got a text, 'many'.",
+        ),
+        (
+            {"values": {"product": 1}},
+            "the answer of the client that offers /sum is wrong: Message type roscpp_tutorials/TwoIntsResponse does "
+            "not have a field product. The fields of roscpp_tutorials/TwoIntsResponse are sum.",
+        ),
+    ],
+)
 def test_a_client_that_fails_to_answer_fails_the_call(talk, answer, failure):
     from cramhy_runtime.ros import graph, services
 
@@ -261,7 +282,8 @@ def test_a_client_that_never_answers_is_not_waited_for(talk):
     too_late()
     assert calls[0].failure == "the client that offers /sum did not answer within 60 s"
     assert errors(talk.say(op="service_response", id=request["id"], values={"sum": 1})) == [
-        "Nobody waits for this answer: its id is none that you were called with, or it came too late."]
+        "Nobody waits for this answer: its id is none that you were called with, or it came too late."
+    ]
 
 
 def test_the_clock_goes_on_when_the_client_that_owes_an_answer_is_gone(talk):
@@ -277,10 +299,12 @@ def test_the_clock_goes_on_when_the_client_that_owes_an_answer_is_gone(talk):
 
 def test_nobody_takes_a_service_from_another_node(talk, other):
     assert errors(talk.say(op="advertise_service", service="/clear", type="std_srvs/Empty")) == [
-        "The service /clear is offered already, by /turtlesim."]
+        "The service /clear is offered already, by /turtlesim."
+    ]
     other.say(op="advertise_service", service="/mine", type="std_srvs/Empty")
     assert errors(talk.say(op="advertise_service", service="/mine", type="std_srvs/Empty")) == [
-        "The service /mine is offered already, by /rosbridge_websocket."]
+        "The service /mine is offered already, by /rosbridge_websocket."
+    ]
     assert other.say(op="advertise_service", service="/mine", type="std_srvs/SetBool") == []  # its own it may offer anew
 
 
@@ -360,5 +384,15 @@ def test_the_bytes_of_ros_1_of_all_kinds_of_fields(graph):
 
     log = wire.transmit(message_class_exact("rosgraph_msgs/Log")(name="ab", level=2, msg="ö", topics=["/x"], line=7))
     assert serialize(log) == (
-        b"\x00\x00\x00\x00" + b"\x00" * 8 + b"\x00\x00\x00\x00" + b"\x02" + b"\x02\x00\x00\x00ab" + b"\x01\x00\x00\x00\xf6"
-        + b"\x00\x00\x00\x00" + b"\x00\x00\x00\x00" + b"\x07\x00\x00\x00" + b"\x01\x00\x00\x00" + b"\x02\x00\x00\x00/x")
+        b"\x00\x00\x00\x00"
+        + b"\x00" * 8
+        + b"\x00\x00\x00\x00"
+        + b"\x02"
+        + b"\x02\x00\x00\x00ab"
+        + b"\x01\x00\x00\x00\xf6"
+        + b"\x00\x00\x00\x00"
+        + b"\x00\x00\x00\x00"
+        + b"\x07\x00\x00\x00"
+        + b"\x01\x00\x00\x00"
+        + b"\x02\x00\x00\x00/x"
+    )

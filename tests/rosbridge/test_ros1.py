@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel, rosbridge
-from cramhy_runtime.lisp.condition_types import Condition
+from cramhy_runtime.ground.condition_types import Condition
 from stalling_proxy import StallingProxy
 
 pytest.importorskip("roslibpy")
@@ -131,8 +131,8 @@ def test_another_type_than_the_robots_is_an_error_where_it_is_asked_for(robot, j
 
 def test_the_robots_type_and_topics_that_are_new_are_taken(robot, join):
     evaluate, _ = join()
-    evaluate('''(roslisp:advertise "/turtle1/cmd_vel" "geometry_msgs/Twist") (roslisp:advertise "/mine" "std_msgs/String")
-                (roslisp:subscribe "/turtle1/pose" "turtlesim/Pose" (lambda (m) m))''')
+    evaluate("""(roslisp:advertise "/turtle1/cmd_vel" "geometry_msgs/Twist") (roslisp:advertise "/mine" "std_msgs/String")
+                (roslisp:subscribe "/turtle1/pose" "turtlesim/Pose" (lambda (m) m))""")
     until(lambda: len(robot.heard("advertise")) == 2 and robot.heard("subscribe"), "what was advertised")
     assert robot.wrong() == []
 
@@ -173,8 +173,10 @@ def test_services_whose_types_nobody_tells_are_named_and_do_not_keep_the_session
     monkeypatch.setattr(attachment, "PATIENCE", 1.0)
     robot.mute("/clear")
     evaluate, link = join()
-    assert (f"{link.shown} has not told the types of these services within 1 s: /clear. They can be called as soon as it does."
-            in capsys.readouterr().out)
+    assert (
+        f"{link.shown} has not told the types of these services within 1 s: /clear. They can be called as soon as it does."
+        in capsys.readouterr().out
+    )
     evaluate("""(roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 1 :y 2 :theta 0)""")
 
 
@@ -196,8 +198,10 @@ def test_a_robot_that_does_not_answer_while_the_session_joins_is_told_as_that(ro
         outcome.append(str(problem))
     kernel.stop()
     there = f"ws://127.0.0.1:{proxy.port}"
-    assert outcome == [f"{there} cannot be joined, since /rosapi/topics cannot be asked there: the connection to {there} was lost: nothing "
-                       "has come from there for 2 s. Does the node rosapi run there, and does the network carry?"]
+    assert outcome == [
+        f"{there} cannot be joined, since /rosapi/topics cannot be asked there: the connection to {there} was lost: nothing "
+        "has come from there for 2 s. Does the node rosapi run there, and does the network carry?"
+    ]
 
 
 def test_while_the_connection_is_lost_a_missing_service_says_so(robot, proxy, join):
@@ -206,8 +210,12 @@ def test_while_the_connection_is_lost_a_missing_service_says_so(robot, proxy, jo
     proxy.cut()
     until(lambda: not link.connected, "the loss")
     problem = failure(evaluate, '(roslisp:call-service "/clear" "std_srvs/Empty")')
-    assert re.fullmatch(r"ros-rpc call \(lookupService /clear\) to .* failed with code -1, message no provider: the connection to "
-                        + re.escape(link.shown) + r" is lost since \d\d:\d\d:\d\d, and is tried again, values ", problem.report())
+    assert re.fullmatch(
+        r"ros-rpc call \(lookupService /clear\) to .* failed with code -1, message no provider: the connection to "
+        + re.escape(link.shown)
+        + r" is lost since \d\d:\d\d:\d\d, and is tried again, values ",
+        problem.report(),
+    )
     assert problem.hint == '(wait-for-service "/clear") waits until the service is there again.'
     proxy.resume()
     assert evaluate('(roslisp:wait-for-service "/clear" 30)') == [True]
@@ -216,10 +224,10 @@ def test_while_the_connection_is_lost_a_missing_service_says_so(robot, proxy, jo
     assert problem.hint.startswith("No node offers this service.")
 
 
-OFFER = '''(roslisp:def-service-callback roscpp_tutorials-srv:TwoInts (a b)
+OFFER = """(roslisp:def-service-callback roscpp_tutorials-srv:TwoInts (a b)
              (cond ((= a 0) (error "no zero")) ((= a 1) (sleep 1000)))
              (roslisp:make-response :sum (+ a b)))
-           (roslisp:register-service "/sum" roscpp_tutorials-srv:TwoInts)'''
+           (roslisp:register-service "/sum" roscpp_tutorials-srv:TwoInts)"""
 
 
 def offered(robot, evaluate):
@@ -261,8 +269,8 @@ def test_callers_of_a_connection_that_was_lost_are_told_and_a_late_answer_reache
 def test_services_and_topics_are_withdrawn_at_an_orderly_end_and_callers_are_told(robot, join, end):
     evaluate, link = join()
     offered(robot, evaluate)
-    evaluate('''(roslisp:advertise "/mine" "std_msgs/String")
-                (roslisp:subscribe "/turtle1/pose" "turtlesim/Pose" (lambda (m) m))''')
+    evaluate("""(roslisp:advertise "/mine" "std_msgs/String")
+                (roslisp:subscribe "/turtle1/pose" "turtlesim/Pose" (lambda (m) m))""")
     for _ in range(2):
         robot.call("/sum", {"a": 1, "b": 1})  # the first is being served for ever, the second one waits
     until(lambda: len(link.offering.calls) == 2, "the calls")
@@ -330,7 +338,7 @@ def test_commands_of_a_stall_are_dropped_but_the_last_one_and_that_is_told(robot
     evaluate, link = join()
     evaluate(f'(defparameter *cmd* (roslisp:advertise "{CMD}" "geometry_msgs/Twist"))')
     stall, resume = stalls(robot, proxy, how)
-    evaluate('(roslisp:publish-msg *cmd* (:x :linear) 0.0)')
+    evaluate("(roslisp:publish-msg *cmd* (:x :linear) 0.0)")
     until(lambda: robot.heard("publish"), "the first command")
     kernel.sleep(0.3)
     stall()
@@ -342,14 +350,22 @@ def test_commands_of_a_stall_are_dropped_but_the_last_one_and_that_is_told(robot
     kernel.sleep(0.7)
     resume()
     until(lambda: link.connected, "the return")
-    sent = until(lambda: [each["msg"]["linear"]["x"] for _, each in robot.heard("publish")][-1] == 0.5 and
-                 [each["msg"]["linear"]["x"] for _, each in robot.heard("publish")], "the last command")
+    sent = until(
+        lambda: (
+            [each["msg"]["linear"]["x"] for _, each in robot.heard("publish")][-1] == 0.5
+            and [each["msg"]["linear"]["x"] for _, each in robot.heard("publish")]
+        ),
+        "the last command",
+    )
     assert sent[-1] == 0.5 and len(sent) < 30, sent
     assert not [number for number in sent if 20 < number < 60], sent  # those of the middle are stale
     assert robot.heard("advertise")[-1][0] < robot.heard("publish")[-1][0]
     said = capsys.readouterr().out
-    told = re.search(rf"(\d+) messages that would have come to {re.escape(link.shown)} more than 0.5 s late were dropped "
-                     rf"\(\1 on {CMD}\). The last one of each topic was delivered.", said)
+    told = re.search(
+        rf"(\d+) messages that would have come to {re.escape(link.shown)} more than 0.5 s late were dropped "
+        rf"\(\1 on {CMD}\). The last one of each topic was delivered.",
+        said,
+    )
     doubtful = re.search(r"again and again. (\d+) of the messages that were under way may be lost.", said)
     assert told and int(told[1]) + int(doubtful[1] if doubtful else 0) + len(sent) >= 61, said
 
@@ -391,8 +407,13 @@ def test_a_hiccup_of_the_network_costs_no_message(robot, proxy, join):
 def test_a_session_that_was_stopped_itself_takes_nothing_for_a_stall(robot, proxy, tmp_path):
     if not hasattr(signal, "SIGSTOP"):
         pytest.skip("no process can be stopped here")
-    child = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--ros", robot.address], stdin=subprocess.PIPE,
-                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    child = subprocess.Popen(
+        [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--ros", robot.address],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
     try:
         child.stdin.write('(roslisp:start-ros-node "x")\n')
         child.stdin.flush()
@@ -439,17 +460,19 @@ def test_a_last_message_that_nobody_confirms_is_told(robot, proxy, join, capsys)
     until(lambda: not link.connected, "the loss")
     evaluate("(roslisp:publish-msg *cmd* (:x :linear) 9.0)")
     link.close()
-    assert (f"{link.shown} has not confirmed the last messages on {CMD} before the session left. If one of them was to stop the robot, "
-            "stop it there.") in capsys.readouterr().out
+    assert (
+        f"{link.shown} has not confirmed the last messages on {CMD} before the session left. If one of them was to stop the robot, "
+        "stop it there."
+    ) in capsys.readouterr().out
 
 
 # --------------------------------------------------------------------------------------------------------------- the course
 
 
 def test_the_plan_of_the_course_drives_the_robot_before_and_after_a_cut(robot, proxy, join):
-    from image_as_it_was import image_as_it_was
+    from cramhy_runtime.session import Image
 
-    with image_as_it_was():
+    with Image(as_now=True):
         evaluate, link = join(node=False)
         evaluate('(asdf:load-system "cram-my-beginner-tutorial")')
         evaluate("(in-package :tut)")

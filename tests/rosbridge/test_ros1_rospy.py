@@ -18,8 +18,14 @@ import pytest
 from cramhy_runtime import kernel, rosbridge
 from test_ros1 import CMD, OFFER, Robot, arrive, failure, until
 
-PYTHON = next((each for each in ("/usr/bin/python3", shutil.which("python3")) if each and shutil.which("roscore") and not subprocess.run(
-    [each, "-c", "import rospy, rosservice"], capture_output=True).returncode), None)
+PYTHON = next(
+    (
+        each
+        for each in ("/usr/bin/python3", shutil.which("python3"))
+        if each and shutil.which("roscore") and not subprocess.run([each, "-c", "import rospy, rosservice"], capture_output=True).returncode
+    ),
+    None,
+)
 pytestmark = pytest.mark.skipif(PYTHON is None, reason="rospy is not installed")
 LIBRARIES = sysconfig.get_path("purelib")
 
@@ -68,13 +74,14 @@ def robot(ros, monkeypatch):
 def session(robot):
     """(evaluate, link), joined, without a node."""
     from cramhy_runtime.repl.session import Session
+    from cramhy_runtime.session import Image
 
-    made = Session(time="wall")
-    made.package = "CRAM-USER"
-    link = rosbridge.attach(robot.address)
-    yield made.evaluate_text, link
-    link.close()
-    kernel.stop()
+    with Image(as_now=True):
+        made = Session(time="wall")
+        made.package = "CRAM-USER"
+        link = rosbridge.attach(robot.address)
+        yield made.evaluate_text, link
+        link.close()
 
 
 def commands(log):
@@ -83,36 +90,42 @@ def commands(log):
 
 
 def test_the_course_drives_a_turtle_of_rospy(robot, session):
-    from image_as_it_was import image_as_it_was
-
     evaluate, link = session
-    with image_as_it_was():
-        evaluate('(asdf:load-system "cram-my-beginner-tutorial")')
-        evaluate("(in-package :tut)")
-        evaluate("(init)")
-        evaluate("(top-level (wait-for *turtle-pose*))")
-        assert evaluate('(get-param "/turtlesim/background_b")') == [255]
-        arrive(robot, lambda: evaluate("(top-level (move-to (make-3d-vector 7 6 0)))"), 7, 6)
-        evaluate("(drive 1 1)")
-        arrive(robot, lambda: evaluate("(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) "
-                                       "(navigate '(5 5 0))))"), 5, 5)
-        problem = failure(evaluate, '(advertise "/turtle1/cmd_vel" "std_msgs/String")')
-        assert problem.report() == (f"The topic {CMD} has messages of the type geometry_msgs/Twist at {link.shown}, not std_msgs/String, "
-                                    "so no message would arrive.")
+    evaluate('(asdf:load-system "cram-my-beginner-tutorial")')
+    evaluate("(in-package :tut)")
+    evaluate("(init)")
+    evaluate("(top-level (wait-for *turtle-pose*))")
+    assert evaluate('(get-param "/turtlesim/background_b")') == [255]
+    arrive(robot, lambda: evaluate("(top-level (move-to (make-3d-vector 7 6 0)))"), 7, 6)
+    evaluate("(drive 1 1)")
+    arrive(
+        robot,
+        lambda: evaluate("(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control) (navigate '(5 5 0))))"),
+        5,
+        5,
+    )
+    problem = failure(evaluate, '(advertise "/turtle1/cmd_vel" "std_msgs/String")')
+    assert problem.report() == (
+        f"The topic {CMD} has messages of the type geometry_msgs/Twist at {link.shown}, not std_msgs/String, so no message would arrive."
+    )
 
 
 def test_rosservice_calls_a_service_of_the_plan_and_is_told_when_the_session_leaves(ros, robot, session):
     evaluate, link = session
     evaluate('(roslisp:start-ros-node "lisp")')
-    evaluate(OFFER.replace("roscpp_tutorials-srv:TwoInts (a b)", "std_srvs-srv:SetBool (data)")
-             .replace("((= a 0)", "((not data)").replace("((= a 1)", "(data")
-             .replace("(roslisp:make-response :sum (+ a b))", "(roslisp:make-response)")
-             .replace("roscpp_tutorials-srv:TwoInts", "std_srvs-srv:SetBool"))
+    evaluate(
+        OFFER.replace("roscpp_tutorials-srv:TwoInts (a b)", "std_srvs-srv:SetBool (data)")
+        .replace("((= a 0)", "((not data)")
+        .replace("((= a 1)", "(data")
+        .replace("(roslisp:make-response :sum (+ a b))", "(roslisp:make-response)")
+        .replace("roscpp_tutorials-srv:TwoInts", "std_srvs-srv:SetBool")
+    )
     until(lambda: "/sum" in robot.services(), "the service")
 
     def call(value):
-        return subprocess.Popen(["rosservice", "call", "/sum", value], env=ros[0], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                text=True)
+        return subprocess.Popen(
+            ["rosservice", "call", "/sum", value], env=ros[0], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
 
     refused = call("false")
     until(lambda: refused.poll() is not None, "the end of rosservice")

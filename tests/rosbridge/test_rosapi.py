@@ -19,11 +19,18 @@ def api(graph, hub):
 
 def test_the_definitions_are_those_of_ros_noetic():
     """The sums that clients of ROS 1 know these types by."""
-    sums = {"Topics": "d966d98fc333fa1f3135af765eac1ba8", "GetParam": "e36fd90759dbac1c5159140a7fa8c644",
-            "SetParam": "bc6ccc4a57f61779c8eaae61e9f422e0", "GetTime": "556a4fb76023a469987922359d08a844",
-            "ServiceType": "0e24a2dcdf70e483afc092a35a1f15f7", "Nodes": "3d07bfda1268b4f76b16b7ba8a82665d",
-            "TopicType": "0d30b3f53a0fd5036523a7141e524ddf", "HasParam": "ed3df286bd6dff9b961770f577454ea9",
-            "DeleteParam": "c1f3d28f1b044c871e6eff2e9fc3c667", "Services": "e44a7e7bcb900acadbcc28b132378f0c"}
+    sums = {
+        "Topics": "d966d98fc333fa1f3135af765eac1ba8",
+        "GetParam": "e36fd90759dbac1c5159140a7fa8c644",
+        "SetParam": "bc6ccc4a57f61779c8eaae61e9f422e0",
+        "GetTime": "556a4fb76023a469987922359d08a844",
+        "ServiceType": "0e24a2dcdf70e483afc092a35a1f15f7",
+        "Nodes": "3d07bfda1268b4f76b16b7ba8a82665d",
+        "TopicType": "0d30b3f53a0fd5036523a7141e524ddf",
+        "HasParam": "ed3df286bd6dff9b961770f577454ea9",
+        "DeleteParam": "c1f3d28f1b044c871e6eff2e9fc3c667",
+        "Services": "e44a7e7bcb900acadbcc28b132378f0c",
+    }
     assert {name: type_texts.md5_of(messages.service_type_exact(f"rosapi/{name}")) for name in sums} == sums
 
 
@@ -36,8 +43,12 @@ def test_nobody_sees_rosapi_itself(api):
 def test_topics(api):
     found = api("topics")
     assert dict(zip(found["topics"], found["types"])) == {
-        "/rosout": "rosgraph_msgs/Log", "/rosout_agg": "rosgraph_msgs/Log", "/turtle1/cmd_vel": "geometry_msgs/Twist",
-        "/turtle1/color_sensor": "turtlesim/Color", "/turtle1/pose": "turtlesim/Pose"}
+        "/rosout": "rosgraph_msgs/Log",
+        "/rosout_agg": "rosgraph_msgs/Log",
+        "/turtle1/cmd_vel": "geometry_msgs/Twist",
+        "/turtle1/color_sensor": "turtlesim/Color",
+        "/turtle1/pose": "turtlesim/Pose",
+    }
     assert api("topics_for_type", type="turtlesim/Pose") == {"topics": ["/turtle1/pose"]}
     assert api("topic_type", topic="turtle1/pose") == {"type": "turtlesim/Pose"}
     assert api("topic_type", topic="/nowhere") == {"type": ""}
@@ -65,8 +76,15 @@ def test_services(api):
 
 def test_details_of_types(api):
     (twist, vector) = api("message_details", type="geometry_msgs/Twist")["typedefs"]
-    assert twist == {"type": "geometry_msgs/Twist", "fieldnames": ["linear", "angular"], "fieldtypes": ["geometry_msgs/Vector3"] * 2,
-                     "fieldarraylen": [-1, -1], "examples": ["{}", "{}"], "constnames": [], "constvalues": []}
+    assert twist == {
+        "type": "geometry_msgs/Twist",
+        "fieldnames": ["linear", "angular"],
+        "fieldtypes": ["geometry_msgs/Vector3"] * 2,
+        "fieldarraylen": [-1, -1],
+        "examples": ["{}", "{}"],
+        "constnames": [],
+        "constvalues": [],
+    }
     assert vector["examples"] == ["0.0"] * 3
     (log, _) = api("message_details", type="rosgraph_msgs/Log")["typedefs"]
     assert dict(zip(log["fieldnames"], log["fieldarraylen"]))["topics"] == 0
@@ -74,7 +92,8 @@ def test_details_of_types(api):
     (request,) = api("service_request_details", type="turtlesim/Spawn")["typedefs"]
     assert request["fieldnames"] == ["x", "y", "theta", "name"]
     assert api("service_response_details", type="turtlesim/Nothing") == (
-        "There is no type 'turtlesim/Nothing'. A type is written \"package/Name\"; its package must be on ROS_PACKAGE_PATH.")
+        "There is no type 'turtlesim/Nothing'. A type is written \"package/Name\"; its package must be on ROS_PACKAGE_PATH."
+    )
 
 
 def test_parameters_are_json_texts(api, graph):
@@ -93,11 +112,14 @@ def test_parameters_are_json_texts(api, graph):
     assert "/text" in api("get_param_names")["names"]
 
 
-@pytest.mark.parametrize(("value", "text"), [
-    ("null", "A parameter has no value null. To remove one, call /rosapi/delete_param."),
-    ('{"a": [1, null]}', "A parameter has no value null. To remove one, call /rosapi/delete_param."),
-    ("[" * 60 + "]" * 60, "The value of a parameter has lists and dictionaries more than 50 deep in each other."),
-])
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ("null", "A parameter has no value null. To remove one, call /rosapi/delete_param."),
+        ('{"a": [1, null]}', "A parameter has no value null. To remove one, call /rosapi/delete_param."),
+        ("[" * 60 + "]" * 60, "The value of a parameter has lists and dictionaries more than 50 deep in each other."),
+    ],
+)
 def test_what_no_parameter_can_be_is_refused(api, value, text):
     assert api("set_param", name="/x", value=value) == text
 

@@ -7,6 +7,7 @@ import subprocess
 
 import pytest
 
+
 def test_roslib_under_node(roslib_folder, beside):
     from cramhy_runtime import kernel, rosbridge
     from cramhy_runtime.repl.session import Session
@@ -26,7 +27,8 @@ def test_roslib_under_node(roslib_folder, beside):
         finish = beside(client)
         (total,) = session.evaluate_text(
             """(progn (roslisp:wait-for-service "/sum" 60)
-                      (roslisp:msg-slot-value (roslisp:call-service "/sum" "roscpp_tutorials/TwoInts" :a 20 :b 22) :sum))""")
+                      (roslisp:msg-slot-value (roslisp:call-service "/sum" "roscpp_tutorials/TwoInts" :a 20 :b 22) :sum))"""
+        )
         finish()
     finally:
         kernel.stop()
@@ -37,9 +39,31 @@ def test_roslib_under_node(roslib_folder, beside):
     vector = {"x": "float64", "y": "float64", "z": "float64"}
     refused = {"refused": "The service /kill refused, without a reason."}
     assert found == {
-        "moved": True, "png": pose, "cbor": pose, "spawn": {"name": "anna"}, "pen": {}, "teleport": {}, "relative": {}, "kill": {},
-        "killed": refused, "clear": {}, "reset": {}, "topics": True, "types": True, "for type": ["/turtle1/color_sensor"],
-        "topic type": "geometry_msgs/Twist", "services": True, "services for type": ["/spawn"], "service type": "turtlesim/SetPen",
-        "request": ["x", "y", "theta", "name"], "response": ["name"], "message": {"linear": vector, "angular": vector}, "nodes": True,
-        "actions": [], "param": 200, "params": True, "asked": [20, 22], "answered": True,
+        "moved": True,
+        "png": pose,
+        "cbor": pose,
+        "spawn": {"name": "anna"},
+        "pen": {},
+        "teleport": {},
+        "relative": {},
+        "kill": {},
+        "killed": refused,
+        "clear": {},
+        "reset": {},
+        "topics": True,
+        "types": True,
+        "for type": ["/turtle1/color_sensor"],
+        "topic type": "geometry_msgs/Twist",
+        "services": True,
+        "services for type": ["/spawn"],
+        "service type": "turtlesim/SetPen",
+        "request": ["x", "y", "theta", "name"],
+        "response": ["name"],
+        "message": {"linear": vector, "angular": vector},
+        "nodes": True,
+        "actions": [],
+        "param": 200,
+        "params": True,
+        "asked": [20, 22],
+        "answered": True,
     }

@@ -166,9 +166,13 @@ def test_every_service_there_is_can_be_called(lisp, connect, beside):
     refused = {name: answer for name, answer in answers.items() if isinstance(answer, str)}
     no_type = "There is no type ''. A type is written \"package/Name\"; its package must be on ROS_PACKAGE_PATH."
     assert refused == {
-        **{name: f"The service {name} refused, without a reason."
-           for name in ("/kill", "/rosout/set_logger_level", "/turtlesim/set_logger_level")},
-        "/rosapi/message_details": no_type, "/rosapi/service_request_details": no_type, "/rosapi/service_response_details": no_type,
+        **{
+            name: f"The service {name} refused, without a reason."
+            for name in ("/kill", "/rosout/set_logger_level", "/turtlesim/set_logger_level")
+        },
+        "/rosapi/message_details": no_type,
+        "/rosapi/service_request_details": no_type,
+        "/rosapi/service_response_details": no_type,
         "/rosapi/delete_param": "A parameter needs a name; all of them at once cannot be changed.",
         "/rosapi/set_param": "A parameter needs a name; all of them at once cannot be changed.",
     }

@@ -189,8 +189,9 @@ def test_a_port_that_is_taken_is_told(serve):
         taken.listen()
         with pytest.raises(ServerError) as caught:
             rosbridge.start(port=port)
-    assert str(caught.value) == (f"The server cannot listen on port {port} of 127.0.0.1: Address already in use. Choose another port, or "
-                                 "none for a free one.")
+    assert str(caught.value) == (
+        f"The server cannot listen on port {port} of 127.0.0.1: Address already in use. Choose another port, or none for a free one."
+    )
 
 
 def test_it_listens_on_loopback_only(serve):
@@ -211,11 +212,16 @@ def test_pages_have_their_headers(serve, outside):
     body, headers = outside(fetch, "/")
     assert body == b"<p>turtle</p>"
     assert {name.lower(): value for name, value in headers.items() if name.lower() != "connection"} == {
-        "content-type": "text/html; charset=utf-8", "content-length": "13",
+        "content-type": "text/html; charset=utf-8",
+        "content-length": "13",
         "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; "
         "connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-        "x-content-type-options": "nosniff", "x-frame-options": "DENY", "referrer-policy": "no-referrer",
-        "cross-origin-opener-policy": "same-origin", "cross-origin-resource-policy": "same-origin", "cache-control": "no-store",
+        "x-content-type-options": "nosniff",
+        "x-frame-options": "DENY",
+        "referrer-policy": "no-referrer",
+        "cross-origin-opener-policy": "same-origin",
+        "cross-origin-resource-policy": "same-origin",
+        "cache-control": "no-store",
     }
     body, headers = outside(fetch, "/view.js")
     assert headers["cache-control"] == "max-age=5"

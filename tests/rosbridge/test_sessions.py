@@ -31,8 +31,13 @@ def folder_of(tmp_path):
 
 def look(folder, before=(), **environment):
     """What another program finds: the ports of sessions; and what it says on stderr."""
-    done = subprocess.run([*before, sys.executable, "-c", LOOK], capture_output=True, text=True, timeout=60,
-                          env={**os.environ, "XDG_RUNTIME_DIR": str(folder), **environment})
+    done = subprocess.run(
+        [*before, sys.executable, "-c", LOOK],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(folder), **environment},
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout), done.stderr
 
@@ -68,8 +73,20 @@ def announced(tmp_path):
 def made_up(**values):
     """What stands in the file of a session of this very process, with other values."""
     me = processes.own()
-    return {"host": "127.0.0.1", "port": 1, "token": "t", "pid": me.pid, "address": "ws://127.0.0.1:1/t", "url": "http://127.0.0.1:1/#t",
-            "started": 1, "process": me.began, "machine": me.machine, "boot": me.boot, "namespace": me.namespace, **values}
+    return {
+        "host": "127.0.0.1",
+        "port": 1,
+        "token": "t",
+        "pid": me.pid,
+        "address": "ws://127.0.0.1:1/t",
+        "url": "http://127.0.0.1:1/#t",
+        "started": 1,
+        "process": me.began,
+        "machine": me.machine,
+        "boot": me.boot,
+        "namespace": me.namespace,
+        **values,
+    }
 
 
 # ------------------------------------------------------------------------------------------------------------- the folder
@@ -79,7 +96,12 @@ def test_the_session_is_found_by_its_file(serve, outside, tmp_path):
     server = serve()
     found = outside(sessions.current)
     assert (found.port, found.token, found.pid, found.address, found.url) == (
-        server.port, server.token, os.getpid(), server.address, server.url)
+        server.port,
+        server.token,
+        os.getpid(),
+        server.address,
+        server.url,
+    )
     folder = folder_of(tmp_path)
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     assert [stat.S_IMODE(path.stat().st_mode) for path in folder.iterdir()] == [0o600]
@@ -93,8 +115,10 @@ def test_a_folder_that_others_can_enter_is_not_trusted(tmp_path):
     folder.chmod(0o755)
     with pytest.raises(sessions.Unsafe) as caught:
         sessions.current()
-    assert str(caught.value) == (f"{folder} is not a folder that belongs to this user alone, so no session is announced or looked for "
-                                 f"there. Remove it, or type: chmod 700 {folder}")
+    assert str(caught.value) == (
+        f"{folder} is not a folder that belongs to this user alone, so no session is announced or looked for "
+        f"there. Remove it, or type: chmod 700 {folder}"
+    )
 
 
 def test_where_no_session_can_be_announced_nothing_is_looked_for_and_no_server_stays(serve, tmp_path, monkeypatch):
@@ -107,7 +131,8 @@ def test_where_no_session_can_be_announced_nothing_is_looked_for_and_no_server_s
         serve()
     assert str(caught.value) == (
         f"The server cannot be announced to the other programs of this user. {tmp_path / 'file' / f'cramhy-{os.getuid()}'}, where "
-        "sessions are announced, cannot be made: Not a directory. Set XDG_RUNTIME_DIR to a folder of your own.")
+        "sessions are announced, cannot be made: Not a directory. Set XDG_RUNTIME_DIR to a folder of your own."
+    )
     assert running() is None and "/rosapi" not in graph.active().nodes
 
 
@@ -150,7 +175,8 @@ def test_a_full_folder_is_told_in_one_line_and_nothing_is_left(small_disk, start
     session = start(place)
     assert session.problem == (
         f"The server cannot be announced to the other programs of this user. A file cannot be written in {folder}, where sessions are "
-        "announced: No space left on device. Make room there, or set XDG_RUNTIME_DIR to a folder of your own.")
+        "announced: No space left on device. Make room there, or set XDG_RUNTIME_DIR to a folder of your own."
+    )
     assert list(folder.iterdir()) == []
 
 
@@ -160,10 +186,14 @@ def test_a_folder_that_cannot_be_written_is_told_in_one_line(small_disk, start, 
     if there:
         folder_of(place).mkdir(mode=0o700)
     make_read_only()
-    says = (f"A file cannot be written in {folder_of(place)}, where sessions are announced: Read-only file system. Make room there, or set"
-            if there else f"{folder_of(place)}, where sessions are announced, cannot be made: Read-only file system. Set")
-    assert start(place).problem == (f"The server cannot be announced to the other programs of this user. {says} XDG_RUNTIME_DIR to a "
-                                    "folder of your own.")
+    says = (
+        f"A file cannot be written in {folder_of(place)}, where sessions are announced: Read-only file system. Make room there, or set"
+        if there
+        else f"{folder_of(place)}, where sessions are announced, cannot be made: Read-only file system. Set"
+    )
+    assert start(place).problem == (
+        f"The server cannot be announced to the other programs of this user. {says} XDG_RUNTIME_DIR to a folder of your own."
+    )
 
 
 def test_a_session_whose_folder_fills_up_goes_on_and_says_once_that_it_cannot_be_found(small_disk, start):
@@ -201,8 +231,10 @@ def test_what_a_killed_session_left_behind_goes_when_the_next_one_starts(start, 
     me = processes.own()
     dead = subprocess.Popen([sys.executable, "-c", ""])
     dead.wait()
-    unfinished = [session.file.parent / f".session-{session.pid}-{me.began}-{me.place}-abc",
-                  session.file.parent / f".session-{dead.pid}-1-{me.place}-abc"]
+    unfinished = [
+        session.file.parent / f".session-{session.pid}-{me.began}-{me.place}-abc",
+        session.file.parent / f".session-{dead.pid}-1-{me.place}-abc",
+    ]
     mine = session.file.parent / f".session-{me.pid}-{me.began}-{me.place}-abc"
     elsewhere = session.file.parent / f".session-{dead.pid}-1-0123456789ab-abc"
     old = session.file.parent / ".session-abcdef"
@@ -268,13 +300,23 @@ def test_a_session_that_was_killed_in_another_namespace_is_not_shown_but_its_fil
     assert session.file.exists()  # nobody can know here whether it is dead
 
 
-ALIVE = {"another machine": {"machine": "elsewhere", "pid": 2**22 + 1}, "another namespace": {"namespace": "pid:[1]", "pid": 2**22 + 1},
-         "no machine": {"machine": "", "pid": 2**22 + 1}, "no boot": {"boot": "", "pid": 2**22 + 1},
-         "no namespace": {"namespace": "", "pid": 2**22 + 1}, "no start": {"process": "", "pid": 2**22 + 1},
-         "this process": {}, "a field of a later version": {"colour": "red", "pid": os.getpid()}}
-DEAD = {"no process of that number": {"pid": 2**22 + 1}, "a number that is none": {"pid": 10**30}, "the number has another process":
-        {"process": "1"}, "before the machine was started": {"boot": "another"},
-        "before the machine was started, in a container": {"boot": "another", "namespace": "pid:[1]"}}
+ALIVE = {
+    "another machine": {"machine": "elsewhere", "pid": 2**22 + 1},
+    "another namespace": {"namespace": "pid:[1]", "pid": 2**22 + 1},
+    "no machine": {"machine": "", "pid": 2**22 + 1},
+    "no boot": {"boot": "", "pid": 2**22 + 1},
+    "no namespace": {"namespace": "", "pid": 2**22 + 1},
+    "no start": {"process": "", "pid": 2**22 + 1},
+    "this process": {},
+    "a field of a later version": {"colour": "red", "pid": os.getpid()},
+}
+DEAD = {
+    "no process of that number": {"pid": 2**22 + 1},
+    "a number that is none": {"pid": 10**30},
+    "the number has another process": {"process": "1"},
+    "before the machine was started": {"boot": "another"},
+    "before the machine was started, in a container": {"boot": "another", "namespace": "pid:[1]"},
+}
 
 
 @LINUX
@@ -297,8 +339,10 @@ def test_where_the_system_does_not_tell_every_process_counts_as_alive(announced,
     assert sessions.living() == [] and path.exists()
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "7", "null", "{}", '{"pid": 1}', json.dumps(made_up(pid="1")), "\0", "[" * 50_000,
-                                  json.dumps(made_up(port=True))])
+@pytest.mark.parametrize(
+    "text",
+    ["", "{", "[]", "7", "null", "{}", '{"pid": 1}', json.dumps(made_up(pid="1")), "\0", "[" * 50_000, json.dumps(made_up(port=True))],
+)
 def test_a_file_in_which_no_session_stands_goes(announced, text):
     path = announced("session-1-1.json", text)
     assert sessions.living() == [] and not path.exists()
@@ -391,8 +435,10 @@ def test_a_session_that_cannot_be_announced_again_says_so_once(serve, tmp_path, 
     folder = folder_of(tmp_path)
     shutil.rmtree(folder)
     folder.touch()
-    line = (f"; Other programs cannot find this session any more. {folder}, where sessions are announced, cannot be made: File exists. "
-            "Set XDG_RUNTIME_DIR to a folder of your own.\n")
+    line = (
+        f"; Other programs cannot find this session any more. {folder}, where sessions are announced, cannot be made: File exists. "
+        "Set XDG_RUNTIME_DIR to a folder of your own.\n"
+    )
     told = []
 
     def said():

@@ -17,8 +17,17 @@ from bridge_clients import Wire
 from processes_of_sessions import SessionProcess, wait_until
 
 STRANGER = Path(__file__).with_name("strangers.py")
-WAYS = ["silent", "half a request", "half open", "connects and goes", "no token", "half a token", "wrong tokens", "requests",
-        "does not read"]
+WAYS = [
+    "silent",
+    "half a request",
+    "half open",
+    "connects and goes",
+    "no token",
+    "half a token",
+    "wrong tokens",
+    "requests",
+    "does not read",
+]
 PAGES = {"/": ["<p>turtle</p>", "text/html"], "/app.js": ["1;", "text/javascript"], "/large": ["x" * 100_000, "text/plain"]}
 WITHIN = 1.0  # s
 FULL = os.environ.get("CRAMHY_SOAK") == "1"
@@ -38,8 +47,14 @@ def attack(session):
     programs = []
 
     def start(way, most=300):
-        programs.append(subprocess.Popen([sys.executable, str(STRANGER), str(session.port), way, str(most)], stdout=subprocess.PIPE,
-                                         stderr=subprocess.DEVNULL, text=True))
+        programs.append(
+            subprocess.Popen(
+                [sys.executable, str(STRANGER), str(session.port), way, str(most)],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+            )
+        )
         assert programs[-1].stdout.readline() == "begins\n"
 
     def end():
@@ -108,8 +123,11 @@ def test_those_with_a_token_get_in_within_a_second_whatever_strangers_do(session
                     lost += 1  # strangers have made it go before its turn, and it tries again, as browsers do
                     assert time.monotonic() - began < 20
             found.append(time.monotonic() - began)
-    print(way, {gets_in.__name__: f"{sorted(found)[len(found) // 2]:.3f} s, at most {max(found):.3f} s"
-                for gets_in, found in times.items()}, f"{lost} tried again")
+    print(
+        way,
+        {gets_in.__name__: f"{sorted(found)[len(found) // 2]:.3f} s, at most {max(found):.3f} s" for gets_in, found in times.items()},
+        f"{lost} tried again",
+    )
     for gets_in, found in times.items():  # a machine that is busy with other things may be late now and then
         assert sorted(found)[int(len(found) * 0.7)] < (5 * WITHIN if gets_in in (first_message, page_from_the_start) else WITHIN)
 
@@ -217,8 +235,10 @@ def test_a_message_of_endless_empty_parts_is_given_up(serve, outside):
     from test_hostile import raw_frame
 
     server = serve(fragments=50)
-    head = (f"GET /{server.token} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-            "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n\r\n").encode()
+    head = (
+        f"GET /{server.token} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+    ).encode()
 
     def run():
         with socket.create_connection(("127.0.0.1", server.port), 20) as raw:

@@ -28,8 +28,14 @@ class Workspace:
 
     def shell(self, *words, where="."):
         """Run a ROS command as the shims do; its output."""
-        done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "ros", *words], cwd=self.folder / where, text=True,
-                              capture_output=True, env=environment(), timeout=120)
+        done = subprocess.run(
+            [sys.executable, "-m", "cramhy_runtime.cli", "ros", *words],
+            cwd=self.folder / where,
+            text=True,
+            capture_output=True,
+            env=environment(),
+            timeout=120,
+        )
         assert done.returncode == 0, done.stderr
         return done.stdout
 
@@ -45,8 +51,15 @@ class Workspace:
     def repl(self, *lines, backend="threads", seed=None, package=None):
         """Type lines into a fresh roslisp_repl; its transcript, a list of (prompt, answer) pairs after the first prompt."""
         options = ["--time", "virtual", "--backend", backend, *(["--seed", str(seed)] if seed is not None else [])]
-        done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "repl", *options], cwd=self.folder, text=True,
-                              input="\n".join(lines) + "\n", capture_output=True, env=environment(), timeout=120)
+        done = subprocess.run(
+            [sys.executable, "-m", "cramhy_runtime.cli", "repl", *options],
+            cwd=self.folder,
+            text=True,
+            input="\n".join(lines) + "\n",
+            capture_output=True,
+            env=environment(),
+            timeout=120,
+        )
         assert done.returncode == 0, done.stdout + done.stderr
         assert done.stderr == ""
         return Transcript(done.stdout)

@@ -66,13 +66,22 @@ def control_package(workspace, control="control-turtlesim.lisp"):
 def test_every_line_of_the_lecture_answers_as_the_slides_show(workspace, backend):
     control_package(workspace)
     transcript = workspace.repl(
-        *LOAD, '(start-ros-node "cram_tutorial_client")', '(init-ros-turtle "turtle1")', "(value *turtle-pose*)", "(value *color-value*)",
-        "(value turtle-pose)", "3",
+        *LOAD,
+        '(start-ros-node "cram_tutorial_client")',
+        '(init-ros-turtle "turtle1")',
+        "(value *turtle-pose*)",
+        "(value *color-value*)",
+        "(value turtle-pose)",
+        "3",
         "(progn (turtlesim:press :left) (sleep 2) (turtlesim:press :left) (sleep 2) (turtlesim:press :up) (sleep 2))",
         "(value *turtle-pose*)",
         "(wait-for (< (fl-funcall #'turtlesim-msg:x *turtle-pose*) 5.0))",
-        "(dotimes (i 10) (send-vel-cmd 1 1) (sleep 1))", "(call-set-pen 255 0 0 10 0)", "(dotimes (i 10) (send-vel-cmd 1 1) (sleep 1))",
-        "(value *color-value*)", backend=backend)
+        "(dotimes (i 10) (send-vel-cmd 1 1) (sleep 1))",
+        "(call-set-pen 255 0 0 10 0)",
+        "(dotimes (i 10) (send-vel-cmd 1 1) (sleep 1))",
+        "(value *color-value*)",
+        backend=backend,
+    )
     answers = transcript.answers
     assert answers[2] == NODE
     assert answers[3] == '"/turtle1/set_pen"'
@@ -92,9 +101,12 @@ def test_every_line_of_the_lecture_answers_as_the_slides_show(workspace, backend
 def test_a_wait_blocks_until_the_turtle_is_there(workspace, backend):
     control_package(workspace)
     transcript = workspace.repl(
-        *LOAD, '(start-ros-node "cram_tutorial_client")', '(init-ros-turtle "turtle1")',
+        *LOAD,
+        '(start-ros-node "cram_tutorial_client")',
+        '(init-ros-turtle "turtle1")',
         "(top-level (par (wait-for (< (fl-funcall #'turtlesim-msg:x *turtle-pose*) 5.0)) (progn (sleep 3) (send-vel-cmd -1 0))))",
-        backend=backend)
+        backend=backend,
+    )
     assert transcript.answers[4] == "T"
 
 
@@ -108,7 +120,8 @@ def test_a_surplus_parenthesis_is_a_warning_with_its_place(workspace):
 def test_an_error_names_the_form_in_the_students_file(workspace):
     control_package(workspace)
     transcript = workspace.repl(
-        *LOAD, '(start-ros-node "a")', '(init-ros-turtle "turtle1")', '(send-vel-cmd "fast" 1)', "0", "(send-vel-cmd 1)", "0")
+        *LOAD, '(start-ros-node "a")', '(init-ros-turtle "turtle1")', '(send-vel-cmd "fast" 1)', "0", "(send-vel-cmd 1)", "0"
+    )
     wrong_value, wrong_count = transcript.answers[4], transcript.answers[6]
     assert 'The value\n    "fast"\n  is not of type\n    REAL' in wrong_value
     assert "at src/cram_my_beginner_tutorial/src/control-turtlesim.lisp:41:3\n      (publish *cmd-vel-pub*\n      ^" in wrong_value

@@ -28,8 +28,10 @@ def modules_package(workspace, between_lectures, modules):
     workspace.copy("lecture-34/2-control/src/control-turtlesim.lisp", "src/control-turtlesim.lisp")
     workspace.write("src/simple-plans.lisp", between_lectures["simple-plans.lisp"])
     facts = (workspace.slides / "lecture-38/src/motion-designators-fact-group.lisp").read_text()
-    workspace.write("src/motion-designators.lisp", between_lectures["motions before the slide"] + facts + "\n\n"
-                    + between_lectures["motions after the slide"])
+    workspace.write(
+        "src/motion-designators.lisp",
+        between_lectures["motions before the slide"] + facts + "\n\n" + between_lectures["motions after the slide"],
+    )
     workspace.copy(f"lecture-38/src/{modules}", "src/process-modules.lisp")
 
 
@@ -69,7 +71,7 @@ def same_module(workspace, between_lectures, backend="threads", seed=None):
 
 def test_two_motions_for_one_module_are_done_one_after_the_other(workspace, between_lectures, backend):
     answer = same_module(workspace, between_lectures, backend)
-    assert "\nT" in answer and "STYLE-WARNING: unmatched close parenthesis" in answer[answer.rindex("\nT"):] or answer.endswith("T")
+    assert "\nT" in answer and "STYLE-WARNING: unmatched close parenthesis" in answer[answer.rindex("\nT") :] or answer.endswith("T")
     expected = [MOVED.format(x=9, y=1), QUEUED, DRIVEN.format(quote="`", speed=3, angle=8)]
     places = [answer.index(part) for part in expected]
     assert places == sorted(places)
@@ -90,6 +92,9 @@ def test_the_opening_example_runs_once_a_module_is_there(workspace, between_lect
     modules_package(workspace, between_lectures, "process-modules-2.lisp")
     example = " ".join(session_of(workspace, "with-designators.lisp"))
     transcript = workspace.repl(
-        *LOAD, "(def-process-module navigation (designator) (description designator))",
-        f"(top-level (with-process-modules-running ((:navigation navigation)) {example}))", backend=backend)
+        *LOAD,
+        "(def-process-module navigation (designator) (description designator))",
+        f"(top-level (with-process-modules-running ((:navigation navigation)) {example}))",
+        backend=backend,
+    )
     assert transcript.answers[3] == "(:CLOSE-TO :FRIDGE)"

@@ -27,8 +27,14 @@ class OpenRepl:
     """A roslisp_repl in wall time whose input stays open."""
 
     def __init__(self, private):
-        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--serve"], env=private, cwd=ROOT,
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--serve"],
+            env=private,
+            cwd=ROOT,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
 
     def type(self, line, until):
         """Type ``line``; what is printed up to and including the line that contains ``until``."""
@@ -64,8 +70,10 @@ def test_another_terminal_commands_the_turtle_of_the_repl(private):
 def test_without_a_repl_the_command_says_what_to_start(private):
     answer = command(private, "rosservice", "call", "/clear")
     assert answer.returncode == 1
-    assert answer.stderr == ("ERROR: Unable to communicate with master!\nNo session serves here. Start one with: roslisp_repl --serve "
-                             "(after eval \"$(cramhy ros-shims)\" plain roslisp_repl does it).\n")
+    assert answer.stderr == (
+        "ERROR: Unable to communicate with master!\nNo session serves here. Start one with: roslisp_repl --serve "
+        '(after eval "$(cramhy ros-shims)" plain roslisp_repl does it).\n'
+    )
 
 
 def test_the_prompt_takes_ros_commands_too(workspace):

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from systems import RUNS_HY_FILES, WHY_NO_HY_FILES
 
 from .conftest import ROOT, environment, stable
 
@@ -17,8 +18,15 @@ DRIVEN = """\
 
 
 def lectures(*options):
-    done = subprocess.run([sys.executable, "tutorials/lectures.py", *options], cwd=ROOT, capture_output=True, text=True, env=environment(),
-                          stdin=subprocess.DEVNULL, timeout=120)
+    done = subprocess.run(
+        [sys.executable, "tutorials/lectures.py", *options],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        timeout=120,
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -33,7 +41,7 @@ def test_both_lectures_give_the_same_bytes_twice_and_on_both_back_ends(tmp_path,
     assert DRIVEN in stable(first)
 
 
-@pytest.mark.skipif((3, 12) <= sys.version_info < (3, 12, 6), reason="Hy 1.3.1 runs no file at all with these releases of Python")
+@pytest.mark.skipif(not RUNS_HY_FILES, reason=WHY_NO_HY_FILES)
 def test_a_hy_file_runs_with_hy_itself(tmp_path):
     script = tmp_path / "drive.hy"
     script.write_text("""\

@@ -16,7 +16,7 @@ import time
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl.statuses import EVAPORATED
-from cramhy_runtime.cpl.tasks import Task
+from cramhy_runtime.cpl.tasks.tasks import Task
 from cramhy_runtime.kernel.backends.threads import threads_in_use
 
 WARM_UP = 0.1  # of the run
@@ -26,8 +26,12 @@ PULSES_OF_A_ROUND = 200
 def holds():
     """Threads in use and in all, objects that the collector knows, kilobytes of memory; what only Linux tells is 0 elsewhere."""
     gc.collect()
-    return {"threads in use": threads_in_use(), "threads": told_by_linux("Threads"), "objects": len(gc.get_objects()),
-            "kilobytes": told_by_linux("VmRSS")}
+    return {
+        "threads in use": threads_in_use(),
+        "threads": told_by_linux("Threads"),
+        "objects": len(gc.get_objects()),
+        "kilobytes": told_by_linux("VmRSS"),
+    }
 
 
 def told_by_linux(what):
@@ -69,8 +73,9 @@ class Rounds:
             return cpl.try_in_order(lambda: cpl.par(fails, lambda: cpl.sleep(9)), lambda: cpl.try_all(fails, fails, lambda: "third"))
 
         def races():
-            return cpl.pursue(lambda: cpl.wait_for(both, timeout=5), lambda: cpl.sleep(50),
-                              lambda: (cpl.wait_for(cpl.fl_not(both)), cpl.sleep(60)))
+            return cpl.pursue(
+                lambda: cpl.wait_for(both, timeout=5), lambda: cpl.sleep(50), lambda: (cpl.wait_for(cpl.fl_not(both)), cpl.sleep(60))
+            )
 
         def pauses():
             child = Task(lambda: (cpl.sleep(0.05), cpl.sleep(0.05)), "paused").execute()
@@ -104,8 +109,20 @@ def main(backend, pulses, tasks):
     after = holds()
     seconds = time.perf_counter() - began
     alive = len(active.tasks) - 1
-    print(json.dumps({"before": before, "after": after, "alive": alive, "timer": active._timers.next_time(), "seconds": round(seconds, 1),
-                      "pulses": rounds.pulses, "tasks": active._born, "virtual seconds": round(kernel.now())}))
+    print(
+        json.dumps(
+            {
+                "before": before,
+                "after": after,
+                "alive": alive,
+                "timer": active._timers.next_time(),
+                "seconds": round(seconds, 1),
+                "pulses": rounds.pulses,
+                "tasks": active._born,
+                "virtual seconds": round(kernel.now()),
+            }
+        )
+    )
     kernel.stop()
 
 

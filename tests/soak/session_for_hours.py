@@ -32,8 +32,14 @@ from statistics import median
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 120  # s for an answer at the prompt
-PAGE_TOPICS = {"/cramhy/world": "cramhy_msgs/World", "/cramhy/tasks": "cramhy_msgs/TaskTree", "/cramhy/fluents": "cramhy_msgs/Fluents",
-               "/cramhy/process_modules": "cramhy_msgs/ProcessModules", "/cramhy/pace": "cramhy_msgs/Pace", "/rosout": "rosgraph_msgs/Log"}
+PAGE_TOPICS = {
+    "/cramhy/world": "cramhy_msgs/World",
+    "/cramhy/tasks": "cramhy_msgs/TaskTree",
+    "/cramhy/fluents": "cramhy_msgs/Fluents",
+    "/cramhy/process_modules": "cramhy_msgs/ProcessModules",
+    "/cramhy/pace": "cramhy_msgs/Pace",
+    "/rosout": "rosgraph_msgs/Log",
+}
 DUMP = signal.SIGUSR2 if hasattr(signal, "SIGUSR2") else None
 FIRST = ['(start-ros-node "soak")', '(init-ros-turtle "turtle1")']
 FORMS = [
@@ -42,7 +48,7 @@ FORMS = [
     "(drive 1.5 {angle})",
     "(move-simple {x} {y})",
     "(goto-location :left :bottom)",
-    "(list {number} \"{number}\" 'again (format nil \"~a\" {angle}))",
+    '(list {number} "{number}" \'again (format nil "~a" {angle}))',
     "(car {number})",  # an error: the debugger is answered
     "(top-level (with-retry-counters ((again 2)) (with-failure-handling ((simple-plan-failure (e) (declare (ignore e)) "
     "(do-retry again (retry)) (return nil))) (sleep 0.05) (fail 'simple-plan-failure))))",
@@ -71,9 +77,11 @@ def traced_session(arguments):
         if before is not None:
             for kind in ("lineno", "traceback"):
                 for found in now.compare_to(before, kind)[:14]:
-                    print(f"; held: {found.size_diff / 1024:+9.1f} KiB {found.count_diff:+8d} blocks", *(
-                        f"{frame.filename.rpartition('cramhy_runtime/')[2]}:{frame.lineno}" for frame in reversed(list(found.traceback))),
-                        file=sys.stderr)
+                    print(
+                        f"; held: {found.size_diff / 1024:+9.1f} KiB {found.count_diff:+8d} blocks",
+                        *(f"{frame.filename.rpartition('cramhy_runtime/')[2]}:{frame.lineno}" for frame in reversed(list(found.traceback))),
+                        file=sys.stderr,
+                    )
         before = now
         print("; held: that was a look", file=sys.stderr, flush=True)
 
@@ -91,13 +99,32 @@ class Watched:
 
     def __init__(self, folder, options):
         (folder / "run").mkdir(mode=0o700)
-        words = ["repl", "--time", options.time, "--backend", options.backend, "--serve", "--view", "--record", str(folder / "soak.mcap"),
-                 "--load", "cram-my-beginner-tutorial", "--package", "tut"]
+        words = [
+            "repl",
+            "--time",
+            options.time,
+            "--backend",
+            options.backend,
+            "--serve",
+            "--view",
+            "--record",
+            str(folder / "soak.mcap"),
+            "--load",
+            "cram-my-beginner-tutorial",
+            "--package",
+            "tut",
+        ]
         program = [__file__, "--traced", "--"] if options.trace else ["-m", "cramhy_runtime.cli"]
         environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}", "XDG_RUNTIME_DIR": str(folder / "run")}
         environment.pop("DISPLAY", None)
-        self.process = subprocess.Popen([sys.executable, *program, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, env=environment, cwd=ROOT)
+        self.process = subprocess.Popen(
+            [sys.executable, *program, *words],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=environment,
+            cwd=ROOT,
+        )
         self.prompts, self.tail, self.told = 0, "", threading.Condition()
         self.url, self.complaints, self.held = None, [], []
         for stream, hear in ((self.process.stdout, self._output), (self.process.stderr, self._errors)):
@@ -110,7 +137,7 @@ class Watched:
                 text = self.tail + data.decode()
                 ends = list(re.finditer(r"(?:^|\n)(TUT|\d+\])>? ", text))
                 self.prompts += len(ends)
-                self.tail = text[ends[-1].end():] if ends else text[-40:]
+                self.tail = text[ends[-1].end() :] if ends else text[-40:]
                 self.asks = ends[-1][1] if ends else getattr(self, "asks", "")
                 self.told.notify_all()
 
@@ -219,8 +246,11 @@ class Clients(threading.Thread):
 
         async with connect(self.address, max_size=None, ping_interval=None) as socket:
             bound = {"throttle_rate": 2, "queue_length": 100} if self.quick else {}  # else the server leaves one that is too slow
-            for topic, kind in (("/turtle1/pose", "turtlesim/Pose"), ("/turtle1/color_sensor", "turtlesim/Color"),
-                                ("/rosout", "rosgraph_msgs/Log")):
+            for topic, kind in (
+                ("/turtle1/pose", "turtlesim/Pose"),
+                ("/turtle1/color_sensor", "turtlesim/Color"),
+                ("/rosout", "rosgraph_msgs/Log"),
+            ):
                 await socket.send(json.dumps({"op": "subscribe", "topic": topic, "type": kind, **bound}))
             await socket.send(json.dumps({"op": "advertise", "topic": "/soak/count", "type": "std_msgs/Int32"}))
             await socket.send(json.dumps({"op": "subscribe", "topic": "/soak/count", "type": "std_msgs/Int32"}))
@@ -292,8 +322,11 @@ def main():
                 samples.append((now - began, session.kilobytes()))
                 if now - told > 60:
                     told = now
-                    print(f"{(now - began) / 60:6.1f} min {samples[-1][1]:8d} kB, {typed} forms, {clients.heard} messages heard",
-                          file=sys.stderr, flush=True)
+                    print(
+                        f"{(now - began) / 60:6.1f} min {samples[-1][1]:8d} kB, {typed} forms, {clients.heard} messages heard",
+                        file=sys.stderr,
+                        flush=True,
+                    )
             if not looked and now - began > warm_up * 60:
                 looked = True
                 session.look()
@@ -309,10 +342,23 @@ def main():
         status = session.end()
         counted = [sample for sample in samples if sample[0] >= warm_up * 60]
         grown, slope = growth(counted)
-        print(json.dumps({"kilobytes": [value for _, value in samples], "first": counted[0][1], "last": counted[-1][1], "grown": grown,
-                          "per minute": slope, "minutes": round((counted[-1][0] - counted[0][0]) / 60, 2), "typed": typed,
-                          "heard": clients.heard, "recorded": (folder / "soak.mcap").stat().st_size, "status": status,
-                          "complaints": session.complaints[:5]}))
+        print(
+            json.dumps(
+                {
+                    "kilobytes": [value for _, value in samples],
+                    "first": counted[0][1],
+                    "last": counted[-1][1],
+                    "grown": grown,
+                    "per minute": slope,
+                    "minutes": round((counted[-1][0] - counted[0][0]) / 60, 2),
+                    "typed": typed,
+                    "heard": clients.heard,
+                    "recorded": (folder / "soak.mcap").stat().st_size,
+                    "status": status,
+                    "complaints": session.complaints[:5],
+                }
+            )
+        )
 
 
 if __name__ == "__main__":

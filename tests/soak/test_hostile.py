@@ -24,11 +24,11 @@ ENDLESS = {
     "reduce": "(defun endless (n &optional m) (reduce #'endless (list 1 2)))",
     "a generic function": "(progn (defgeneric endless (n)) (defmethod endless ((n integer)) (+ 1 (endless n))))",
     "around methods": "(progn (defgeneric endless (n)) (defmethod endless ((n integer)) (endless n)) "
-                      "(defmethod endless :around ((n integer)) (call-next-method)))",
+    "(defmethod endless :around ((n integer)) (call-next-method)))",
     "initialize-instance": "(progn (defclass endless () ()) (defmethod initialize-instance :after ((x endless) &key) "
-                           "(make-instance 'endless)) (defun endless (n) (make-instance 'endless)))",
-    "print-object": "(progn (defclass endless () ()) (defmethod print-object ((x endless) s) (format s \"~a\" x)) "
-                    "(defun endless (n) (format nil \"~a\" (make-instance 'endless))))",
+    "(make-instance 'endless)) (defun endless (n) (make-instance 'endless)))",
+    "print-object": '(progn (defclass endless () ()) (defmethod print-object ((x endless) s) (format s "~a" x)) '
+    '(defun endless (n) (format nil "~a" (make-instance \'endless))))',
     "handlers": '(defun endless (n) (handler-bind ((error (lambda (c) (endless c)))) (error "x ~a" n)))',
     "cleanup forms": "(defun endless (n) (unwind-protect (endless n) n))",
     "special variables": "(progn (defvar *deep* 1) (defun endless (n) (let ((*deep* n)) (endless n))))",
@@ -37,16 +37,24 @@ ENDLESS = {
     "a circular list": "(defun endless (n) (let ((x (list n n))) (setf (car x) x) (prin1-to-string x)))",
     "failure handling": "(defun endless (n) (with-failure-handling ((simple-plan-failure (e) (retry))) (endless n)))",
 }
-EXHAUSTED = ("Control stack exhausted: a function calls itself too deeply, perhaps without end.",
-             "The form is nested too deeply to be compiled.")
+EXHAUSTED = (
+    "Control stack exhausted: a function calls itself too deeply, perhaps without end.",
+    "The form is nested too deeply to be compiled.",
+)
 
 
 def evaluate(forms, *options):
     """The answers of a fresh ``cramhy eval`` in CRAM-USER; that it lived to answer all is asserted."""
     environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}"}
     lines = "".join(json.dumps({"form": form}) + "\n" for form in forms)
-    done = subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", "eval", "--package", "cram-user", "--no-turtlesim", *options],
-                          input=lines, capture_output=True, text=True, env=environment, timeout=300)
+    done = subprocess.run(
+        [sys.executable, "-m", "cramhy_runtime.cli", "eval", "--package", "cram-user", "--no-turtlesim", *options],
+        input=lines,
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=300,
+    )
     assert done.returncode == 0, done.stderr
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     assert len(answers) == len(forms)
@@ -59,7 +67,7 @@ def test_recursion_without_end_is_an_error_in_the_main_task_and_in_branches(back
         forms += [f"(progn (fmakunbound 'endless) {definition})", "(endless 1)", "(top-level (par (sleep 1) (endless 1)))", "(+ 1 2)"]
     answers = evaluate(forms, "--backend", backend)
     for index, name in enumerate(ENDLESS):
-        defined, in_main, in_branch, after = answers[4 * index:4 * index + 4]
+        defined, in_main, in_branch, after = answers[4 * index : 4 * index + 4]
         assert defined["error"] is None, name
         for answer in (in_main, in_branch):
             assert answer["error"] and answer["error"]["message"] in EXHAUSTED, (name, answer)
@@ -67,8 +75,9 @@ def test_recursion_without_end_is_an_error_in_the_main_task_and_in_branches(back
 
 
 def test_recursion_that_ends_may_be_deep(backend):
-    defined, main, branch = evaluate(["(defun sum (n) (if (= n 0) 0 (+ n (sum (- n 1)))))", "(sum 4000)", "(top-level (par (sum 4000)))"],
-                                     "--backend", backend)
+    defined, main, branch = evaluate(
+        ["(defun sum (n) (if (= n 0) 0 (+ n (sum (- n 1)))))", "(sum 4000)", "(top-level (par (sum 4000)))"], "--backend", backend
+    )
     assert main["values"] == branch["values"] == ["8002000"]
 
 
@@ -110,7 +119,12 @@ HUGE = {
 def test_huge_forms_and_values_are_an_error_at_most(form):
     answer, after = evaluate([form, "(+ 1 2)"])
     assert answer["error"] is None or answer["error"]["type"] in (
-        "STORAGE-CONDITION", "CRAMHY::COMPILE-ERROR", "SB-INT:SIMPLE-READER-ERROR", "SB-INT::SIMPLE-READER-ERROR", "END-OF-FILE"), answer
+        "STORAGE-CONDITION",
+        "CRAMHY::COMPILE-ERROR",
+        "SB-INT:SIMPLE-READER-ERROR",
+        "SB-INT::SIMPLE-READER-ERROR",
+        "END-OF-FILE",
+    ), answer
     assert after["values"] == ["3"]
 
 
@@ -149,8 +163,9 @@ print(after[0] - before[0], after[1] - before[1])
 def test_memory_does_not_grow_when_a_plan_is_repeated(backend):
     times = 1000 if SOAK else 200
     environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}"}
-    done = subprocess.run([sys.executable, "-c", PROGRAM, backend, str(times)], capture_output=True, text=True, env=environment,
-                          timeout=300)
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, backend, str(times)], capture_output=True, text=True, env=environment, timeout=300
+    )
     assert done.returncode == 0, done.stderr
     objects, kilobytes = map(int, done.stdout.split())
     print(f"{times} more repetitions on {backend}: {objects:+d} objects, {kilobytes:+d} KiB")

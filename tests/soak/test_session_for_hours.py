@@ -41,7 +41,7 @@ def test_the_past_takes_little_however_long_it_was():
     import tracemalloc
 
     from cramhy_runtime.chronicle.history import History
-    from cramhy_runtime.chronicle.sums import State
+    from cramhy_runtime.chronicle.merge import State
     from cramhy_runtime.ros.messages import message_class_exact
 
     world, turtle, stroke = (message_class_exact(f"cramhy_msgs/{name}") for name in ("World", "Turtle", "Stroke"))
@@ -56,10 +56,23 @@ def test_the_past_takes_little_however_long_it_was():
             strokes = [stroke(x, y, x + 0.1, y + 0.1, 1, 2, 3, 3)]
             published = [
                 ("world", world(stamp=now, turtles=[turtle(name="turtle1", x=x, y=y)], strokes=strokes)),
-                ("fluents", fluents(stamp=now, fluents=[fluent(str(number // 50), "POSE", f"x {x} y {y}", 1.0)],
-                                    removed=[str(number // 50 - 10)] if number % 50 == 0 else [])),
-                ("tasks", tree(stamp=now, tasks=[task(id=str(number // 10), name=f"[PAR-CHILD-{number // 10}]", state="RUNNING")],
-                               removed=[str(number // 10 - 1000)] if number % 10 == 0 else []))]
+                (
+                    "fluents",
+                    fluents(
+                        stamp=now,
+                        fluents=[fluent(str(number // 50), "POSE", f"x {x} y {y}", 1.0)],
+                        removed=[str(number // 50 - 10)] if number % 50 == 0 else [],
+                    ),
+                ),
+                (
+                    "tasks",
+                    tree(
+                        stamp=now,
+                        tasks=[task(id=str(number // 10), name=f"[PAR-CHILD-{number // 10}]", state="RUNNING")],
+                        removed=[str(number // 10 - 1000)] if number % 10 == 0 else [],
+                    ),
+                ),
+            ]
             for kind, message in published:
                 state.add(kind, message)
             history.add(published, state)

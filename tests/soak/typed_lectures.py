@@ -26,8 +26,15 @@ def run(seed=None, backend="threads"):
     """Type both lectures in a fresh process: its transcript."""
     environment = {key: value for key, value in os.environ.items() if key != "ROS_PACKAGE_PATH"}
     environment["PYTHONPATH"] = os.pathsep.join(str(ROOT / folder) for folder in ("src", "hy_src", "tutorials"))
-    done = subprocess.run([sys.executable, __file__, str(seed), backend], cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
-                          capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        [sys.executable, __file__, str(seed), backend],
+        cwd=ROOT,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert done.returncode == 0 and not done.stderr, done.stdout[-2000:] + done.stderr
     return done.stdout
 
@@ -83,8 +90,11 @@ def speaker(entry):
 
 def poses(transcript):
     """The numbers of every pose that was asked for."""
-    return [[float(number.replace("d", "e")) for number in re.findall(r"-?\d+\.\d+d-?\d+", answer)]
-            for typed, answer in answers(transcript) if typed.endswith(POSE)]
+    return [
+        [float(number.replace("d", "e")) for number in re.findall(r"-?\d+\.\d+d-?\d+", answer)]
+        for typed, answer in answers(transcript)
+        if typed.endswith(POSE)
+    ]
 
 
 def main(seed, backend):

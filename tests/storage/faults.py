@@ -55,7 +55,7 @@ def failing(folder, fails, monkeypatch):
             try:
                 disk.count("write")
             except OSError:
-                super().write(bytes(data)[:len(data) // 2])  # a disk that is full takes a part
+                super().write(bytes(data)[: len(data) // 2])  # a disk that is full takes a part
                 raise
             return super().write(data)
 
@@ -70,6 +70,7 @@ def failing(folder, fails, monkeypatch):
             if arguments and disk.concerns(arguments[0]):
                 disk.count(name, None if isinstance(arguments[0], int) else arguments[0])
             return original(*arguments, **options)
+
         return call
 
     with monkeypatch.context() as patch:

@@ -7,18 +7,19 @@ import marshal
 import os
 import stat
 import sys
+from pathlib import Path
 
 import pytest
+from systems import posix
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.files import program_files
-from cramhy_runtime.lisp.systems import loader
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.systems import program_files
+from cramhy_runtime.languages.commonlisp.systems import loader
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.storage.sealed import Unusable, sealed, unsealed
 
 root = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away")
-posix = pytest.mark.skipif(os.name != "posix", reason="permissions of POSIX")
 LINE, LABEL = b"# a test\n", "0" * 64
 
 
@@ -55,6 +56,14 @@ def loaded(session):
 def test_good_code_is_used(session, kept, read):
     loader.load_file(kept[0])
     assert len(read) == 1 and loader.why_not_kept(kept[0]) is None and loaded(session) == [7]
+
+
+def test_the_fingerprint_of_cramhy_covers_every_folder_of_the_language(monkeypatch):
+    seen, scandir = set(), os.scandir
+    monkeypatch.setattr(os, "scandir", lambda folder: (seen.add(str(folder)), scandir(folder))[1])
+    loader.stamp.__wrapped__()
+    language = Path(loader.__file__).parents[1]
+    assert {str(path.parent) for path in language.rglob("*.py")} <= seen
 
 
 @pytest.mark.parametrize("place", [0, 5, 25, 60, 100, 150, -1])
@@ -125,8 +134,11 @@ def test_a_file_that_others_may_have_written_is_not_read(session, kept, read, ca
 
 
 @root
-@pytest.mark.parametrize("spoil", [lambda folder: os.chown(folder, 12345, -1), lambda folder: folder.chmod(0o777)],
-                         ids=["of another user", "writable by everybody"])
+@pytest.mark.parametrize(
+    "spoil",
+    [lambda folder: os.chown(folder, 12345, -1), lambda folder: folder.chmod(0o777)],
+    ids=["of another user", "writable by everybody"],
+)
 def test_a_folder_that_others_may_write_to_is_not_used(session, kept, read, monkeypatch, tmp_path, spoil):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     source, path = kept
@@ -161,8 +173,11 @@ def test_kept_code_is_ours_alone_to_write_whatever_the_umask_is(session, tmp_pat
 
 def test_temporary_names_cannot_be_foretold(session, tmp_path, monkeypatch):
     seen, original = [], os.open
-    monkeypatch.setattr(os, "open", lambda path, flags, *more, **options: (seen.append((os.fspath(path), flags)), original(
-        path, flags, *more, **options))[1])
+    monkeypatch.setattr(
+        os,
+        "open",
+        lambda path, flags, *more, **options: (seen.append((os.fspath(path), flags)), original(path, flags, *more, **options))[1],
+    )
     for number in range(3):
         (tmp_path / "x.lisp").write_text(f"(defparameter cl-user::*loaded* {number})")
         loader.load_file(tmp_path / "x.lisp")

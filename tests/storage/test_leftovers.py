@@ -104,8 +104,17 @@ def test_a_recording_without_an_older_one_has_its_name_already(tmp_path):
     assert storage.tidy(tmp_path) == [] and (tmp_path / "x.mcap").stat().st_size == 50_000
 
 
-@pytest.mark.parametrize("name", ["x.cramhy-part", ".x.cramhy-part", ".x.0123.cramhy-part", ".x.0123456789abcdeg.cramhy-part",
-                                  ".x.0123456789abcdef.cramhy-party", ".0123456789abcdef.cramhy-part"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "x.cramhy-part",
+        ".x.cramhy-part",
+        ".x.0123.cramhy-part",
+        ".x.0123456789abcdeg.cramhy-part",
+        ".x.0123456789abcdef.cramhy-party",
+        ".0123456789abcdef.cramhy-part",
+    ],
+)
 def test_files_of_other_names_stay(tmp_path, name):
     (tmp_path / name).write_text("mine")
     assert storage.tidy(tmp_path) == [] and names(tmp_path) == [name]
@@ -114,8 +123,11 @@ def test_files_of_other_names_stay(tmp_path, name):
 PLANTED = ".x.0123456789abcdef.cramhy-part"
 
 
-@pytest.mark.parametrize("plant", [lambda path, other: path.symlink_to(other), lambda path, other: os.mkfifo(path),
-                                   lambda path, other: path.mkdir()], ids=["link", "pipe", "folder"])
+@pytest.mark.parametrize(
+    "plant",
+    [lambda path, other: path.symlink_to(other), lambda path, other: os.mkfifo(path), lambda path, other: path.mkdir()],
+    ids=["link", "pipe", "folder"],
+)
 def test_what_somebody_planted_leads_nowhere(tmp_path, plant):
     (tmp_path / "other").write_text("mine")
     plant(tmp_path / PLANTED, tmp_path / "other")
@@ -157,21 +169,27 @@ def test_a_lisp_program_that_is_killed_leaves_the_old_file_and_the_next_start_ti
     assert not left[0].exists() and (tmp_path / "x").read_text() == "old"
 
 
-RECORDS = "(roslisp:start-ros-node \"n\") (turtlesim:press :up) (sleep 20) (format t \"READY~%\") (finish-output) (read-line)"
+RECORDS = '(roslisp:start-ros-node "n") (turtlesim:press :up) (sleep 20) (format t "READY~%") (finish-output) (read-line)'
 
 
 def test_a_killed_recording_is_recovered_and_told_of_by_the_next_start(tmp_path):
     pytest.importorskip("mcap")
     from cramhy_runtime import chronicle
 
-    (tmp_path / "q.lisp").write_text("(roslisp:start-ros-node \"n\") (turtlesim:press :up) (sleep 1)")
+    (tmp_path / "q.lisp").write_text('(roslisp:start-ros-node "n") (turtlesim:press :up) (sleep 1)')
     (tmp_path / "p.lisp").write_text(RECORDS)
     command = [sys.executable, "-m", "cramhy_runtime.cli", "run", "--time", "virtual"]
     first = subprocess.run([*command, "q.lisp", "--record", "x.mcap"], cwd=tmp_path, capture_output=True, text=True)
     assert (first.returncode, first.stderr) == (0, "")
     older = (tmp_path / "x.mcap").read_bytes()
-    process = subprocess.Popen([*command, "p.lisp", "--record", "x.mcap"], cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                               stderr=subprocess.DEVNULL, text=True)
+    process = subprocess.Popen(
+        [*command, "p.lisp", "--record", "x.mcap"],
+        cwd=tmp_path,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     while "READY" not in process.stdout.readline():
         assert process.poll() is None
     process.kill()

@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import pytest
+from systems import has_module
 
 RUN = [sys.executable, "-m", "cramhy_runtime.cli", "run", "--time", "virtual"]
 DRIVE = '(roslisp:start-ros-node "n") (dotimes (i 20) (turtlesim:press :up) (turtlesim:press :left) (sleep 1))'
@@ -94,7 +95,9 @@ def test_lisp_on_a_full_disk(disk):
     (disk / "a.fasl").write_text("old")
     (disk.parent / "a.lisp").write_text("(defun answer () 42)" + "(defun f (x) (* x x))" * 400)
     fill(disk, 0)
-    done = cramhy(disk, program=f"""
+    done = cramhy(
+        disk,
+        program=f"""
 (defun try (function)
   (handler-case (funcall function)
     (file-error (e) (format t "~a|~a~%" (file-error-pathname e) (substitute #\\Space #\\Newline (princ-to-string e))))))
@@ -103,7 +106,8 @@ def test_lisp_on_a_full_disk(disk):
 (try (lambda () (compile-file "a.lisp" :output-file "{disk}/a.fasl" :verbose nil)))
 (try (lambda () (load "{disk.parent}/a.lisp")))
 (print (answer))
-""")
+""",
+    )
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert lines[0].startswith(f"{disk}/x|couldn't write to #<") and lines[0].endswith(FULL)
@@ -124,16 +128,18 @@ def test_kept_code_on_a_full_disk_is_done_without(disk):
     assert not [path for path in disk.rglob("*") if path.is_file() and path.name not in ("s.lisp", "ballast")]
 
 
-@pytest.mark.skipif(not shutil.which("sh"), reason="needs a shell")
+@pytest.mark.skipif(not has_module("resource"), reason="this system has no such limits")
 def test_a_limit_on_the_size_of_files_is_an_error_and_not_the_end(tmp_path):
     """SIGXFSZ ends a process that does not expect it."""
     (tmp_path / "x.png").write_text("old")
-    (tmp_path / "p.lisp").write_text(DRIVE + '''
+    (tmp_path / "p.lisp").write_text(
+        DRIVE
+        + """
 (handler-case (with-open-file (s "y" :direction :output) (dotimes (i 9000) (write-line "many words" s)))
-  (file-error (e) (format t "~a~%" e)))''')
+  (file-error (e) (format t "~a~%" e)))"""
+    )
     limit = "import os, resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)); os.execv(sys.executable, sys.argv[1:])"
-    done = subprocess.run([sys.executable, "-c", limit, *RUN, "p.lisp", "--picture", "x.png"], capture_output=True, text=True,
-                          cwd=tmp_path)
+    done = subprocess.run([sys.executable, "-c", limit, *RUN, "p.lisp", "--picture", "x.png"], capture_output=True, text=True, cwd=tmp_path)
     why = "File too large. Allow larger files (ulimit -f), or choose another place."
     assert why in " ".join(done.stdout.split()) and f"The picture x.png cannot be written: {why}" in " ".join(done.stderr.split())
     kept = {"p.lisp", "x.png", "__pycache__"}

@@ -10,10 +10,10 @@ import sys
 import threading
 
 import pytest
+from systems import posix
 
 from cramhy_runtime import storage
 
-posix = pytest.mark.skipif(os.name != "posix", reason="permissions and links of POSIX")
 root = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away, or be somebody else")
 
 
@@ -32,6 +32,7 @@ def test_a_text_is_utf_8_and_bytes_are_bytes(tmp_path):
     assert (tmp_path / "x").read_bytes() == b"\xff" and os.listdir(tmp_path) == ["x"]
 
 
+@posix
 def test_a_reader_sees_the_old_file_until_the_new_one_is_complete(tmp_path):
     (tmp_path / "x").write_text("old")
     with open(tmp_path / "x") as early:
@@ -67,7 +68,7 @@ def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path, umask, mode):
     (tmp_path / "x").write_text("old")
     (tmp_path / "x").chmod(mode)
     with storage.writing(tmp_path / "x") as file:
-        part, = (path for path in tmp_path.iterdir() if path.name != "x")
+        (part,) = (path for path in tmp_path.iterdir() if path.name != "x")
         assert part.stat().st_mode & 0o777 & ~mode == 0  # a secret is one while it is written, too
         file.write(b"new")
     assert (tmp_path / "x").stat().st_mode & 0o777 == mode
@@ -100,15 +101,18 @@ def test_a_link_to_nothing_makes_what_it_names(tmp_path):
     assert (tmp_path / "link").is_symlink() and (tmp_path / "x").read_text() == "new"
 
 
-@pytest.mark.parametrize("name, number, said", [
-    ("no/x", errno.ENOENT, "No such file or directory. Make its folder first, or choose another one."),
-    ("folder", errno.EISDIR, "Is a directory. Choose the name of a file."),
-    ("x/", errno.EISDIR, "Is a directory. Choose the name of a file."),
-    ("file/x", errno.ENOTDIR, "Not a directory. Choose a name in a folder."),
-    ("ring", errno.ELOOP, "Too many levels of symbolic links. Remove the link, or choose another name."),
-    ("n" * 300, errno.ENAMETOOLONG, "File name too long. Choose a shorter name."),
-    ("", errno.ENOENT, "No such file or directory. Make its folder first, or choose another one."),
-])
+@pytest.mark.parametrize(
+    "name, number, said",
+    [
+        ("no/x", errno.ENOENT, "No such file or directory. Make its folder first, or choose another one."),
+        ("folder", errno.EISDIR, "Is a directory. Choose the name of a file."),
+        ("x/", errno.EISDIR, "Is a directory. Choose the name of a file."),
+        ("file/x", errno.ENOTDIR, "Not a directory. Choose a name in a folder."),
+        ("ring", errno.ELOOP, "Too many levels of symbolic links. Remove the link, or choose another name."),
+        ("n" * 300, errno.ENAMETOOLONG, "File name too long. Choose a shorter name."),
+        ("", errno.ENOENT, "No such file or directory. Make its folder first, or choose another one."),
+    ],
+)
 @posix
 def test_errors_name_the_file_as_the_user_does_and_what_to_try(tmp_path, monkeypatch, name, number, said):
     monkeypatch.chdir(tmp_path)
@@ -186,8 +190,12 @@ def test_what_may_not_be_written_stays_as_it_is(tmp_path):
     (mine / "read-only").write_text("old")
     (mine / "read-only").chmod(0o444)
     (tmp_path / "roots").write_text("old")
-    done = subprocess.run([sys.executable, "-c", AS_NOBODY, mine / "read-only", tmp_path / "roots", tmp_path / "new", mine / "good"],
-                          capture_output=True, text=True, cwd="/")
+    done = subprocess.run(
+        [sys.executable, "-c", AS_NOBODY, mine / "read-only", tmp_path / "roots", tmp_path / "new", mine / "good"],
+        capture_output=True,
+        text=True,
+        cwd="/",
+    )
     why = "Permission denied. Choose a file and a folder that you may write to."
     refused = (mine / "read-only", tmp_path / "roots", tmp_path / "new")
     assert done.stdout.splitlines() == [f"{path}: {why}" for path in refused], done.stderr
@@ -200,3 +208,17 @@ def test_two_write_the_same_file_and_one_of_them_wins(tmp_path):
         one.write(b"one" * 9000)
         other.write(b"other" * 9000)
     assert (tmp_path / "x").read_bytes() in (b"one" * 9000, b"other" * 9000) and os.listdir(tmp_path) == ["x"]
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [
+        (32, "in use. Close the program that has it open, or choose another name."),
+        (123, 'in use. Choose a name without < > : " | ? and *.'),
+        (5, "in use. Choose a file and a folder that you may write to."),
+    ],
+)
+def test_what_windows_says_by_numbers_of_its_own(number, said):
+    problem = OSError(errno.EACCES, "in use")
+    problem.winerror = number
+    assert storage.why(problem) == said

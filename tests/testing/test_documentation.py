@@ -12,12 +12,11 @@ PAGE = (Path(__file__).parents[2] / "docs" / "testing.md").read_text()
 
 
 def test_the_example_runs_and_shows_what_the_page_shows(tmp_path):
-    (example, ) = re.findall(r"```python\n(.*?)```", PAGE, re.S)
-    (shown, ) = re.findall(r"```\n(The plan depends.*?)```", PAGE, re.S)
+    (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.S)
+    (shown,) = re.findall(r"```\n(The plan depends.*?)```", PAGE, re.S)
     (tmp_path / "test_fetching.py").write_text(example)
     command = [sys.executable, "-m", "pytest", "-s", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path,
-                          env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
     assert done.returncode == 0 and "9 passed" in done.stdout, done.stdout + done.stderr
     assert shown in done.stdout
     assert re.search(r"-> 1 TOP-LEVEL/PAR-CHILD-#\d/2 \(goes on", done.stdout), done.stdout

@@ -51,7 +51,9 @@ def test_the_report_says_who_could_go_and_who_went():
         explore(plan, schedules=100)
     found = problem.value
     assert found.schedule == [1]
-    assert str(found) == f"""\
+    assert (
+        str(found)
+        == f"""\
 The plan depends on who goes first: the result is another one with this schedule.
   expected (first come, first served): "two"
   got: "one"
@@ -60,6 +62,7 @@ Found with seed {found.seed}. The shortest schedule that shows it: [1], then fir
        0 TOP-LEVEL/PAR-CHILD-#1/2 (goes on after waiting for the time 1 s (sleep 1))
     -> 1 TOP-LEVEL/PAR-CHILD-#2/2 (goes on after waiting for the time 1 s (sleep 1))   (first come, first served would have taken the first)
 See it again: testing.run(plan, schedule=[1]), or explore(..., replay=[1])."""
+    )
 
 
 def test_a_check_says_what_is_right():

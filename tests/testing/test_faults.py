@@ -37,12 +37,15 @@ def test_what_may_happen_to_a_branch(backend, entering):
 def test_a_fault_that_does_not_happen_is_an_error_with_the_points_that_were():
     with pytest.raises(AssertionError) as problem:
         run("fail", nth=7)
-    assert str(problem.value) == """\
+    assert (
+        str(problem.value)
+        == """\
 Did not happen: fail *#2/2 at park point 7. The park points of the run:
   TOP-LEVEL, point 1 (branches 1), at 0 s
   TOP-LEVEL/PAR-CHILD-#1/2, point 1 (sleep 1), at 0 s
   TOP-LEVEL/PAR-CHILD-#2/2, point 1 (sleep 1), at 0 s
   TOP-LEVEL/PAR-CHILD-#2/2, point 2 (sleep 2), at 1 s"""
+    )
 
 
 def test_wrong_faults_are_refused():

@@ -3,8 +3,8 @@
 import pytest
 
 from cramhy_runtime import cpl, kernel, testing
-from cramhy_runtime.lisp.packages import find_package_or_error
-from cramhy_runtime.lisp.reader.reader import Reader
+from cramhy_runtime.ground.packages import find_package_or_error
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.testing.runs import describe
 
 BACKENDS = ["threads", "greenlet"]
@@ -34,12 +34,12 @@ def test_definitions_of_a_text_are_evaluated_once_and_its_last_form_each_time():
 
 def test_a_text_may_name_its_package():
     assert testing.run("(in-package :cl-user) (package-name (symbol-package 'foo))").value == "COMMON-LISP-USER"
-    assert testing.run("(symbol-name (intern \"X\"))").value == "X"
+    assert testing.run('(symbol-name (intern "X"))').value == "X"
     assert find_package_or_error("TESTING-USER")
 
 
 def test_an_error_is_an_outcome_and_is_raised_when_the_value_is_asked_for():
-    outcome = testing.run("(top-level (par (sleep 1) (fail \"no ~a\" 'way)))")
+    outcome = testing.run('(top-level (par (sleep 1) (fail "no ~a" \'way)))')
     assert str(outcome) == "SimplePlanFailure: no WAY" and outcome.stack
     with pytest.raises(cpl.PlanFailure):
         outcome.value

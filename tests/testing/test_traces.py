@@ -25,9 +25,12 @@ def trace():
 def test_marks_have_names_times_tasks_and_values(trace):
     assert trace.names == ["reach", "grasp", "look", "grasp", "done"]
     assert str(trace).splitlines() == [
-        "   0.000 s  reach  (TOP-LEVEL)", "   0.000 s  grasp  (TOP-LEVEL/PAR-CHILD-#1/2)",
-        "   0.500 s  look 7  (TOP-LEVEL/PAR-CHILD-#2/2)", "   1.000 s  grasp  (TOP-LEVEL/PAR-CHILD-#1/2)",
-        "   1.500 s  done  (TOP-LEVEL)"]
+        "   0.000 s  reach  (TOP-LEVEL)",
+        "   0.000 s  grasp  (TOP-LEVEL/PAR-CHILD-#1/2)",
+        "   0.500 s  look 7  (TOP-LEVEL/PAR-CHILD-#2/2)",
+        "   1.000 s  grasp  (TOP-LEVEL/PAR-CHILD-#1/2)",
+        "   1.500 s  done  (TOP-LEVEL)",
+    ]
 
 
 def test_orders_that_hold(trace):
@@ -42,13 +45,16 @@ def test_orders_that_hold(trace):
 def test_an_order_that_does_not_hold_shows_the_trace(trace):
     with pytest.raises(AssertionError) as problem:
         assert_order(trace, ("reach", "look", "grasp"))
-    assert str(problem.value) == """\
+    assert (
+        str(problem.value)
+        == """\
 grasp came before look: it should be reach < look < grasp.
     0.000 s  reach  (TOP-LEVEL)
 >    0.000 s  grasp  (TOP-LEVEL/PAR-CHILD-#1/2)
 >    0.500 s  look 7  (TOP-LEVEL/PAR-CHILD-#2/2)
      1.000 s  grasp  (TOP-LEVEL/PAR-CHILD-#1/2)
      1.500 s  done  (TOP-LEVEL)""".replace("\n    0.000", "\n     0.000")
+    )
 
 
 def test_spans_that_do_not_overlap(trace):
@@ -82,8 +88,12 @@ def test_the_statuses_of_a_task_tree_are_compared_by_path():
     """
     tree = testing.run(text).value
     testing.assert_all_dead(tree)
-    testing.assert_tree(tree, {"*/tagged-first-of-all": "succeeded", "*/testing-step": "*"} if False else
-                        {"*/tagged-first-of-all": "succeeded", "top-level-testing-steps": "failed"})
+    testing.assert_tree(
+        tree,
+        {"*/tagged-first-of-all": "succeeded", "*/testing-step": "*"}
+        if False
+        else {"*/tagged-first-of-all": "succeeded", "top-level-testing-steps": "failed"},
+    )
     with pytest.raises(AssertionError) as problem:
         testing.assert_tree(tree, {"*/tagged-first-of-all": "failed", "nowhere": "succeeded"})
     text = str(problem.value)

@@ -39,9 +39,9 @@ def server(lisp):
 
 def test_the_server_answers(server):
     assert server('(with-server (x (translation (lookup-transform *client* "map" "base" :time 1.5))))') == "1.5d0"
-    assert server('(with-server (transform-point-stamped *client*'
-                  ' :target-frame "map" :point (make-point-stamped "base" 1.5 #(1 0 0))))') == (
-        '#<POINT-STAMPED \n   FRAME-ID: "map" STAMP: 1.5d0\n   V: (2.5d0 0.0d0 0.0d0)>')
+    assert server(
+        '(with-server (transform-point-stamped *client* :target-frame "map" :point (make-point-stamped "base" 1.5 #(1 0 0))))'
+    ) == ('#<POINT-STAMPED \n   FRAME-ID: "map" STAMP: 1.5d0\n   V: (2.5d0 0.0d0 0.0d0)>')
 
 
 def test_all_options_reach_the_server(server):
@@ -59,15 +59,19 @@ def test_no_server_is_an_error_after_ten_seconds(lisp):
     assert lisp.error("(make-instance 'cl-tf2:buffer-client :timeout 1)", "timeout-error")
     assert lisp.value("(roslisp:ros-time)") - before == pytest.approx(11, abs=1e-3)
     assert lisp.condition("(make-instance 'cl-tf2:buffer-client :timeout 1)").hint == (
-        "Nobody serves the action tf2_buffer_server (tf2_msgs/LookupTransformAction). A CL-TF:TRANSFORM-LISTENER needs no server.")
+        "Nobody serves the action tf2_buffer_server (tf2_msgs/LookupTransformAction). A CL-TF:TRANSFORM-LISTENER needs no server."
+    )
 
 
 def test_errors_of_the_server_are_conditions(server):
     assert server.error('(with-server (lookup-transform *client* "map" "nope" :timeout 1))', "timeout-error") == (
-        "No transform was published between frames nope and map")
+        "No transform was published between frames nope and map"
+    )
     for code, kind in enumerate("lookup-error connectivity-error extrapolation-error invalid-argument-error timeout-error".split(), 1):
-        server(f'(defun serve-badly (message) (roslisp:with-fields ((id (id goal_id))) message (answer id {code} "code {code}")))'
-               "(setf *mute* t)")
+        server(
+            f'(defun serve-badly (message) (roslisp:with-fields ((id (id goal_id))) message (answer id {code} "code {code}")))'
+            "(setf *mute* t)"
+        )
         if code == 1:
             server('(roslisp:subscribe "tf2_buffer_server/goal" "tf2_msgs/LookupTransformActionGoal" (lambda (m) (serve-badly m)))')
         assert server.error('(with-server (lookup-transform *client* "map" "base"))', kind) == f"code {code}"
@@ -78,30 +82,40 @@ def test_a_goal_that_does_not_succeed(server):
               (roslisp:subscribe "tf2_buffer_server/goal" "tf2_msgs/LookupTransformActionGoal"
                 (lambda (message) (roslisp:with-fields ((id (id goal_id))) message (answer id 0 "" (at "a" "b" 0.0 1) 4))))""")
     assert server.error('(with-server (lookup-transform *client* "map" "base"))', "transform-stamped-error") == (
-        "Action call did not succeed. Status: ABORTED")
+        "Action call did not succeed. Status: ABORTED"
+    )
 
 
 def test_a_server_that_falls_silent_is_no_wait_for_ever(server):
     server("(setf *mute* t)")
     assert server.error('(lookup-transform *client* "map" "base")', "transform-stamped-error") == (
-        "Action call did not succeed. Status: LOST")
+        "Action call did not succeed. Status: LOST"
+    )
 
 
 def test_tasks_that_ask_at_once_all_get_their_answers(server):
     server('(told "map" "cup" 1.0 7)')
-    assert server("""(with-server
+    assert (
+        server("""(with-server
                        (let ((answers nil))
                          (cpl:top-level
                            (cpl:par
                              (push (x (translation (lookup-transform *client* "map" "base" :time 1.5 :timeout 2))) answers)
                              (push (x (translation (lookup-transform *client* "map" "cup" :timeout 2))) answers)))
-                         (sort answers #'<)))""") == "(1.5d0 7.0d0)"
+                         (sort answers #'<)))""")
+        == "(1.5d0 7.0d0)"
+    )
 
 
 def test_a_lookup_that_is_evaporated_cancels_its_goal(server):
-    server("(setf *mute* t) (defvar *cancelled* 0)"
-           '(roslisp:subscribe "tf2_buffer_server/cancel" "actionlib_msgs/GoalID" (lambda (id) (declare (ignore id)) (incf *cancelled*)))')
-    assert server("""(with-server
+    server(
+        "(setf *mute* t) (defvar *cancelled* 0)"
+        '(roslisp:subscribe "tf2_buffer_server/cancel" "actionlib_msgs/GoalID" (lambda (id) (declare (ignore id)) (incf *cancelled*)))'
+    )
+    assert (
+        server("""(with-server
                        (cpl:top-level (cpl:pursue (lookup-transform *client* "map" "base" :timeout 60) (cpl:sleep 1)))
                        (roslisp:wait-duration 0.1)
-                       *cancelled*)""") == "1"
+                       *cancelled*)""")
+        == "1"
+    )

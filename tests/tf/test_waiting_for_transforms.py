@@ -3,8 +3,8 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER
-from cramhy_runtime.lisp.printer.print_controls import PACKAGE
+from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.repl.session import Session
 
 
@@ -30,11 +30,13 @@ def test_a_lookup_waits_until_the_transform_comes(lisp):
 def test_a_lookup_for_a_time_to_come_waits_for_its_second(lisp):
     # In the original a second without entries is a failed assertion, which ends the wait.
     lisp('(told "map" "base" 1.0 1)')
-    assert lisp("""(cpl:top-level
+    assert (
+        lisp("""(cpl:top-level
                      (cpl:pursue
                        (x (translation (lookup-transform *tf* "map" "base" :time 3.5 :timeout 10)))
-                       (cpl:seq (cpl:sleep 1) (told "map" "base" 3.0 3) (cpl:sleep 1) (told "map" "base" 4.0 4) (cpl:sleep 1) nil)))"""
-                ) == "3.5d0"
+                       (cpl:seq (cpl:sleep 1) (told "map" "base" 3.0 3) (cpl:sleep 1) (told "map" "base" 4.0 4) (cpl:sleep 1) nil)))""")
+        == "3.5d0"
+    )
 
 
 def test_a_wait_keeps_its_time(lisp):
@@ -48,12 +50,15 @@ def test_a_wait_keeps_its_time(lisp):
 
 
 def test_a_wait_for_ever_is_evaporated(lisp):
-    assert lisp("""(let ((cleaned nil))
+    assert (
+        lisp("""(let ((cleaned nil))
                      (cpl:top-level
                        (cpl:pursue
                          (unwind-protect (wait-for-transform *tf* :target-frame "map" :source-frame "base") (setf cleaned t))
                          (cpl:sleep 4)))
-                     cleaned)""") == "T"
+                     cleaned)""")
+        == "T"
+    )
     assert lisp.value("*tf*").waiting._tasks == []
 
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.lisp.collections.vectors import LispArray
-from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
 from cramhy_runtime.transforms.poses import Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
@@ -91,8 +91,9 @@ def test_transforms_are_matrices(a, b, p):
     assert near(matrices.transform_to_matrix(poses.transform_star(a, b)).active(), (matrix(a) @ matrix(b)).flatten(), 1e-8)
     assert near(poses.transform_point(a, p), (matrix(a) @ [*p, 1])[:3], 1e-8)
     assert near(matrices.transform_to_matrix(poses.transform_inv(a)).active(), numpy.linalg.inv(matrix(a)).flatten(), 1e-8)
-    assert near(matrices.transform_to_matrix(poses.transform_diff(a, b)).active(),
-                (matrix(a) @ numpy.linalg.inv(matrix(b))).flatten(), 1e-8)
+    assert near(
+        matrices.transform_to_matrix(poses.transform_diff(a, b)).active(), (matrix(a) @ numpy.linalg.inv(matrix(b))).flatten(), 1e-8
+    )
 
 
 @ours

@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.collections.vectors import LispArray
-from cramhy_runtime.lisp.data import DoubleFloat, lisp_list
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.packages import find_package, keyword, sym
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.ground.data import DoubleFloat, lisp_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import find_package, keyword, sym
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
-from cramhy_runtime.transforms.package import CL_TRANSFORMS
+from cramhy_runtime.ground.packages import ensure_package
 from cramhy_runtime.transforms.poses import Pose, Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
 from cramhy_runtime.transforms.vectors import Vector3
@@ -19,6 +19,8 @@ from cramhy_runtime.transforms.vectors import Vector3
 D = DoubleFloat
 X, Y, Z = Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)
 A = Transform(Vector3(1, 2, 3), quaternions.yaw(D(math.pi / 2)))
+
+CL_TRANSFORMS = ensure_package("CL-TRANSFORMS")
 
 
 def show(obj):
@@ -34,23 +36,29 @@ def near(a, b):
     return all(math.isclose(x, y, abs_tol=1e-7) for x, y in zip(a, b))
 
 
-@pytest.mark.parametrize("obj, text", [
-    (vectors.make_3d_vector(1, 9, 0), "#<3D-VECTOR (1.0d0 9.0d0 0.0d0)>"),
-    (vectors.make_3d_vector(1.5, 2, D(3)), "#<3D-VECTOR (1.5d0 2.0d0 3.0d0)>"),
-    (vectors.make_3d_vector(0.1, D(0.1), 0), "#<3D-VECTOR (0.10000000149011612d0 0.1d0 0.0d0)>"),
-    (quaternions.make_quaternion(0, 0, 0, 1), "#<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>"),
-    (quaternions.q_inv(Quaternion()), "#<QUATERNION (-0.0d0 -0.0d0 -0.0d0 1.0d0)>"),
-    (quaternions.q_plus(3), "#<QUATERNION (0.0 0.0 0.0 3.0)>"),
-    (poses.make_identity_pose(), "#<POSE \n   #<3D-VECTOR (0.0d0 0.0d0 0.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>>"),
-    (Transform(Vector3(1, 2, 3)), "#<TRANSFORM \n   #<3D-VECTOR (1.0d0 2.0d0 3.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>>"),
-    (poses.make_twist(X, Z), "#<TWIST \n   TRANSLATION #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\n   ROTATION #<3D-VECTOR (0.0d0 0.0d0 1.0d0)>>"),
-    (quaternions.axis_angle_to_quaternion(Z, D(math.pi)), "#<QUATERNION (0.0d0 0.0d0 1.0d0 6.123233995736766d-17)>"),
-    (quaternions.axis_angle_to_quaternion(Z, 1.0), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
-    (quaternions.euler_to_quaternion(az=1.0), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
-    (vectors.v_dist(Vector3(), Vector3(3, 4, 0)), "5.0d0"),
-    (vectors.x(vectors.make_3d_vector(1, 9, 0)), "1.0d0"),
-    (lisp_list(Vector3(1, 9, 0)), "(#<3D-VECTOR (1.0d0 9.0d0 0.0d0)>)"),
-])
+@pytest.mark.parametrize(
+    "obj, text",
+    [
+        (vectors.make_3d_vector(1, 9, 0), "#<3D-VECTOR (1.0d0 9.0d0 0.0d0)>"),
+        (vectors.make_3d_vector(1.5, 2, D(3)), "#<3D-VECTOR (1.5d0 2.0d0 3.0d0)>"),
+        (vectors.make_3d_vector(0.1, D(0.1), 0), "#<3D-VECTOR (0.10000000149011612d0 0.1d0 0.0d0)>"),
+        (quaternions.make_quaternion(0, 0, 0, 1), "#<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>"),
+        (quaternions.q_inv(Quaternion()), "#<QUATERNION (-0.0d0 -0.0d0 -0.0d0 1.0d0)>"),
+        (quaternions.q_plus(3), "#<QUATERNION (0.0 0.0 0.0 3.0)>"),
+        (poses.make_identity_pose(), "#<POSE \n   #<3D-VECTOR (0.0d0 0.0d0 0.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>>"),
+        (Transform(Vector3(1, 2, 3)), "#<TRANSFORM \n   #<3D-VECTOR (1.0d0 2.0d0 3.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>>"),
+        (
+            poses.make_twist(X, Z),
+            "#<TWIST \n   TRANSLATION #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\n   ROTATION #<3D-VECTOR (0.0d0 0.0d0 1.0d0)>>",
+        ),
+        (quaternions.axis_angle_to_quaternion(Z, D(math.pi)), "#<QUATERNION (0.0d0 0.0d0 1.0d0 6.123233995736766d-17)>"),
+        (quaternions.axis_angle_to_quaternion(Z, 1.0), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
+        (quaternions.euler_to_quaternion(az=1.0), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
+        (vectors.v_dist(Vector3(), Vector3(3, 4, 0)), "5.0d0"),
+        (vectors.x(vectors.make_3d_vector(1, 9, 0)), "1.0d0"),
+        (lisp_list(Vector3(1, 9, 0)), "(#<3D-VECTOR (1.0d0 9.0d0 0.0d0)>)"),
+    ],
+)
 def test_printed_forms(obj, text):
     assert show(obj) == text
 
@@ -89,37 +97,45 @@ def test_vectors():
     assert show(vectors.v_inv(X)) == "#<3D-VECTOR (-1.0d0 -0.0d0 -0.0d0)>"
 
 
-@pytest.mark.parametrize("thunk, text", [
-    (lambda: vectors.make_3d_vector("a", 0, 0), 'The value\n  "a"\nis not of type\n  REAL'),
-    (lambda: vectors.make_3d_vector(None, 0, 0), "The value\n  NIL\nis not of type\n  REAL"),
-    (lambda: vectors.v_plus(), "invalid number of arguments: 0"),
-    (lambda: poses.transform_star(), "invalid number of arguments: 0"),
-    (lambda: quaternions.axis_angle_to_quaternion(Z, 0),
-     "The value\n  0\nis not of type\n  FLOAT\nwhen binding CL-TRANSFORMS::ANGLE"),
-    (lambda: vectors.interpolate_vector([0, 0, 0], X, 1),
-     "The value of CL-TRANSFORMS::V-0 is #(0 0 0), which is not of type 3D-VECTOR."),
-    (lambda: quaternions.slerp(1.0, Quaternion(), 0.5),
-     "The value of CL-TRANSFORMS::Q1 is 1.0, which is not of type QUATERNION."),
-    (lambda: quaternions.normalize(Quaternion(0, 0, 0, 0)),
-     "Attempted to normalize quaternion #<QUATERNION (0.0d0 0.0d0 0.0d0 0.0d0)> with norm 0.0d0"),
-])
+@pytest.mark.parametrize(
+    "thunk, text",
+    [
+        (lambda: vectors.make_3d_vector("a", 0, 0), 'The value\n  "a"\nis not of type\n  REAL'),
+        (lambda: vectors.make_3d_vector(None, 0, 0), "The value\n  NIL\nis not of type\n  REAL"),
+        (lambda: vectors.v_plus(), "invalid number of arguments: 0"),
+        (lambda: poses.transform_star(), "invalid number of arguments: 0"),
+        (lambda: quaternions.axis_angle_to_quaternion(Z, 0), "The value\n  0\nis not of type\n  FLOAT\nwhen binding CL-TRANSFORMS::ANGLE"),
+        (
+            lambda: vectors.interpolate_vector([0, 0, 0], X, 1),
+            "The value of CL-TRANSFORMS::V-0 is #(0 0 0), which is not of type 3D-VECTOR.",
+        ),
+        (lambda: quaternions.slerp(1.0, Quaternion(), 0.5), "The value of CL-TRANSFORMS::Q1 is 1.0, which is not of type QUATERNION."),
+        (
+            lambda: quaternions.normalize(Quaternion(0, 0, 0, 0)),
+            "Attempted to normalize quaternion #<QUATERNION (0.0d0 0.0d0 0.0d0 0.0d0)> with norm 0.0d0",
+        ),
+    ],
+)
 def test_error_texts(thunk, text):
     assert error_text(thunk).startswith(text)
 
 
-@pytest.mark.parametrize("thunk, kind", [
-    (lambda: vectors.normalize_vector(Vector3()), conditions.DivisionByZero),
-    (lambda: vectors.v_slash_pairwise(X, X), conditions.DivisionByZero),
-    (lambda: vectors.v_star(2, X), conditions.TypeError_),
-    (lambda: poses.transform_point(Pose(), X), conditions.TypeError_),
-    (lambda: poses.transform_point(A, lisp_list(1, 2, 3)), conditions.TypeError_),
-    (lambda: poses.make_2d_pose(1, 2, 0), conditions.TypeError_),
-    (lambda: poses.pose_to_transform(A), conditions.TypeError_),
-    (lambda: quaternions.rotate(Quaternion(0, 0, 0, 2), X), conditions.Error),
-    (lambda: vectors.x(None), conditions.Error),
-    (lambda: poses.transform(A, A), conditions.Error),
-    (lambda: matrices.matrix_to_transform(LispArray((2, 2), [1, 0, 0, 1])), conditions.Error),
-])
+@pytest.mark.parametrize(
+    "thunk, kind",
+    [
+        (lambda: vectors.normalize_vector(Vector3()), conditions.DivisionByZero),
+        (lambda: vectors.v_slash_pairwise(X, X), conditions.DivisionByZero),
+        (lambda: vectors.v_star(2, X), conditions.TypeError_),
+        (lambda: poses.transform_point(Pose(), X), conditions.TypeError_),
+        (lambda: poses.transform_point(A, lisp_list(1, 2, 3)), conditions.TypeError_),
+        (lambda: poses.make_2d_pose(1, 2, 0), conditions.TypeError_),
+        (lambda: poses.pose_to_transform(A), conditions.TypeError_),
+        (lambda: quaternions.rotate(Quaternion(0, 0, 0, 2), X), conditions.Error),
+        (lambda: vectors.x(None), conditions.Error),
+        (lambda: poses.transform(A, A), conditions.Error),
+        (lambda: matrices.matrix_to_transform(LispArray((2, 2), [1, 0, 0, 1])), conditions.Error),
+    ],
+)
 def test_errors(thunk, kind):
     assert error_text(thunk, kind) is not None
 
@@ -143,12 +159,14 @@ def test_euler_angles():
     assert list(quaternions.quaternion_to_euler(q))[::2] == [keyword("AX"), keyword("AY"), keyword("AZ")]
     for pitch, yaw in ((math.pi / 2, 0.2), (-math.pi / 2, 0.4)):
         roll, _, heading = quaternions.quaternion_to_euler(
-            quaternions.euler_to_quaternion(ax=D(0.1), ay=D(pitch), az=D(0.3)), just_values=True)
+            quaternions.euler_to_quaternion(ax=D(0.1), ay=D(pitch), az=D(0.3)), just_values=True
+        )
         assert roll == 0 and isinstance(roll, int) and math.isclose(heading, yaw)
 
 
-@pytest.mark.parametrize("angle, normal", [(D(4), -2.283185307179586), (D(math.pi), math.pi), (-D(math.pi), -math.pi),
-                                           (10, -2.5663706143591725)])
+@pytest.mark.parametrize(
+    "angle, normal", [(D(4), -2.283185307179586), (D(math.pi), math.pi), (-D(math.pi), -math.pi), (10, -2.5663706143591725)]
+)
 def test_angles_are_normalised(angle, normal):
     assert math.isclose(quaternions.normalize_angle(angle), normal)
 

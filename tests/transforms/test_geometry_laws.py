@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.transforms.poses import Transform
 from cramhy_runtime.transforms.quaternions import Quaternion, normalize
 from cramhy_runtime.transforms.vectors import Vector3
@@ -55,7 +55,8 @@ def test_sums_and_differences(lisp):
 @pytest.mark.law("cl-transforms", 5)
 def test_the_scalar_stands_behind_the_vector(lisp):
     assert lisp.error("(v* 2 *x*)", "type-error") == (
-        "The value\n  #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\nis not of type\n  REAL\nwhen binding CL-TRANSFORMS::SCALAR")
+        "The value\n  #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\nis not of type\n  REAL\nwhen binding CL-TRANSFORMS::SCALAR"
+    )
     assert lisp("(v* *x* 2)") == "#<3D-VECTOR (2.0d0 0.0d0 0.0d0)>"
 
 
@@ -96,8 +97,10 @@ def test_quaternions_are_a_field_but_for_the_order(lisp, a, b, c):
 @pytest.mark.law("cl-transforms", 11)
 def test_equality_of_quaternions(lisp):
     assert lisp("(q= (make-identity-rotation) 1)") == "T"
-    assert lisp("(let ((q (make-quaternion 1 2 3 4))) (list (q= q (q- q)) (q= q (copy-quaternion q)) (equal q (copy-quaternion q))))"
-                ) == "(NIL T NIL)"
+    assert (
+        lisp("(let ((q (make-quaternion 1 2 3 4))) (list (q= q (q- q)) (q= q (copy-quaternion q)) (equal q (copy-quaternion q))))")
+        == "(NIL T NIL)"
+    )
 
 
 @pytest.mark.law("cl-transforms", 12)
@@ -106,20 +109,23 @@ def test_who_normalises_and_who_says_so(lisp):
     assert lisp.warnings("(defvar *pose* (make-pose *x* (make-quaternion 0 0 0 2)))") == ""
     assert lisp("(orientation *pose*)") == "#<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>"
     assert lisp.warnings("(defvar *transform* (make-transform *x* (make-quaternion 0 0 0 2)))") == (
-        "WARNING:\n   Normalized rotation component to #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>\n")
+        "WARNING:\n   Normalized rotation component to #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>\n"
+    )
     assert lisp("(rotation *transform*)") == "#<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>"
-    for silent in ("(make-transform *x* (make-quaternion 0 0 0 2) :validate-args :no-warn)",
-                   "(make-instance 'transform :rotation (make-quaternion 0 0 0 2))"):
+    for silent in (
+        "(make-transform *x* (make-quaternion 0 0 0 2) :validate-args :no-warn)",
+        "(make-instance 'transform :rotation (make-quaternion 0 0 0 2))",
+    ):
         assert lisp.warnings(f"(defparameter *made* {silent})") == ""
         assert lisp("(rotation *made*)") == "#<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>"
 
 
 @pytest.mark.law("cl-transforms", 13)
 def test_how_transforms_are_validated(lisp):
-    assert lisp("(rotation (make-transform *x* (make-quaternion 0 0 0 2) :validate-args nil))"
-                ) == "#<QUATERNION (0.0d0 0.0d0 0.0d0 2.0d0)>"
+    assert lisp("(rotation (make-transform *x* (make-quaternion 0 0 0 2) :validate-args nil))") == "#<QUATERNION (0.0d0 0.0d0 0.0d0 2.0d0)>"
     assert lisp.error("(make-transform *x* (make-quaternion 0 0 0 2) :validate-args t)") == (
-        "Rotation component #<QUATERNION (0.0d0 0.0d0 0.0d0 2.0d0)> not normalized")
+        "Rotation component #<QUATERNION (0.0d0 0.0d0 0.0d0 2.0d0)> not normalized"
+    )
     assert lisp("(translation (make-transform 'anywhere (make-identity-rotation) :validate-args t))") == "ANYWHERE"
 
 
@@ -130,7 +136,8 @@ def test_a_pose_without_rotation_is_an_error(lisp):
     assert lisp.error("(make-instance 'pose :orientation (make-quaternion 0 0 0 0))") == text
     assert lisp.condition("(make-pose *x* (make-quaternion 0 0 0 0))").hint == (
         "A message that nobody filled in has the orientation (0 0 0 0), which is no rotation; (make-identity-rotation) is the one that "
-        "turns nothing.")
+        "turns nothing."
+    )
 
 
 @pytest.mark.law("cl-transforms", 15)
@@ -151,9 +158,15 @@ def test_an_angle_is_a_float(lisp):
 @pytest.mark.law("cl-transforms", 17)
 def test_the_axis_of_a_rotation_is_its_vector_part(lisp):
     assert lisp("(quaternion->axis-angle (axis-angle->quaternion *z* 1.0d0))") == (
-        "#<3D-VECTOR (0.0d0 0.0d0 0.479425538604203d0)> 0.9999999999999998d0")
-    assert lisp("(multiple-value-bind (axis angle) (quaternion->axis-angle (q- (yaw 1.0d0))) (near (list angle (z axis))"
-                " (list (- (* 2 pi) 1) -0.479425538604203d0)))") == "T"
+        "#<3D-VECTOR (0.0d0 0.0d0 0.479425538604203d0)> 0.9999999999999998d0"
+    )
+    assert (
+        lisp(
+            "(multiple-value-bind (axis angle) (quaternion->axis-angle (q- (yaw 1.0d0))) (near (list angle (z axis))"
+            " (list (- (* 2 pi) 1) -0.479425538604203d0)))"
+        )
+        == "T"
+    )
 
 
 @pytest.mark.law("cl-transforms", 18)
@@ -170,7 +183,8 @@ def test_a_quarter_turn(lisp):
 def test_only_rotations_rotate(lisp):
     assert lisp.error("(rotate (make-quaternion 0 0 0 2) *x*)") == (
         "The assertion (CL-TRANSFORMS:IS-NORMALIZED CL-TRANSFORMS::Q) failed with CL-TRANSFORMS::Q = "
-        "#<QUATERNION (0.0d0 0.0d0 0.0d0 2.0d0)>.")
+        "#<QUATERNION (0.0d0 0.0d0 0.0d0 2.0d0)>."
+    )
     assert lisp("(rotate (make-quaternion 0 0 0 2) *x* :normalize t)") == "#<3D-VECTOR (1.0d0 0.0d0 0.0d0)>"
     assert lisp("(rotate (make-quaternion 0 0 0 2) *x* :normalize nil)") == "#<3D-VECTOR (1.0d0 0.0d0 0.0d0)>"
 
@@ -195,9 +209,12 @@ def test_roll_pitch_and_yaw(lisp):
 @pytest.mark.law("cl-transforms", 24)
 def test_at_the_poles_roll_is_zero(lisp):
     for pitch, yaw in (("(/ pi 2)", "0.2d0"), ("(- (/ pi 2))", "0.4d0")):
-        assert lisp(f"""(destructuring-bind (roll pitch yaw)
+        assert (
+            lisp(f"""(destructuring-bind (roll pitch yaw)
                             (quaternion->euler (euler->quaternion :ax 0.1d0 :ay {pitch} :az 0.3d0) :just-values t)
-                          (list (eql roll 0) (near (list pitch yaw) (list {pitch} {yaw}))))""") == "(T T)"
+                          (list (eql roll 0) (near (list pitch yaw) (list {pitch} {yaw}))))""")
+            == "(T T)"
+        )
 
 
 @pytest.mark.law("cl-transforms", 25)
@@ -212,7 +229,8 @@ def test_yaw_there_and_back(lisp, angle):
 def test_angles_are_brought_into_one_turn(lisp):
     assert lisp("(mapcar #'normalize-angle (list 4.0 pi (- pi) 0.5 -3 (* 3 pi) -4 10))") == (
         "(-2.2831853071795862d0 3.141592653589793d0 -3.141592653589793d0 0.5 -3 3.141592653589793d0 2.2831853071795862d0 "
-        "-2.5663706143591725d0)")
+        "-2.5663706143591725d0)"
+    )
 
 
 @pytest.mark.law("cl-transforms", 27)
@@ -226,8 +244,12 @@ def test_transforms_compose_like_matrices(lisp, a, b, p):
 @with_text
 @given(a=transforms)
 def test_the_transform_back(lisp, a):
-    holds(lisp, "(lambda (a) (let ((one (transform* a (transform-inv a)))) (and (near (translation one) '(0 0 0))"
-                " (near (rotation one) '(0 0 0 1)))))", a)
+    holds(
+        lisp,
+        "(lambda (a) (let ((one (transform* a (transform-inv a)))) (and (near (translation one) '(0 0 0))"
+        " (near (rotation one) '(0 0 0 1)))))",
+        a,
+    )
     assert lisp("(near (translation (transform-inv *a*)) '(-2 1 -3))") == "T"
 
 
@@ -244,19 +266,27 @@ def test_the_last_transform_is_applied_first(lisp):
 @with_text
 @given(to=transforms, origin=transforms, p=points)
 def test_the_difference_of_transforms(lisp, to, origin, p):
-    holds(lisp, "(lambda (to from p) (near (transform-point (transform* (transform-diff to from) from) p) (transform-point to p)))",
-          to, origin, p)
+    holds(
+        lisp,
+        "(lambda (to from p) (near (transform-point (transform* (transform-diff to from) from) p) (transform-point to p)))",
+        to,
+        origin,
+        p,
+    )
 
 
 @pytest.mark.law("cl-transforms", 31)
 def test_what_can_be_transformed(lisp):
     assert lisp.error("(transform-point (make-identity-pose) *x*)", "type-error") == (
         "The value\n  #<POSE \n   #<3D-VECTOR (0.0d0 0.0d0 0.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>>\n\nis not of type\n"
-        "  CL-TRANSFORMS:TRANSFORM\nwhen binding CL-TRANSFORMS::TRANS")
+        "  CL-TRANSFORMS:TRANSFORM\nwhen binding CL-TRANSFORMS::TRANS"
+    )
     assert lisp.error("(transform-point *a* '(1 2 3))", "type-error") == (
-        "The value\n  (1 2 3)\nis not of type\n  CL-TRANSFORMS:POINT\nwhen binding CL-TRANSFORMS::P")
+        "The value\n  (1 2 3)\nis not of type\n  CL-TRANSFORMS:POINT\nwhen binding CL-TRANSFORMS::P"
+    )
     assert lisp.condition("(transform-point *a* '(1 2 3))").hint == (
-        "A list is no point; a vector such as #(1 2 3) is, or (make-3d-vector 1 2 3).")
+        "A list is no point; a vector such as #(1 2 3) is, or (make-3d-vector 1 2 3)."
+    )
     assert lisp("(transform-point (make-identity-transform) #(1 0 0))") == "#<3D-VECTOR (1.0d0 0.0d0 0.0d0)>"
 
 
@@ -269,8 +299,13 @@ def test_poses_on_the_plane(lisp):
 
 @pytest.mark.law("cl-transforms", 33)
 def test_poses_and_transforms_have_the_same_numbers(lisp):
-    assert lisp("(let* ((pose (make-2d-pose 1 2 0.5)) (back (transform->pose (pose->transform pose))))"
-                " (list (near (origin back) (origin pose) 1d-30) (q= (orientation back) (orientation pose))))") == "(T T)"
+    assert (
+        lisp(
+            "(let* ((pose (make-2d-pose 1 2 0.5)) (back (transform->pose (pose->transform pose))))"
+            " (list (near (origin back) (origin pose) 1d-30) (q= (orientation back) (orientation pose))))"
+        )
+        == "(T T)"
+    )
 
 
 @pytest.mark.law("cl-transforms", 34)
@@ -278,9 +313,11 @@ def test_poses_and_transforms_have_the_same_numbers(lisp):
 @given(q=units)
 def test_matrices_of_rotations(lisp, q):
     holds(lisp, "(lambda (q) (let ((back (matrix->quaternion (quaternion->matrix q)))) (or (near back q) (near (q- back) q))))", q)
-    for diagonal, text in (("((1 0 0) (0 -1 0) (0 0 -1))", "(1.0d0 0.0d0 0.0d0 0.0d0)"),
-                           ("((-1 0 0) (0 1 0) (0 0 -1))", "(0.0d0 1.0d0 0.0d0 0.0d0)"),
-                           ("((-1 0 0) (0 -1 0) (0 0 1))", "(0.0d0 0.0d0 1.0d0 0.0d0)")):
+    for diagonal, text in (
+        ("((1 0 0) (0 -1 0) (0 0 -1))", "(1.0d0 0.0d0 0.0d0 0.0d0)"),
+        ("((-1 0 0) (0 1 0) (0 0 -1))", "(0.0d0 1.0d0 0.0d0 0.0d0)"),
+        ("((-1 0 0) (0 -1 0) (0 0 1))", "(0.0d0 0.0d0 1.0d0 0.0d0)"),
+    ):
         assert lisp(f"(matrix->quaternion #2A{diagonal})") == f"#<QUATERNION {text}>"
 
 
@@ -288,7 +325,8 @@ def test_matrices_of_rotations(lisp, q):
 def test_matrices_of_transforms(lisp):
     assert lisp("(loop with matrix = (transform->matrix *a*) for column below 4 collect (aref matrix 3 column))") == "(0.0 0.0 0.0 1)"
     assert lisp.error("(matrix->transform #2A((1 0) (0 1)))") == (
-        "The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(4 4)) failed: the matrix is 2 by 2.")
+        "The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(4 4)) failed: the matrix is 2 by 2."
+    )
     assert lisp("(near (translation (matrix->transform (transform->matrix *a*))) '(1 2 3))") == "T"
 
 
@@ -297,7 +335,8 @@ def test_spherical_interpolation(lisp):
     for ratio, angle in (("0", 0), ("1", 2), ("0.5", 1), ("2.0", 4 - 2 * math.pi)):
         assert lisp(f"(< (abs (- (get-yaw (slerp (make-identity-rotation) (yaw 2d0) {ratio})) {DoubleFloat(angle)!r})) 1d-9)") == "T"
     assert lisp.error("(slerp 1.0 (yaw 2d0) 0.5)", "type-error") == (
-        "The value of CL-TRANSFORMS::Q1 is 1.0, which is not of type QUATERNION.")
+        "The value of CL-TRANSFORMS::Q1 is 1.0, which is not of type QUATERNION."
+    )
 
 
 @pytest.mark.law("cl-transforms", 37)
@@ -305,10 +344,14 @@ def test_linear_interpolation(lisp):
     assert lisp("(interpolate-vector (make-3d-vector 0 0 0) (make-3d-vector 2 4 6) 0.5)") == "#<3D-VECTOR (1.0d0 2.0d0 3.0d0)>"
     assert lisp("(interpolate-vector (make-3d-vector 0 0 0) (make-3d-vector 2 4 6) 2)") == "#<3D-VECTOR (4.0d0 8.0d0 12.0d0)>"
     assert lisp.error("(interpolate-vector #(0 0 0) *x* 0.5)", "type-error") == (
-        "The value of CL-TRANSFORMS::V-0 is #(0 0 0), which is not of type 3D-VECTOR.")
+        "The value of CL-TRANSFORMS::V-0 is #(0 0 0), which is not of type 3D-VECTOR."
+    )
 
 
 @pytest.mark.law("cl-transforms", 38)
 def test_the_bearing_of_a_turtle(lisp):
-    assert lisp("""(let ((seen (transform-point (transform-inv (pose->transform (make-2d-pose 1 1 (/ pi 2)))) (make-3d-vector 1 3 0))))
-                     (list (near seen '(2 0 0)) (< (abs (atan (y seen) (x seen))) 1d-9)))""") == "(T T)"
+    assert (
+        lisp("""(let ((seen (transform-point (transform-inv (pose->transform (make-2d-pose 1 1 (/ pi 2)))) (make-3d-vector 1 3 0))))
+                     (list (near seen '(2 0 0)) (< (abs (atan (y seen) (x seen))) 1d-9)))""")
+        == "(T T)"
+    )

@@ -2,12 +2,12 @@
 
 import pytest
 
-from cramhy_runtime.lisp.dynamic import binding
-from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.lisp.objects.classes import find_class
-from cramhy_runtime.lisp.printer.print_controls import PRINT_GENSYM
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
-from cramhy_runtime.transforms.package import CL_TRANSFORMS
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
+from cramhy_runtime.languages.commonlisp.objects.classes import find_class
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_GENSYM
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground.packages import ensure_package
 
 FUNCTIONS = {
     "(x y z)": "make-3d-vector",
@@ -55,6 +55,8 @@ FUNCTIONS = {
 CLASSES = "3d-vector quaternion transform pose twist wrench"
 TYPES = "point gen-quaternion quaternion-coefficient"
 
+CL_TRANSFORMS = ensure_package("CL-TRANSFORMS")
+
 
 @pytest.mark.parametrize("lambda_list, names", FUNCTIONS.items())
 def test_the_arguments_of_each_function(lambda_list, names):
@@ -77,16 +79,26 @@ def test_the_classes(name):
 
 def test_types_of_arguments(lisp):
     kinds = "'(point gen-quaternion quaternion-coefficient)"
-    for thing, answer in (("*x*", "(T NIL NIL)"), ("#(1 2 3)", "(T NIL NIL)"), ("'(1 2 3)", "(NIL NIL NIL)"), ("#(1 2)", "(NIL NIL NIL)"),
-                          ("(yaw 1.0)", "(NIL T NIL)"), ("#(1 2 3 4)", "(NIL T NIL)"), ("2", "(NIL T NIL)"), ("2.0", "(NIL T T)"),
-                          ("2d0", "(NIL T T)")):
+    for thing, answer in (
+        ("*x*", "(T NIL NIL)"),
+        ("#(1 2 3)", "(T NIL NIL)"),
+        ("'(1 2 3)", "(NIL NIL NIL)"),
+        ("#(1 2)", "(NIL NIL NIL)"),
+        ("(yaw 1.0)", "(NIL T NIL)"),
+        ("#(1 2 3 4)", "(NIL T NIL)"),
+        ("2", "(NIL T NIL)"),
+        ("2.0", "(NIL T T)"),
+        ("2d0", "(NIL T T)"),
+    ):
         assert lisp(f"(mapcar (lambda (kind) (typep {thing} kind)) {kinds})") == answer, thing
 
 
 def test_readers_of_other_things(lisp):
     assert lisp("(list (x #(1 2 3)) (z #(1 2 3)) (w #(1 2 3 4)) (x 3) (y 3.0) (z 1/2) (w 3))") == "(1 3 4 0.0 0.0 0.0 3)"
-    text = ("There is no applicable method for the generic function\n  #<STANDARD-GENERIC-FUNCTION CL-TRANSFORMS:{}>\nwhen called with "
-            "arguments\n  ({}).\nSee also:\nThe ANSI Standard, Section 7.6.6")
+    text = (
+        "There is no applicable method for the generic function\n  #<STANDARD-GENERIC-FUNCTION CL-TRANSFORMS:{}>\nwhen called with "
+        "arguments\n  ({}).\nSee also:\nThe ANSI Standard, Section 7.6.6"
+    )
     assert lisp.error("(x nil)") == text.format("X", "NIL")
     assert lisp.error("(v-dist *x* nil)") == text.format("X", "NIL")
     assert lisp.error("(w *x*)") == text.format("W", "#<3D-VECTOR (1.0d0 0.0d0 0.0d0)>")
@@ -100,23 +112,34 @@ def test_generic_functions_take_methods(lisp):
             (defclass place () ((east :initarg :east)))
             (defmethod x ((place place)) (slot-value place 'east))""")
     assert lisp('(list (transform *a* "cup") (x (make-instance \'place :east 7)) (x *x*) (eq (reference-transform *a*) *a*))') == (
-        '("moved cup" 7 1.0d0 T)')
+        '("moved cup" 7 1.0d0 T)'
+    )
     assert lisp('(near (transform (reference-transform "here") #(1 2 3)) \'(1 2 3))') == "T"
     assert lisp("(eq 'nobody (handler-case (transform *a* *a*) (error () 'nobody)))") == "T"
 
 
 def test_what_a_transform_is_applied_to(lisp):
-    assert lisp("(list (near (transform *a* *x*) '(1 3 3)) (near (transform *a* #(1 0 0)) '(1 3 3))"
-                " (near (origin (transform *a* (make-pose *x* (yaw 0.0)))) '(1 3 3)))") == "(T T T)"
+    assert (
+        lisp(
+            "(list (near (transform *a* *x*) '(1 3 3)) (near (transform *a* #(1 0 0)) '(1 3 3))"
+            " (near (origin (transform *a* (make-pose *x* (yaw 0.0)))) '(1 3 3)))"
+        )
+        == "(T T T)"
+    )
     assert lisp("(near (transform *a* (make-array 3 :initial-contents '(1 0 0) :adjustable t :fill-pointer t)) '(1 3 3))") == "T"
     assert lisp.error("(transform *a* #(1 2))") == (
-        "The assertion (= 3 (LENGTH CL-TRANSFORMS::P)) failed with (LENGTH CL-TRANSFORMS::P) = 2.")
+        "The assertion (= 3 (LENGTH CL-TRANSFORMS::P)) failed with (LENGTH CL-TRANSFORMS::P) = 2."
+    )
 
 
 def test_angles_that_are_no_numbers(lisp):
     assert lisp.error('(normalize-angle "a")', "type-error") == 'The value\n  "a"\nis not of type\n  REAL'
-    for text in ("(normalize-angle sb-ext:double-float-positive-infinity)", "(yaw sb-ext:double-float-negative-infinity)",
-                 "(euler->quaternion :az sb-ext:double-float-positive-infinity)", "(q-inv (make-quaternion 0 0 0 0))"):
+    for text in (
+        "(normalize-angle sb-ext:double-float-positive-infinity)",
+        "(yaw sb-ext:double-float-negative-infinity)",
+        "(euler->quaternion :az sb-ext:double-float-positive-infinity)",
+        "(q-inv (make-quaternion 0 0 0 0))",
+    ):
         assert lisp.error(text) == "arithmetic error FLOATING-POINT-INVALID-OPERATION signalled", text
 
 
@@ -133,14 +156,17 @@ def test_numbers_that_are_no_doubles(lisp):
     assert lisp.error("(make-3d-vector #c(1 2) 0 0)", "type-error") == "The value\n  #C(1 2)\nis not of type\n  REAL"
     assert lisp.error("(make-3d-vector (expt 10 400) 0 0)", "arithmetic-error")
     assert lisp("(list (squared-norm 2) (q-norm #(1 2 2 4)) (q-dot #(1 2 3 4) #(1 2 3 4)) (q-dot (make-quaternion 0 0 0 2) 3))") == (
-        "(4.0 5.0 30 6.0d0)")
+        "(4.0 5.0 30 6.0d0)"
+    )
 
 
 def test_a_matrix_that_is_too_small(lisp):
     assert lisp.error("(matrix->quaternion #2A((1 0) (0 1)))") == (
-        "The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(3 3)) failed: the matrix is 2 by 2.")
+        "The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(3 3)) failed: the matrix is 2 by 2."
+    )
     assert lisp.error("(matrix->quaternion 3)", "type-error") == (
-        "The value\n  3\nis not of type\n  (ARRAY * (* *))\nwhen binding CL-TRANSFORMS::MATRIX")
+        "The value\n  3\nis not of type\n  (ARRAY * (* *))\nwhen binding CL-TRANSFORMS::MATRIX"
+    )
     assert lisp("(transpose-2d-matrix #2A((1 2 3) (4 5 6)))") == "#2A((1 4) (2 5) (3 6))"
 
 
@@ -152,12 +178,14 @@ def test_vectors_have_no_setters(lisp):
 def test_arguments_in_the_wrong_order(lisp):
     for text in ("(make-pose (yaw 1.0) *x*)", "(make-transform (yaw 1.0) *x*)"):
         assert lisp.error(text, "type-error") == (
-            "The value\n  #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\nis not of type\n  CL-TRANSFORMS:GEN-QUATERNION\nwhen binding CL-TRANSFORMS::Q")
+            "The value\n  #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\nis not of type\n  CL-TRANSFORMS:GEN-QUATERNION\nwhen binding CL-TRANSFORMS::Q"
+        )
         assert lisp.condition(text).hint == "The place comes first, then the rotation."
 
 
 def test_a_class_of_ones_own_prints_its_name(lisp):
     lisp("(defclass named-pose (pose) ((name :initarg :name)))")
     assert lisp('(make-instance \'named-pose :name "home" :orientation (make-quaternion 0 0 2 0))') == (
-        "#<NAMED-POSE \n   #<3D-VECTOR (0.0d0 0.0d0 0.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 1.0d0 0.0d0)>>")
+        "#<NAMED-POSE \n   #<3D-VECTOR (0.0d0 0.0d0 0.0d0)>\n   #<QUATERNION (0.0d0 0.0d0 1.0d0 0.0d0)>>"
+    )
     assert lisp('(type-of (transform-pose *a* (make-instance \'named-pose :name "home")))') == "POSE"

@@ -8,7 +8,7 @@ import pytest
 from lisp_text import LispText
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.ros import graph, services
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 from cramhy_runtime.turtlesim.node import start_turtlesim
@@ -164,9 +164,9 @@ PRELUDE = """
 @pytest.fixture(params=["threads", "greenlet"])
 def typed(request):
     """A `Typing` in a package that uses CPL and ROSLISP, with a node and the turtle; ``/turtle1`` is watched."""
-    from cramhy_runtime.lisp.packages import COMMON_LISP_USER, delete_package, find_package
-    from cramhy_runtime.lisp.printer.print_controls import PACKAGE
-    from cramhy_runtime.lisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
+    from cramhy_runtime.ground.packages import COMMON_LISP_USER, delete_package, find_package
+    from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
+    from cramhy_runtime.languages.commonlisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
     from cramhy_runtime.repl.session import Session
     from cramhy_runtime.ros.roslisp import utilities
 

@@ -178,8 +178,7 @@ class TestTeleports:
         assert [warning in text for text in warnings] == ([True] if warning else [])
 
     @pytest.mark.parametrize(
-        "theta, published",
-        [(math.pi, -3.1415925), (-math.pi, 3.1415925), (4, -2.2831852), (7, 0.7168147), (10.0, -2.5663704872131348)],
+        "theta, published", [(math.pi, -3.1415925), (-math.pi, 3.1415925), (4, -2.2831852), (7, 0.7168147), (10.0, -2.5663704872131348)]
     )
     def test_angles_are_wrapped_at_the_truncated_pi(self, turtle, theta, published):
         turtle.teleport(5, 5, theta)

@@ -6,8 +6,8 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ros import graph
-from cramhy_runtime.turtlesim import ink
-from cramhy_runtime.turtlesim.ink import Ink, thinned
+from cramhy_runtime.turtlesim import strokes as ink
+from cramhy_runtime.turtlesim.strokes import Ink, thinned
 
 CENTRE = 5.544444561004639
 PEN = (179, 184, 255)

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from cramhy_runtime.turtlesim import drawing, measures, pictures, sprites
+from cramhy_runtime.turtlesim import drawing, dimensions as measures, pictures, sprites
 
 PEN, GROUND = (179, 184, 255), (69, 86, 255)
 

@@ -7,7 +7,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.cli import launch
-from cramhy_runtime.lisp.condition_types import SimpleError
+from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.ros.services import Refusal
@@ -40,7 +40,14 @@ class TestCommandLine:
         words = ["__name:=sim", "_background_r:=10", "_background_b:=0", "_half:=0.5", "_on:=True", "_path:=~/x", "_colour:=#f00"]
         assert executables.start("turtlesim_node", words).canvas.background == (10, 86, 0)
         assert graph.active().parameters.get("/sim") == {
-            "background_r": 10, "background_g": 86, "background_b": 0, "half": 0.5, "on": True, "path": "~/x", "colour": "#f00"}
+            "background_r": 10,
+            "background_g": 86,
+            "background_b": 0,
+            "half": 0.5,
+            "on": True,
+            "path": "~/x",
+            "colour": "#f00",
+        }
 
     def test_services_are_remapped_too(self, simulator):
         program = executables.start("turtlesim_node", ["__ns:=b", "clear:=wipe"])
@@ -69,13 +76,15 @@ class TestCommandLine:
             executables.start("turtlesim_node", ["__name:=my turtle"])
         assert error.value.report() == (
             "A node cannot be called /my turtle. Character [ ] at element [3] is not valid in Graph Resource Name [/my turtle].  "
-            "Valid characters are a-z, A-Z, 0-9, / and _.")
+            "Valid characters are a-z, A-Z, 0-9, / and _."
+        )
 
     def test_an_executable_that_does_not_exist_is_an_error_that_names_those_that_do(self, simulator):
         with pytest.raises(SimpleError) as error:
             executables.start("turtle_teleop")
         assert error.value.report() == (
-            "The package turtlesim has no executable turtle_teleop. Executables: draw_square mimic turtle_teleop_key turtlesim_node.")
+            "The package turtlesim has no executable turtle_teleop. Executables: draw_square mimic turtle_teleop_key turtlesim_node."
+        )
 
     def test_a_node_of_the_same_name_takes_the_place_of_the_one_before(self, simulator):
         second = start_turtlesim()
@@ -125,15 +134,20 @@ class TestLoggers:
     def test_they_are_those_of_a_node_in_c(self, turtle):
         loggers = turtle.call("/turtlesim/get_loggers", "roscpp/GetLoggers").loggers
         assert [(logger.name, logger.level) for logger in loggers] == [
-            ("ros", "info"), ("ros.roscpp", "info"), ("ros.roscpp.roscpp_internal", "info"), ("ros.roscpp.superdebug", "warn"),
-            ("ros.turtlesim", "info")]
+            ("ros", "info"),
+            ("ros.roscpp", "info"),
+            ("ros.roscpp.roscpp_internal", "info"),
+            ("ros.roscpp.superdebug", "warn"),
+            ("ros.turtlesim", "info"),
+        ]
 
     def test_a_node_that_debugs_tells_every_tick_in_screen_coordinates(self, turtle):
         turtle.call("/turtlesim/set_logger_level", "roscpp/SetLoggerLevel", logger="ros.turtlesim", level="Debug")
         turtle.simulator.lines.clear()
         kernel.sleep(0.032)
         assert re.sub(r"[\d.]{20,}", "TIME", turtle.simulator.lines[-1]) == (
-            "[DEBUG] [TIME]: [/turtle1]: pos_x: 5.544445 pos_y: 5.544445 theta: 0.000000")
+            "[DEBUG] [TIME]: [/turtle1]: pos_x: 5.544445 pos_y: 5.544445 theta: 0.000000"
+        )
         assert len(turtle.simulator.lines) == 2
 
     def test_a_node_that_tells_only_errors_does_not_tell_of_walls(self, turtle):
@@ -169,8 +183,7 @@ class TestTeleop:
         assert not keys.alive and not heard
 
     def test_the_banner(self):
-        assert teleop.BANNER == (
-            "Reading from keyboard\n---------------------------\nUse arrow keys to move the turtle. 'q' to quit.\n")
+        assert teleop.BANNER == ("Reading from keyboard\n---------------------------\nUse arrow keys to move the turtle. 'q' to quit.\n")
 
 
 class TestDrawSquare:
@@ -182,7 +195,8 @@ class TestDrawSquare:
         assert goals[0] == (7.544445, 5.544445, 0.0)
         corners = goals[1::2]  # where the turtle stands when it begins to turn
         assert [corner[:2] for corner in corners[:4]] == [
-            pytest.approx(corner, abs=1e-4) for corner in ((7.4484, 5.5444), (7.4660, 7.4484), (5.5623, 7.4834), (5.5098, 5.5801))]
+            pytest.approx(corner, abs=1e-4) for corner in ((7.4484, 5.5444), (7.4660, 7.4484), (5.5623, 7.4834), (5.5098, 5.5801))
+        ]
         assert goals[2][2] == pytest.approx(1.5616, abs=1e-4)
         assert goals[8][2] == pytest.approx(-0.0368, abs=1e-4)
 

@@ -7,9 +7,10 @@ from xml.etree import ElementTree
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.condition_types import FileError, SimpleError, TypeError_, shown
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.turtlesim import history, package, pictures, replay
+from cramhy_runtime.ground.condition_types import FileError, SimpleError, TypeError_, shown
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.turtlesim import history, pictures, replay
+from cramhy_runtime.languages.commonlisp.faces.turtlesim import package
 from cramhy_runtime.turtlesim.history import History
 from cramhy_runtime.turtlesim.node import start_turtlesim
 
@@ -56,7 +57,9 @@ class TestHistory:
 
     def test_it_knows_who_came_and_went_and_what_was_cleared(self, kept):
         assert [(track.name, track.begin, track.end) for track in kept.tracks] == [
-            ("turtle1", 0, None), ("second", pytest.approx(102, abs=1), pytest.approx(204, abs=3))]
+            ("turtle1", 0, None),
+            ("second", pytest.approx(102, abs=1), pytest.approx(204, abs=3)),
+        ]
         (first, _, before), (second, _, after) = kept.eras()
         assert (first, second) == (0, pytest.approx(101, abs=1))
         assert {stroke[5] for stroke in before} == {(179, 184, 255)} and {stroke[5] for stroke in after} == {(255, 0, 0)}
@@ -205,22 +208,25 @@ class TestMistakes:
         with pytest.raises(SimpleError) as error:
             package.save_picture("house.jpg")
         assert error.value.report() == (
-            "What kind of picture is house.jpg to be? A name ends in .png or .svg (the window as it is), in .gif or .replay.svg "
-            "(a replay).")
+            "What kind of picture is house.jpg to be? A name ends in .png or .svg (the window as it is), in .gif or .replay.svg (a replay)."
+        )
 
     def test_a_replay_of_what_nobody_recorded(self, turtle, tmp_path):
         with pytest.raises(SimpleError) as error:
             package.save_picture("house.gif")
         assert error.value.report() == (
             "There is no history for the replay house.gif, since nobody asked to keep one. Type (turtlesim:record), let the turtle do it "
-            "again, and save the replay then.")
+            "again, and save the replay then."
+        )
 
     def test_a_folder_that_is_not_there(self, turtle):
         for ending in ("png", "svg"):
             with pytest.raises(FileError) as error:
                 package.save_picture(f"/no/such/folder/x.{ending}")
-            assert error.value.report() == (f"The picture /no/such/folder/x.{ending} cannot be written: No such file or directory. "
-                                            "Make its folder first, or choose another one.")
+            assert error.value.report() == (
+                f"The picture /no/such/folder/x.{ending} cannot be written: No such file or directory. "
+                "Make its folder first, or choose another one."
+            )
 
     @pytest.mark.parametrize("speed", [0, -1, math.nan, "fast"])
     def test_a_speed_that_is_none(self, turtle, speed, tmp_path):
@@ -236,7 +242,8 @@ class TestMistakes:
         with pytest.raises(SimpleError) as error:
             pictures.save("x.gif", speed=speed)
         assert error.value.report() == (
-            f"At the speed {shown(speed)} the replay x.gif would take longer than 10 minutes. Give a speed of 0.027 or more, or none.")
+            f"At the speed {shown(speed)} the replay x.gif would take longer than 10 minutes. Give a speed of 0.027 or more, or none."
+        )
         assert not list(tmp_path.iterdir())
 
     def test_a_speed_that_no_float_can_hold_is_very_fast(self, turtle, tmp_path):
@@ -249,7 +256,8 @@ class TestMistakes:
         with pytest.raises(SimpleError) as error:
             pictures.save("x.png", speed=2)
         assert error.value.report() == (
-            "The picture x.png shows the window as it is and has no speed. A name that ends in .gif or .replay.svg gets a replay.")
+            "The picture x.png shows the window as it is and has no speed. A name that ends in .gif or .replay.svg gets a replay."
+        )
 
     @pytest.mark.parametrize("thing", [None, 5, sym(":X")])
     def test_what_is_no_name_of_a_file(self, turtle, thing):
@@ -262,7 +270,8 @@ class TestMistakes:
         with pytest.raises(SimpleError) as error:
             package.save_picture("x.png")
         assert error.value.report() == (
-            'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).')
+            'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).'
+        )
 
 
 def test_a_picture_is_written_where_open_would_write(typed, tmp_path):

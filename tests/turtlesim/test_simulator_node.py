@@ -31,13 +31,7 @@ def test_the_first_tick_publishes_nothing(simulator, watch):
 
 def test_topics_and_services_are_those_of_the_original(simulator):
     here = graph.active()
-    assert sorted(here.topics) == [
-        "/rosout",
-        "/rosout_agg",
-        "/turtle1/cmd_vel",
-        "/turtle1/color_sensor",
-        "/turtle1/pose",
-    ]
+    assert sorted(here.topics) == ["/rosout", "/rosout_agg", "/turtle1/cmd_vel", "/turtle1/color_sensor", "/turtle1/pose"]
     assert sorted(here.services) == [
         "/clear",
         "/kill",
@@ -69,8 +63,7 @@ class TestPen:
         assert turtle.colour == PEN
 
     @pytest.mark.parametrize(
-        "speed, recorded",
-        [(0.2, 61 / 61), (0.5, 61 / 62), (1.0, 49 / 62), (1.5, 27 / 62), (2.0, 4 / 62), (2.5, 0), (5.0, 0)],
+        "speed, recorded", [(0.2, 61 / 61), (0.5, 61 / 62), (1.0, 49 / 62), (1.5, 27 / 62), (2.0, 4 / 62), (2.5, 0), (5.0, 0)]
     )
     def test_while_driving_it_reads_the_pen_as_often_as_recorded(self, turtle, speed, recorded):
         turtle.teleport(1, 5.544445)
@@ -207,13 +200,12 @@ class TestGlobalServices:
         turtle.drive(1)
         kernel.sleep(1.2)
         assert turtle.colour == PEN
-        assert turtle.log()[2:4] == [
-            "Resetting turtlesim.",
-            "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]",
-        ]
+        assert turtle.log()[2:4] == ["Resetting turtlesim.", "Spawning turtle [turtle1] at x=[5.544445], y=[5.544445], theta=[0.000000]"]
 
-    @pytest.mark.parametrize("value, red", [
-        (150, 150), (150.0, 150), (10.5, 11), (257, 1), (-1, 255), (math.inf, 69), (math.nan, 69), ("150", 69), (True, 69), ([1], 69)])
+    @pytest.mark.parametrize(
+        "value, red",
+        [(150, 150), (150.0, 150), (10.5, 11), (257, 1), (-1, 255), (math.inf, 69), (math.nan, 69), ("150", 69), (True, 69), ([1], 69)],
+    )
     def test_a_background_of_another_kind_counts_as_in_roscpp(self, turtle, value, red):
         graph.active().parameters.set("/turtlesim/background_r", value)
         turtle.call("/clear", "std_srvs/Empty")
@@ -274,12 +266,7 @@ class TestTeleop:
         turtle.node.subscribe("/turtle1/cmd_vel", turtle.twist, received.append)
         teleop = Teleop()
         assert teleop.feed(b"\x1b[A\x1b[B\x1b[C\x1b[D x")
-        assert [(message.linear.x, message.angular.z) for message in received] == [
-            (2.0, 0.0),
-            (-2.0, 0.0),
-            (0.0, -2.0),
-            (0.0, 2.0),
-        ]
+        assert [(message.linear.x, message.angular.z) for message in received] == [(2.0, 0.0), (-2.0, 0.0), (0.0, -2.0), (0.0, 2.0)]
 
     def test_the_scale_is_a_parameter_of_the_namespace(self, turtle):
         graph.active().parameters.set("/scale_linear", 1.0)

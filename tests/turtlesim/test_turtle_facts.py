@@ -12,7 +12,7 @@ from itertools import zip_longest
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.condition_types import TypeError_ as LispTypeError
+from cramhy_runtime.ground.condition_types import TypeError_ as LispTypeError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.services import Refusal
 
@@ -82,8 +82,8 @@ class Recorder:
         """The poses after a command, as (time, x, y, theta, linear, angular)."""
         begin, samples = kernel.now(), []
         subscription = self.probe.node.subscribe(
-            "/turtle1/pose", self.probe.simulator.pose_type,
-            lambda pose: samples.append((kernel.now() - begin, *map(float, pose.values()))))
+            "/turtle1/pose", self.probe.simulator.pose_type, lambda pose: samples.append((kernel.now() - begin, *map(float, pose.values())))
+        )
         self.probe.drive(forward, turn, sideways)
         kernel.sleep(seconds)
         self.probe.node.unsubscribe(subscription)
@@ -92,14 +92,17 @@ class Recorder:
     def summary(self, samples):
         moving = [sample for sample in samples if sample[4] or sample[5]]
         final = tuple(round(value, 6) for value in samples[-1][1:])
-        self.say(f"  samples {len(samples)}, moving samples {len(moving)}, latency to first moving pose {moving[0][0] * 1000:.1f} ms, "
-                 f"last moving pose at {moving[-1][0]:.3f} s, final pose {final}")
+        self.say(
+            f"  samples {len(samples)}, moving samples {len(moving)}, latency to first moving pose {moving[0][0] * 1000:.1f} ms, "
+            f"last moving pose at {moving[-1][0]:.3f} s, final pose {final}"
+        )
         return moving
 
     def attempt(self, name, kind, /, **fields):
         try:
-            return "\n".join(f"{field}: " + json.dumps(value) for field, value in
-                             zip(("name",), self.probe.call(name, kind, **fields).values()))
+            return "\n".join(
+                f"{field}: " + json.dumps(value) for field, value in zip(("name",), self.probe.call(name, kind, **fields).values())
+            )
         except Refusal as refusal:
             return f"ServiceException: service [{name}] responded with an error: {str(refusal).encode()!r}"
 
@@ -115,8 +118,10 @@ class Recorder:
         self.probe.colours.clear()
         kernel.sleep(10)
         count = len(self.probe.poses)
-        self.say(f"  pose msgs {count} in {(count - 1) * 0.016:.3f}s = {(count - 1) / ((count - 1) * 0.016):.2f} Hz; interval ms 16; "
-                 f"color msgs {len(self.probe.colours)}")
+        self.say(
+            f"  pose msgs {count} in {(count - 1) * 0.016:.3f}s = {(count - 1) / ((count - 1) * 0.016):.2f} Hz; interval ms 16; "
+            f"color msgs {len(self.probe.colours)}"
+        )
         self.say(f"  rest pose {self.probe.pose} colour {self.probe.colour}")
 
     def arc(self):
@@ -129,16 +134,22 @@ class Recorder:
         for sample in (*moving, *rest):
             number = min(moving.index(sample) + 1 if sample in moving else 63, 63)
             self.say("  {:3} {:7.3f} {:.7f} {:.7f} {:.7f} {:.3f} {:.3f}".format(number, *sample))
-        self.say("  => moved for 63 (+-1) ticks of 0.016 s; exact kinematics per tick: theta+=ang*0.016 (wrapped to [-pi,pi)); "
-                 "x+=cos(theta_new)*lin*0.016; y+=sin(theta_new)*lin*0.016")
+        self.say(
+            "  => moved for 63 (+-1) ticks of 0.016 s; exact kinematics per tick: theta+=ang*0.016 (wrapped to [-pi,pi)); "
+            "x+=cos(theta_new)*lin*0.016; y+=sin(theta_new)*lin*0.016"
+        )
         x = y = 5.544444561004639
         for tick in range(1, 64):
             x, y = x + math.cos(tick * 0.016) * 2 * 0.016, y + math.sin(tick * 0.016) * 2 * 0.016
         self.say(f"  predicted after 63 ticks: x {x:.6f} y {y:.6f} theta {63 * 0.016:.6f}; measured {self.probe.pose[:3]}")
 
     def single_commands(self):
-        for title, command in (("3. cmd_vel (1,0) once", (1,)), ("3b. cmd_vel (0,2) once", (0, 2)),
-                               ("3c. cmd_vel linear.y=1 (holonomic)", (0, 0, 1)), ("3d. backwards", (-1,))):
+        for title, command in (
+            ("3. cmd_vel (1,0) once", (1,)),
+            ("3b. cmd_vel (0,2) once", (0, 2)),
+            ("3c. cmd_vel linear.y=1 (holonomic)", (0, 0, 1)),
+            ("3d. backwards", (-1,)),
+        ):
             self.say(f"# {title}")
             self.reset()
             self.summary(self.sample(*command))
@@ -166,11 +177,17 @@ class Recorder:
         self.probe.teleport(10.5, 5.5)
         samples = self.sample(2)
         at_wall = [sample[4:] for sample in samples if sample[1] > 11.08 and sample[4]]
-        self.say(f"  drive (2,0) from x=10.5: max x {max(sample[1] for sample in samples)} final {self.probe.pose} "
-                 f"velocity reported at the wall {at_wall[0]}")
+        self.say(
+            f"  drive (2,0) from x=10.5: max x {max(sample[1] for sample in samples)} final {self.probe.pose} "
+            f"velocity reported at the wall {at_wall[0]}"
+        )
         self.log(4)
-        for name, place in (("left", (0.3, 5.5, math.pi)), ("top", (5.5, 10.9, math.pi / 2)), ("bottom", (5.5, 0.2, -math.pi / 2)),
-                            ("corner", (10.9, 10.9, math.pi / 4))):
+        for name, place in (
+            ("left", (0.3, 5.5, math.pi)),
+            ("top", (5.5, 10.9, math.pi / 2)),
+            ("bottom", (5.5, 0.2, -math.pi / 2)),
+            ("corner", (10.9, 10.9, math.pi / 4)),
+        ):
             self.reset(0)
             self.probe.teleport(*place)
             self.drive_to_rest({"corner": 2, "left": 2}.get(name, 2))
@@ -210,15 +227,19 @@ class Recorder:
             kernel.sleep(1.2)
             seen = [colour for pose, colour in zip(probe.poses, probe.colours) if float(pose.linear_velocity)]
             trail = [tuple(colour.values()) for colour in seen].count((179, 184, 255))
-            self.say(f"  while driving straight at {speed}: trail-coloured sensor samples {trail}/{len(seen)}, "
-                     f"background {len(seen) - trail}")
+            self.say(
+                f"  while driving straight at {speed}: trail-coloured sensor samples {trail}/{len(seen)}, background {len(seen) - trail}"
+            )
         self.reset()
         probe.teleport(2, 2)
         self.say(f"  set_pen(255,0,0,10,0) -> {self.attempt('/turtle1/set_pen', 'turtlesim/SetPen', r=255, width=10)}")
         self.drive_to_rest(1)
         self.say(f"   sensor after driving {probe.colour}")
-        for text, fields in (("set_pen width 0 (=> Qt default width 1)", {"g": 255}), ("pen off", {"r": 9, "width": 5, "off": 1}),
-                             ("off=2 counts as off", {"r": 9, "width": 5, "off": 2})):
+        for text, fields in (
+            ("set_pen width 0 (=> Qt default width 1)", {"g": 255}),
+            ("pen off", {"r": 9, "width": 5, "off": 1}),
+            ("off=2 counts as off", {"r": 9, "width": 5, "off": 2}),
+        ):
             probe.set_pen(**fields)
             self.drive_to_rest(1, 0.5 if not fields.get("off") else 0)
             self.say(f"  {text}: sensor {probe.colour}")
@@ -236,8 +257,7 @@ class Recorder:
         before = probe.pose[:2]
         answer = self.attempt("/clear", "std_srvs/Empty")
         kernel.sleep(0.08)
-        self.say(f"  /clear -> {answer}; sensor {probe.colour} pose "
-                 f"{'unchanged' if probe.pose[:2] == before else 'changed'} {before}")
+        self.say(f"  /clear -> {answer}; sensor {probe.colour} pose {'unchanged' if probe.pose[:2] == before else 'changed'} {before}")
         self.log(4)
         graph.active().parameters.set("/turtlesim/background_r", 150)
         self.clear()
@@ -253,13 +273,17 @@ class Recorder:
 
     def spawns(self):
         self.say("# 8. spawn / kill")
-        for text, fields in (('3,3,0,"t2")', {"x": 3, "y": 3, "name": "t2"}), ('3,3,0,"t2") again', {"x": 3, "y": 3, "name": "t2"}),
-                             ('3,3,0,"")', {"x": 3, "y": 3, "name": ""}), ('3,3,0,"")', {"x": 3, "y": 3, "name": ""}),
-                             ('20,20,0,"far")', {"x": 20, "y": 20, "name": "far"})):
+        for text, fields in (
+            ('3,3,0,"t2")', {"x": 3, "y": 3, "name": "t2"}),
+            ('3,3,0,"t2") again', {"x": 3, "y": 3, "name": "t2"}),
+            ('3,3,0,"")', {"x": 3, "y": 3, "name": ""}),
+            ('3,3,0,"")', {"x": 3, "y": 3, "name": ""}),
+            ('20,20,0,"far")', {"x": 20, "y": 20, "name": "far"}),
+        ):
             self.say(f"  spawn({text} -> {self.attempt('/spawn', 'turtlesim/Spawn', **fields)}")
             kernel.sleep(0.08)
             self.log(4)
-        self.say(f"  spawn name \"bad name!\" -> {self.attempt('/spawn', 'turtlesim/Spawn', x=1, y=1, name='bad name!')}")
+        self.say(f'  spawn name "bad name!" -> {self.attempt("/spawn", "turtlesim/Spawn", x=1, y=1, name="bad name!")}')
         self.log(4)
         for text, name in (("t2", "t2"), ("t2 again", "t2"), ('"far"', "far"), ("turtle1", "turtle1")):
             self.say(f"  kill {text} -> {self.attempt('/kill', 'turtlesim/Kill', name=name)}")
@@ -301,8 +325,17 @@ class Recorder:
         return math.nan if getattr(value, "name", "") == "NOT-A-NUMBER" else float(value)
 
     def run(self):
-        for experiment in (self.rate, self.arc, self.single_commands, self.walls, self.teleports, self.pens, self.clears, self.spawns,
-                           self.odd_commands):
+        for experiment in (
+            self.rate,
+            self.arc,
+            self.single_commands,
+            self.walls,
+            self.teleports,
+            self.pens,
+            self.clears,
+            self.spawns,
+            self.odd_commands,
+        ):
             experiment()
         return self.lines
 
@@ -316,8 +349,11 @@ def masked(line):
 def test_the_report_is_the_recorded_one_line_by_line(turtle, shared):
     recorded = (shared / "golden" / "turtle-facts.txt").read_text().splitlines()
     ours = Recorder(turtle).run()
-    different = {number: masked(our) for number, (their, our) in enumerate(zip_longest(recorded, ours, fillvalue="(nothing)"), 1)
-                 if masked(their) != masked(our)}
+    different = {
+        number: masked(our)
+        for number, (their, our) in enumerate(zip_longest(recorded, ours, fillvalue="(nothing)"), 1)
+        if masked(their) != masked(our)
+    }
     assert different == {number: line for number, (line, why) in DIFFERENCES.items()}
 
 

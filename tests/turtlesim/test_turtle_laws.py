@@ -37,8 +37,11 @@ def test_the_background_are_parameters_of_the_node_and_one_that_is_set_already_s
 
 @pytest.mark.law("turtlesim", 4)
 def test_poses_and_colours_come_62_5_times_a_second_also_at_rest(typed):
-    assert typed("""(clrhash *poses*) (clrhash *colours*) (sleep 10)
-                    (list (length (gethash "turtle1" *poses*)) (length (gethash "turtle1" *colours*)))""") == "(625 625)"
+    assert (
+        typed("""(clrhash *poses*) (clrhash *colours*) (sleep 10)
+                    (list (length (gethash "turtle1" *poses*)) (length (gethash "turtle1" *colours*)))""")
+        == "(625 625)"
+    )
 
 
 @pytest.mark.law("turtlesim", 5, 6)
@@ -216,7 +219,7 @@ def test_spawn_answers_with_the_name_and_logs(typed):
     assert typed.pose("turtle2")[:3] == pytest.approx((2, 2, 0.2), abs=1e-6)
 
 
-REFUSED = "(handler-case (call-service {}) (simple-error (problem) (format nil \"~a\" problem)))"
+REFUSED = '(handler-case (call-service {}) (simple-error (problem) (format nil "~a" problem)))'
 
 
 @pytest.mark.law("turtlesim", 28)

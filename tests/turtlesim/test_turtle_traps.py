@@ -10,7 +10,7 @@ from cramhy_runtime.ros import services
 from cramhy_runtime.ros.messages import service_type_exact
 from cramhy_runtime.ros.wire import lisp_float
 from cramhy_runtime.turtlesim.canvas import Canvas
-from cramhy_runtime.turtlesim.measures import METRE
+from cramhy_runtime.turtlesim.dimensions import METRE
 from cramhy_runtime.turtlesim.teleop import Teleop
 
 PEN, GROUND, INK = (179, 184, 255), (69, 86, 255), (1, 2, 3)
@@ -131,8 +131,9 @@ def test_turtles_are_updated_in_the_order_of_their_names_as_text(turtle):
     assert list(turtle.simulator.turtles) == ["turtle1", "turtle10", "turtle2"]
     for name in ("turtle1", "turtle2"):
         turtle.call(f"/{name}/set_pen", "turtlesim/SetPen", off=1)
-        turtle.node.subscribe(f"/{name}/color_sensor", turtle.simulator.colour_type,
-                              lambda colour, name=name: read.update({name: tuple(colour.values())}))
+        turtle.node.subscribe(
+            f"/{name}/color_sensor", turtle.simulator.colour_type, lambda colour, name=name: read.update({name: tuple(colour.values())})
+        )
     turtle.teleport(2, 6)
     send(turtle, "/turtle10/teleport_absolute", "turtlesim/TeleportAbsolute", x=2, y=8)
     kernel.sleep(0.016)
@@ -164,26 +165,29 @@ def test_who_commands_last_in_a_tick_wins(turtle):
 
 
 def test_set_pen_in_lisp_takes_numbers_and_wraps_them(typed):
-    from cramhy_runtime.lisp.condition_types import Error
+    from cramhy_runtime.ground.condition_types import Error
 
     with pytest.raises(Error):
         typed('(call-service "turtle1/set_pen" "turtlesim/SetPen" :off t)')
     typed('(call-service "turtle1/set_pen" "turtlesim/SetPen" :r 300 :g -1 :width 256 :off 256)')
     typed("(drive 1 0) (sleep 1.5)")
-    assert typed("(sleep 0.1) (pose-of \"turtle1\")")
+    assert typed('(sleep 0.1) (pose-of "turtle1")')
     from cramhy_runtime.turtlesim.node import running_simulator
 
     turtle = running_simulator().turtles["turtle1"]
     assert (turtle.pen_on, turtle.pen_colour, turtle.pen_width) == (True, (44, 255, 0), 1)
 
 
-@pytest.mark.parametrize("command, pose", [
-    ((math.nan,), "(:NOT-A-NUMBER :NOT-A-NUMBER 0.0d0 :NOT-A-NUMBER 0.0d0)"),
-    ((math.inf,), "(11.088889122009277d0 :NOT-A-NUMBER 0.0d0 :POSITIVE-INFINITY 0.0d0)"),
-    ((-math.inf,), "(0.0d0 :NOT-A-NUMBER 0.0d0 :POSITIVE-INFINITY 0.0d0)"),
-    ((1e6,), "(11.088889122009277d0 5.544444561004639d0 0.0d0 1000000.0d0 0.0d0)"),
-    ((0.0, math.inf), None),
-])
+@pytest.mark.parametrize(
+    "command, pose",
+    [
+        ((math.nan,), "(:NOT-A-NUMBER :NOT-A-NUMBER 0.0d0 :NOT-A-NUMBER 0.0d0)"),
+        ((math.inf,), "(11.088889122009277d0 :NOT-A-NUMBER 0.0d0 :POSITIVE-INFINITY 0.0d0)"),
+        ((-math.inf,), "(0.0d0 :NOT-A-NUMBER 0.0d0 :POSITIVE-INFINITY 0.0d0)"),
+        ((1e6,), "(11.088889122009277d0 5.544444561004639d0 0.0d0 1000000.0d0 0.0d0)"),
+        ((0.0, math.inf), None),
+    ],
+)
 def test_odd_commands_do_what_they_do_and_an_absolute_teleport_mends_it(typed, command, pose):
     names = {"nan": ":not-a-number", "inf": ":positive-infinity", "-inf": ":negative-infinity"}
     words = [names.get(str(value), str(value)) for value in (*command, 0.0)[:2]]

@@ -3,9 +3,9 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.condition_types import SimpleError
-from cramhy_runtime.lisp.packages import sym
-from cramhy_runtime.turtlesim import package
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.languages.commonlisp.faces.turtlesim import package
 
 
 def test_pressing_a_key_moves_the_turtle(turtle):
@@ -23,14 +23,16 @@ def test_a_key_that_does_not_exist_is_an_error_that_names_the_keys(turtle):
     assert error.value.report() == ":JUMP is not a key that moves the turtle. Keys: :up :down :left :right."
 
 
-@pytest.mark.parametrize("act", [lambda name: package.press(sym(":UP"), name), lambda name: package.mimic("turtle1", name), package.mimic,
-                                 package.stop])
+@pytest.mark.parametrize(
+    "act", [lambda name: package.press(sym(":UP"), name), lambda name: package.mimic("turtle1", name), package.mimic, package.stop]
+)
 def test_a_name_that_ros_does_not_allow_is_an_error_that_says_why(turtle, act):
     with pytest.raises(SimpleError) as error:
         act("my turtle")
     assert error.value.report() == (
         '"my turtle" is not the name of a turtle or of a node. Character [ ] at element [2] is not valid in Graph Resource Name '
-        "[my turtle].  Valid characters are a-z, A-Z, 0-9, / and _.")
+        "[my turtle].  Valid characters are a-z, A-Z, 0-9, / and _."
+    )
 
 
 def test_the_paper_can_be_saved(turtle, tmp_path):

@@ -1,21 +1,35 @@
-"""A run of the course's package: forms typed in TUT, in virtual time, and a witness of everything that the turtle does."""
+"""A run of the course's package: forms typed in TUT, in virtual time, and a witness of everything that the turtle does.
+
+The same forms are typed into the package that is written in plain Hy, as `in_hy` says them there, while `course` makes a `CourseInHy`.
+"""
 
 from __future__ import annotations
 
+import functools
 import math
 import os
-from contextlib import contextmanager
+import random
+import re
+import sys
+import types
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+
+import hy
 
 from cramhy_runtime import kernel, testing
-from cramhy_runtime.lisp.data import one
-from cramhy_runtime.lisp.numbers.random_state import seed_random
-from cramhy_runtime.lisp.systems import systems
+from cramhy_runtime.ground.data import one
+from cramhy_runtime.languages.commonlisp.numbers.random_state import seed_random
+from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
+from cramhy_runtime.session import Image
 from cramhy_runtime.testing.leftovers import leftovers
 from cramhy_runtime.testing.plans import plan_of, with_lisp
 from cramhy_runtime.turtlesim.node import running_simulator, start_with_first_node
 
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "tutorials"
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 SEEDS = range(200 if SOAK else 10)
 BACKENDS = ("threads", "greenlet")
@@ -36,12 +50,13 @@ def seeded(seed):
 @contextmanager
 def course(backend="threads", seed=None):
     """A `Course` after ``(init)``."""
-    with_lisp(lambda: systems.load_system("cram-my-beginner-tutorial"))
+    KIND.load()
     with testing.virtual_time(backend, seed) as clock:
         clock.watch_fluents()
         seed_random(seed)
         start_with_first_node()
-        yield Course(clock)
+        random.seed(seed)
+        yield KIND(clock)
 
 
 class Course:
@@ -56,6 +71,11 @@ class Course:
         witness.subscribe("/turtle1/pose", message_class_exact("turtlesim/Pose"), self._see)
         witness.subscribe("/turtle1/cmd_vel", message_class_exact("geometry_msgs/Twist"), self._hear)
         self.simulator.observe(self._drawn)
+
+    @staticmethod
+    def load():
+        """Load the package."""
+        with_lisp(lambda: systems.load_system("cram-my-beginner-tutorial"))
 
     def __call__(self, form):
         """The first value of a form, read in TUT."""
@@ -118,6 +138,70 @@ class Course:
         return leftovers(self.clock) + list(pose.living_nets()) + list(pose.waiters) + modules
 
 
+# --------------------------------------------------------------------------------------------------------------- in plain Hy
+
+MODULES = (
+    "control_turtlesim simple_plans location_designators action_designators process_modules selecting_process_modules high_level_plans"
+)
+IN_HY = [
+    (r"\*(turtle-pose)\*", r"\1"),
+    (r"setf \*(min-bound)\*", r"setv location-designators.\1"),
+    (r"\(list ([^()]*)\)|'\(([^()]*)\)", r"[\1\2]"),
+    (r"-running \(([^()]*)\)", r"-running [\1]"),
+    (r"\(let \(\((\S+) (.*?)\)\)\n", r"(let [\1 \2]\n"),
+    (r" nil\)", " None)"),
+    (r"(goto-location|get-shape-vertices) :([a-z]+)(?: :([a-z]+))?", r'\1 "\2" "\3"'),
+    (r' ""', ""),
+]
+"""What is written in another way than in Common Lisp, and how."""
+
+
+def in_hy(form):
+    """A form of Common Lisp as one writes it in plain Hy."""
+    for lisp, there in IN_HY:
+        form = re.sub(lisp, there, form)
+    return form
+
+
+def prompt_in_hy():
+    """A module beside those of the package in plain Hy, which has all their names."""
+    module = types.ModuleType("turtlesim_in_hy.prompt")
+    imports = "".join(f"(import turtlesim-in-hy.{name} *)" for name in MODULES.split())
+    for form in hy.read_many(f"(require cramhy *) (import turtlesim-in-hy [location-designators]) {imports}"):
+        hy.eval(form, module=module)
+    return module
+
+
+@functools.cache
+def in_hy_alone():
+    """(an image that has the package in plain Hy and not the one in Common Lisp, since both say what a motion is; its prompt)"""
+    sys.path.insert(0, str(FOLDER))
+    with (image := Image()).entered():
+        return image, prompt_in_hy()
+
+
+class CourseInHy(Course):
+    """The course in plain Hy."""
+
+    @staticmethod
+    def load():
+        """The image of `in_hy_alone` has it."""
+
+    def __call__(self, form):
+        value = None
+        for each in hy.read_many(in_hy(form)):
+            value = hy.eval(each, module=in_hy_alone()[1])
+        return one(value)
+
+
+KIND = Course
+
+
+def image_of(kind):
+    """A block in which the image is that of ``kind``, of a `Course`."""
+    return in_hy_alone()[0].entered() if kind is CourseInHy else nullcontext()
+
+
 def missed(corners, points, near):
     """The first of ``corners`` that the ``points`` do not come as near to, one corner after the other; ``None`` if there is none."""
     on_the_way = iter(points)
@@ -125,3 +209,9 @@ def missed(corners, points, near):
         if not any(math.dist(corner, point) < near for point in on_the_way):
             return corner
     return None
+
+
+def environment():
+    """The variables of a process that knows this tree and the course in it, and nothing of ROS."""
+    keep = {key: value for key, value in os.environ.items() if key not in ("ROS_PACKAGE_PATH", "PYTHONDONTWRITEBYTECODE")}
+    return {**keep, "PYTHONPATH": os.pathsep.join(str(ROOT / folder) for folder in ("src", "hy_src", "tutorials"))}

@@ -39,5 +39,6 @@ def test_a_house_is_left_unfinished(backend, motions):
         answer("(sleep 2)")
         assert answer(PLACE) == place
         assert answer("(list (get-running-process-module 'turtlesim-navigation) (get-running-process-module 'turtlesim-pen-control))") == [
-            "(NIL NIL)"]
+            "(NIL NIL)"
+        ]
         assert answer("(move-simple 5 5)")[-1] == "T"

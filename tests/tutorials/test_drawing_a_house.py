@@ -17,6 +17,7 @@ PARTS = {  # each from its lower left corner and back to it
     "window": [(3.5, 4), (4.5, 4), (4.5, 5), (3.5, 5), (3.5, 4)],
     "roof": [(3, 6.5), (8, 6.5), (5.5, 10.5), (3, 6.5)],
 }
+pytestmark = pytest.mark.usefixtures("language")
 
 
 def distance_from(outline, point):
@@ -69,8 +70,13 @@ def test_between_the_parts_the_pen_is_up(backend):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_a_house_that_is_interrupted_leaves_a_turtle_that_stands_and_the_next_one_is_drawn(backend):
     with course(backend) as turtle:
-        assert turtle("(top-level (pursue (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)"
-                      " (navigate-without-pen '(3 2 0)) (draw-house)) (sleep 12)))") is None
+        assert (
+            turtle(
+                "(top-level (pursue (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)"
+                " (navigate-without-pen '(3 2 0)) (draw-house)) (sleep 12)))"
+            )
+            is None
+        )
         assert turtle.stands_still()
         turtle.simulator.canvas.clear((69, 86, 255))
         turtle.strokes.clear()
@@ -86,7 +92,7 @@ def test_shapes_are_drawn_from_where_the_turtle_is(seed):
         turtle("""(top-level (with-process-modules-running (turtlesim-navigation turtlesim-pen-control)
                     (draw-simple-shape (get-shape-vertices :triangle 4 3))
                     (exe:perform (desig:an action (type drawing) (shape rectangle) (width 6) (height 2)))))""")
-        ((_, _, points), ) = turtle.strokes
+        ((_, _, points),) = turtle.strokes
         triangle, rectangle = [(2, 3), (6, 3), (4, 6), (2, 3)], [(8, 3), (8, 5), (2, 5), (2, 3)]
         assert missed(triangle + rectangle, points, NEAR) is None
         assert turtle.stands_still() and turtle.left() == []

@@ -8,15 +8,21 @@ import sys
 
 import pytest
 
-from .pages import FOLDER, environment
+from .course import FOLDER, environment
 
 NAMES = ["relative-angle-to-dont-turn", "relative-angle-to-look-back", "relative-angle-to-type-error"]
 SYSTEM = "cram_my_beginner_tutorial/cram-my-beginner-tutorial-tests.asd"
 
 
 def python(folder, *words):
-    return subprocess.run([sys.executable, "-m", *words], cwd=folder, env={**environment(), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
-                          capture_output=True, text=True, timeout=120)
+    return subprocess.run(
+        [sys.executable, "-m", *words],
+        cwd=folder,
+        env={**environment(), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
 
 
 def results(printed):
@@ -43,12 +49,16 @@ def test_cramhy_runs_them(workspace, backend):
     assert done.returncode == 0 and list(results(done.stdout)) == NAMES
 
 
-@pytest.mark.parametrize("wrong, failures", [
-    (("(atan (y seen-from-turtle) (x seen-from-turtle))", "(atan (x seen-from-turtle) (y seen-from-turtle))"), NAMES[:2]),
-    (("(transform-inv (pose-msg->transform pose-msg))", "(pose-msg->transform pose-msg)"), NAMES[:2]),
-    (("(atan (y seen-from-turtle) (x seen-from-turtle))", "(atan (/ (y seen-from-turtle) (x seen-from-turtle)))"), NAMES[1:2]),
-    (("(pose-msg->transform pose-msg)) goal)", "(pose-msg->transform pose-msg)) (make-3d-vector (x goal) (y goal) 0))"), NAMES[2:])],
-    ids=["the axes the other way round", "the frames the other way round", "half a turn forgotten", "any goal taken"])
+@pytest.mark.parametrize(
+    "wrong, failures",
+    [
+        (("(atan (y seen-from-turtle) (x seen-from-turtle))", "(atan (x seen-from-turtle) (y seen-from-turtle))"), NAMES[:2]),
+        (("(transform-inv (pose-msg->transform pose-msg))", "(pose-msg->transform pose-msg)"), NAMES[:2]),
+        (("(atan (y seen-from-turtle) (x seen-from-turtle))", "(atan (/ (y seen-from-turtle) (x seen-from-turtle)))"), NAMES[1:2]),
+        (("(pose-msg->transform pose-msg)) goal)", "(pose-msg->transform pose-msg)) (make-3d-vector (x goal) (y goal) 0))"), NAMES[2:]),
+    ],
+    ids=["the axes the other way round", "the frames the other way round", "half a turn forgotten", "any goal taken"],
+)
 def test_they_notice_a_mistake(workspace, wrong, failures):
     plans = workspace / "cram_my_beginner_tutorial" / "src" / "simple-plans.hy"
     right, mistake = wrong

@@ -9,7 +9,7 @@ import pytest
 
 from .course import SEEDS, STEP, seeded
 
-pytestmark = pytest.mark.parametrize("seed", SEEDS)
+pytestmark = [pytest.mark.parametrize("seed", SEEDS), pytest.mark.usefixtures("language")]
 NEAR = 0.1 + STEP  # metres: the threshold of move-to, and the way of a tick
 
 
@@ -75,8 +75,15 @@ def test_drive_n_draw_does_two_things_at_once(turtle, seed):
     assert len({stroke[:2] for stroke in turtle.strokes}) == len(turtle.strokes)
 
 
-@pytest.mark.parametrize("motion", ["(type driving) (speed 1) (angle 1)", "(type moving) (goal (4 4 0))",
-                                    "(type going-to) (goal ?place)", "(type setting-pen) (r 9) (g 8) (b 7) (width 5)"])
+@pytest.mark.parametrize(
+    "motion",
+    [
+        "(type driving) (speed 1) (angle 1)",
+        "(type moving) (goal (4 4 0))",
+        "(type going-to) (goal ?place)",
+        "(type setting-pen) (r 9) (g 8) (b 7) (width 5)",
+    ],
+)
 def test_a_motion_finds_its_module(turtle, motion, capsys):
     turtle(f"""(let ((?place (desig:a location (horizontal-position :right) (vertical-position :bottom))))
                  (perform-some-motion (desig:a motion {motion})))""")

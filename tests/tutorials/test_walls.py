@@ -12,6 +12,7 @@ from .course import BACKENDS, SEEDS, STEP, course, seeded
 RED, WHITE = ((204, 0, 0), 2), ((255, 255, 255), 1)
 NEAR = 0.1 + STEP
 WARNING = "[(DRAW-SIMPLE-SIMPLE) WARN] "
+pytestmark = pytest.mark.usefixtures("language")
 
 
 def navigate(turtle, x, y, plan="(navigate (list {x} {y} 0))"):
@@ -29,7 +30,7 @@ def out_of_bounds(x, y):
 
 def assert_recovered(turtle, x, y, told):
     """The turtle went out once, and is at the point next to the target that is inside."""
-    (warning, ) = [line for line in told.splitlines() if line.startswith(WARNING)]
+    (warning,) = [line for line in told.splitlines() if line.startswith(WARNING)]
     assert warning.endswith(": Moving went-wrong: Turtle went out of bounds.")
     assert math.dist(turtle.place, clamped(x, y)) < NEAR
     assert turtle.pen == (True, *WHITE)

@@ -13,9 +13,13 @@ from cramhy_runtime.utilities.semaphores import make_semaphore, signal_semaphore
 UNITS = 3
 times = st.sampled_from([0.0, 0.5, 1.0, 2.0])
 steps = st.one_of(
-    st.tuples(st.just("alone"), times), st.tuples(st.just("units"), times, st.integers(1, UNITS), st.sampled_from([None, 0, 1])),
-    st.tuples(st.just("send"), times), st.tuples(st.just("receive"), times),
-    st.tuples(st.just("wait"), times), st.tuples(st.just("signal"), times))
+    st.tuples(st.just("alone"), times),
+    st.tuples(st.just("units"), times, st.integers(1, UNITS), st.sampled_from([None, 0, 1])),
+    st.tuples(st.just("send"), times),
+    st.tuples(st.just("receive"), times),
+    st.tuples(st.just("wait"), times),
+    st.tuples(st.just("signal"), times),
+)
 workers = st.lists(st.lists(steps, max_size=6), min_size=2, max_size=6)
 kills = st.lists(st.tuples(st.sampled_from([0.0, 0.5, 1.0, 1.5, 2.0, 3.0]), st.integers(0, 5)), max_size=4)
 

@@ -65,8 +65,10 @@ def visit(browser):
         contexts.append(context)
         context.set_default_timeout(LIMIT)
         opened = context.new_page()
-        opened.add_init_script("window.violations = []; document.addEventListener('securitypolicyviolation', "
-                               "(event) => window.violations.push(`${event.violatedDirective} ${event.blockedURI}`));")
+        opened.add_init_script(
+            "window.violations = []; document.addEventListener('securitypolicyviolation', "
+            "(event) => window.violations.push(`${event.violatedDirective} ${event.blockedURI}`));"
+        )
         if SLOW:
             opened.add_init_script(SLOWED)
         opened.on("pageerror", lambda error: complaints.append(f"error: {error}"))
@@ -92,8 +94,14 @@ class Repl:
     def __init__(self, folder, *options):
         environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "DISPLAY": "", "WAYLAND_DISPLAY": ""}
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
-        self.process = subprocess.Popen([sys.executable, "-m", "cramhy_runtime.cli", "repl", "--view", *options], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--view", *options],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment,
+        )
         self.printed = queue.Queue()
         self.text = ""
         threading.Thread(target=self._read, daemon=True).start()

@@ -19,10 +19,17 @@ from websockets.sync.server import serve
 
 from cramhy_runtime.view import page
 
-POLICY = ("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; "
-          "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'")
-TOPICS = {"world": "/cramhy/world", "tasks": "/cramhy/tasks", "fluents": "/cramhy/fluents", "modules": "/cramhy/process_modules",
-          "pace": "/cramhy/pace"}
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; "
+    "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+TOPICS = {
+    "world": "/cramhy/world",
+    "tasks": "/cramhy/tasks",
+    "fluents": "/cramhy/fluents",
+    "modules": "/cramhy/process_modules",
+    "pace": "/cramhy/pace",
+}
 PEN = (179, 184, 255)
 MIDDLE = 5.544444561004639
 PATIENCE = 60
@@ -31,8 +38,20 @@ PATIENCE = 60
 def turtle(name="turtle1", x=MIDDLE, y=MIDDLE, theta=0.0, pen=PEN, width=3, picture=0, speed=0.0, turn=0.0):
     """A cramhy_msgs/Turtle; pen: its colour, or None when it is up."""
     r, g, b = pen or PEN
-    return {"name": name, "x": x, "y": y, "theta": theta, "linear_velocity": speed, "angular_velocity": turn, "pen": pen is not None,
-            "r": r, "g": g, "b": b, "width": width, "picture": picture}
+    return {
+        "name": name,
+        "x": x,
+        "y": y,
+        "theta": theta,
+        "linear_velocity": speed,
+        "angular_velocity": turn,
+        "pen": pen is not None,
+        "r": r,
+        "g": g,
+        "b": b,
+        "width": width,
+        "picture": picture,
+    }
 
 
 def stroke(x1, y1, x2, y2, colour=PEN, width=3):
@@ -42,8 +61,18 @@ def stroke(x1, y1, x2, y2, colour=PEN, width=3):
 
 def task(id_, name, parent="", state="RUNNING", waits_for="", place="", began=0.0, ended=None, result="", operator=""):
     """A cramhy_msgs/Task; a time that is None is NaN, which is null in JSON."""
-    return {"id": id_, "parent": parent, "name": name, "operator": operator, "state": state, "waits_for": waits_for, "place": place,
-            "began": began, "ended": ended, "result": result}
+    return {
+        "id": id_,
+        "parent": parent,
+        "name": name,
+        "operator": operator,
+        "state": state,
+        "waits_for": waits_for,
+        "place": place,
+        "began": began,
+        "ended": ended,
+        "result": result,
+    }
 
 
 def fluent(id_, name, value, number=None):
@@ -58,18 +87,39 @@ class FakeSession:
         self.token = token
         self.stamp = 0.0
         self.state = {
-            "world": {"stamp": 0.0, "complete": True, "clears": 1, "r": 69, "g": 86, "b": 255, "simulator": "/turtlesim",
-                      "turtles": [turtle()], "strokes": []},
+            "world": {
+                "stamp": 0.0,
+                "complete": True,
+                "clears": 1,
+                "r": 69,
+                "g": 86,
+                "b": 255,
+                "simulator": "/turtlesim",
+                "turtles": [turtle()],
+                "strokes": [],
+            },
             "tasks": {"stamp": 0.0, "complete": True, "tasks": [], "removed": []},
             "fluents": {"stamp": 0.0, "complete": True, "fluents": [], "removed": []},
             "modules": {"stamp": 0.0, "modules": []},
-            "pace": {"stamp": 0.0, "virtual": True, "paused": False, "speed": 1.0, "busy": False, "recording": "", "begin": 0.0,
-                     "end": 0.0},
+            "pace": {
+                "stamp": 0.0,
+                "virtual": True,
+                "paused": False,
+                "speed": 1.0,
+                "busy": False,
+                "recording": "",
+                "begin": 0.0,
+                "end": 0.0,
+            },
         }
         self.chapters = {}
         self.heard = []
-        self.services = {"/cramhy/get_state": lambda request: self.state, "/cramhy/get_history": self._history,
-                         "/cramhy/set_pace": self._set_pace, "/cramhy/step": self._step}
+        self.services = {
+            "/cramhy/get_state": lambda request: self.state,
+            "/cramhy/get_history": self._history,
+            "/cramhy/set_pace": self._set_pace,
+            "/cramhy/step": self._step,
+        }
         self._news = threading.Condition()
         self._connections = {}
         self._files = page.files()
@@ -100,8 +150,15 @@ class FakeSession:
         found = self._files.get(request.path)
         status = HTTPStatus.OK if found else HTTPStatus.NOT_FOUND
         body, kind = found or (b"", "text/plain")
-        headers = Headers({"Content-Type": kind, "Content-Length": str(len(body)), "Content-Security-Policy": POLICY, "Connection": "close",
-                           "X-Content-Type-Options": "nosniff"})
+        headers = Headers(
+            {
+                "Content-Type": kind,
+                "Content-Length": str(len(body)),
+                "Content-Security-Policy": POLICY,
+                "Connection": "close",
+                "X-Content-Type-Options": "nosniff",
+            }
+        )
         return Response(status.value, status.phrase, headers, body)
 
     def _serve(self, connection):
@@ -135,8 +192,9 @@ class FakeSession:
             values, result = self.services.get(message["service"], lambda request: {})(message["args"]), True
         except ValueError as problem:
             values, result = str(problem), False
-        self._send(connection, {"op": "service_response", "id": message["id"], "service": message["service"], "values": values,
-                                "result": result})
+        self._send(
+            connection, {"op": "service_response", "id": message["id"], "service": message["service"], "values": values, "result": result}
+        )
 
     def _send(self, connection, message):
         try:
@@ -191,8 +249,19 @@ class FakeSession:
 
     def say(self, text, level=2, name="/turtlesim"):
         """A line on /rosout."""
-        self.publish("/rosout", {"header": {"seq": 0, "stamp": {"secs": 1, "nsecs": 0}, "frame_id": ""}, "level": level, "name": name,
-                                 "msg": text, "file": "", "function": "", "line": 0, "topics": []})
+        self.publish(
+            "/rosout",
+            {
+                "header": {"seq": 0, "stamp": {"secs": 1, "nsecs": 0}, "frame_id": ""},
+                "level": level,
+                "name": name,
+                "msg": text,
+                "file": "",
+                "function": "",
+                "line": 0,
+                "topics": [],
+            },
+        )
 
     def drive(self, ticks, speed=2.0, turn=0.0, name="turtle1"):
         """Let a turtle drive and draw for so many ticks."""
@@ -228,9 +297,15 @@ class FakeSession:
 
     def chapter(self, number, oldest, newest, begin, end, state, **later):
         """Have /cramhy/get_history tell a chapter."""
-        self.chapters[number] = {"chapter": number, "oldest": oldest, "newest": newest, "begin": begin, "end": end,
-                                 **{kind: copy.deepcopy(state[kind]) for kind in ("world", "tasks", "fluents", "modules")},
-                                 **{f"later_{kind}": later.get(kind, []) for kind in ("world", "tasks", "fluents", "modules")}}
+        self.chapters[number] = {
+            "chapter": number,
+            "oldest": oldest,
+            "newest": newest,
+            "begin": begin,
+            "end": end,
+            **{kind: copy.deepcopy(state[kind]) for kind in ("world", "tasks", "fluents", "modules")},
+            **{f"later_{kind}": later.get(kind, []) for kind in ("world", "tasks", "fluents", "modules")},
+        }
 
     # --------------------------------------------------------------------------------------------------------- what came
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 from fake_session import fluent, stroke, task, turtle
-from test_page import par, wait_for_count, wait_for_reading, wait_for_text
+from test_page import par, show, wait_for_count, wait_for_reading, wait_for_text
 
 FOCUSED = """() => {
   const { id, className, role, textContent } = document.activeElement;
@@ -18,8 +18,14 @@ def filled(fake):
     """A session in which every panel has something to show."""
     par(fake)
     fake.fluents(fluent("1", "A-FLUENT-WITH-A-NAME-THAT-DOES-NOT-WANT-TO-END-ANYWHERE", "x 5.544 y 5.544 theta 0 linear_velocity 0", 1.0))
-    fake.modules(("TURTLESIM-NAVIGATION", "RUNNING", "#<MOTION-DESIGNATOR ((TYPE MOVING) (GOAL (9 9 0)))>",
-                  ["#<MOTION-DESIGNATOR ((TYPE DRIVING))>"]))
+    fake.modules(
+        (
+            "TURTLESIM-NAVIGATION",
+            "RUNNING",
+            "#<MOTION-DESIGNATOR ((TYPE MOVING) (GOAL (9 9 0)))>",
+            ["#<MOTION-DESIGNATOR ((TYPE DRIVING))>"],
+        )
+    )
     fake.world([turtle(f"turtle{number}", number, number) for number in range(1, 9)])
     fake.say("Clamping/" * 40, level=4)
 
@@ -37,8 +43,34 @@ def test_all_of_the_page_is_reached_and_used_with_the_keys_alone(fake, visit):
         assert page.evaluate("() => getComputedStyle(document.activeElement).outlineStyle") != "none", f"{seen[-1]} does not show its focus"
         if seen[-1] == "live":
             break
-    assert seen == ["theme", "paper", "turtle1", "forward", "turn left", "backward", "turn right", "clear", "reset", "1", "modules",
-                    "fluents", "level", "log", "pause", "step", "step-size", "speed", "moment", "live"]
+    assert seen == [
+        "projector",
+        "theme",
+        "paper",
+        "turtle1",
+        "forward",
+        "turn left",
+        "backward",
+        "turn right",
+        "clear",
+        "reset",
+        "show-grid",
+        "show-goals",
+        "show-way",
+        "follow",
+        "1",
+        "modules",
+        "fluents-all",
+        "fluents",
+        "level",
+        "log",
+        "pause",
+        "step",
+        "step-size",
+        "speed",
+        "moment",
+        "live",
+    ]
 
 
 def test_the_task_tree_is_used_with_the_keys(fake, visit):
@@ -47,8 +79,15 @@ def test_the_task_tree_is_used_with_the_keys(fake, visit):
     wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
     page.get_by_role("treeitem", name="TOP-LEVEL").focus()
     focused = lambda: page.evaluate("() => document.activeElement.dataset.key")  # noqa: E731
-    for key, expected in (("ArrowDown", "2"), ("ArrowDown", "3"), ("ArrowDown", "3"), ("ArrowLeft", "1"), ("End", "3"), ("Home", "1"),
-                          ("ArrowRight", "2")):
+    for key, expected in (
+        ("ArrowDown", "2"),
+        ("ArrowDown", "3"),
+        ("ArrowDown", "3"),
+        ("ArrowLeft", "1"),
+        ("End", "3"),
+        ("Home", "1"),
+        ("ArrowRight", "2"),
+    ):
         page.keyboard.press(key)
         assert focused() == expected, key
     page.keyboard.press("Home")
@@ -74,14 +113,24 @@ def test_readers_of_the_screen_are_told_what_things_are(fake, visit):
     page = visit(fake.address)
     filled(fake)
     wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
-    for role, name in (("tree", "Tasks"), ("log", "Log"), ("slider", "Time line"), ("application", "The turtles' paper"),
-                       ("radiogroup", "Turtle that is"), ("heading", "Process modules"), ("status", None)):
+    for role, name in (
+        ("tree", "Tasks"),
+        ("log", "Log"),
+        ("slider", "Time line"),
+        ("application", "The turtles' paper"),
+        ("radiogroup", "Turtle that is"),
+        ("heading", "Process modules"),
+        ("status", None),
+    ):
         page.get_by_role(role, name=name).first.wait_for(state="attached")
     top = page.locator("#tasks [role=treeitem]").first
     assert [top.get_attribute(f"aria-{name}") for name in ("level", "expanded", "posinset", "setsize")] == ["1", "true", "1", "1"]
-    assert page.evaluate("""() => [...document.querySelectorAll("button, select, input")].filter((control) =>
+    assert (
+        page.evaluate("""() => [...document.querySelectorAll("button, select, input")].filter((control) =>
         control.checkVisibility() && !control.textContent.trim() && !control.getAttribute("aria-label") && !control.labels?.length
-    ).map((control) => control.id)""") == []
+    ).map((control) => control.id)""")
+        == []
+    )
     assert page.evaluate("() => document.documentElement.lang") == "en"
 
 
@@ -174,6 +223,7 @@ def test_nothing_sticks_out_at_any_width(fake, visit, width):
 
 def test_a_finger_drives_on_a_phone(fake, visit):
     page = visit(fake.address, width=360, height=740, has_touch=True, is_mobile=True)
+    assert show(page, "Turtle")
     box = page.get_by_role("button", name="forward").bounding_box()
     assert min(box["width"], box["height"]) >= 44
     page.get_by_role("button", name="forward").tap()
@@ -196,8 +246,9 @@ def test_twenty_turtles_are_drawn_within_a_frame(fake, visit):
     page = visit(fake.address)
     page.evaluate(MEASURE)
     filled(fake)
-    turtles = [turtle(f"turtle{number}", 5.5, 5.5, number * math.pi / 10, (number * 12, 255 - number * 12, 128), 3, number)
-               for number in range(20)]
+    turtles = [
+        turtle(f"turtle{number}", 5.5, 5.5, number * math.pi / 10, (number * 12, 255 - number * 12, 128), 3, number) for number in range(20)
+    ]
     for count in range(500):
         strokes = []
         for one in turtles:

@@ -170,9 +170,13 @@ def test_another_session_on_the_port_of_one_that_was_killed_is_not_mistaken_for_
     session.process.wait()
     page.wait_for_selector("#connection[data-state=lost]")
     other = repl("--time", "wall", "--port", port)
-    wait_for_text(page, "#banner", "The session does not let this page in: The first message must be "
-                                   '{"op": "auth", "token": "..."} with the token of this session. '
-                                   "Open the address that it prints; it has a new token each time.")
+    wait_for_text(
+        page,
+        "#banner",
+        "The session does not let this page in: The first message must be "
+        '{"op": "auth", "token": "..."} with the token of this session. '
+        "Open the address that it prints; it has a new token each time.",
+    )
     visit(other.url)
 
 

@@ -15,14 +15,25 @@ MARKUP = "<img src=x onerror='window.hit = 1'><script>window.hit = 1</script>"
 def test_names_that_are_markup_stay_names(fake, visit):
     page = visit(fake.address)
     fake.world([turtle(MARKUP, 2, 2), turtle("javascript:alert(1)", 4, 4)])
-    fake.tasks(task("1", MARKUP, waits_for=MARKUP, place=MARKUP, operator=MARKUP),
-               task("2", MARKUP, state="FAILED", result=MARKUP, ended=1.0))
+    fake.tasks(
+        task("1", MARKUP, waits_for=MARKUP, place=MARKUP, operator=MARKUP), task("2", MARKUP, state="FAILED", result=MARKUP, ended=1.0)
+    )
     fake.fluents(fluent(MARKUP, MARKUP, MARKUP))
     fake.modules((MARKUP, MARKUP, MARKUP, [MARKUP]))
     fake.say(MARKUP, name=MARKUP)
     fake.pace(recording="")
-    for place in ("#turtles", "#tasks .name", "#tasks .waits", "#fluents .name", "#fluents .value", "#modules .name", "#modules .executes",
-                  "#modules .queue", "#log .text", "#log .node"):
+    for place in (
+        "#turtles",
+        "#tasks .name",
+        "#tasks .waits",
+        "#fluents .name",
+        "#fluents .value",
+        "#modules .name",
+        "#modules .executes",
+        "#modules .queue",
+        "#log .text",
+        "#log .node",
+    ):
         wait_for_text(page, place, "<img src=x")
 
     def refuse(request):
@@ -53,9 +64,16 @@ def test_messages_that_are_none_leave_the_page_as_it_is(fake, visit):
     connection = next(iter(fake._connections))
     for text in ("", "{", "null", "[]", "17", '"text"'):
         connection.send(text)
-    for message in ({"op": "publish"}, {"op": "publish", "topic": "/other", "msg": {}}, {"op": "call_service"}, {"op": "status"},
-                    {"op": "service_response", "id": "none"}, {"op": "publish", "topic": "/cramhy/world", "msg": None},
-                    {"op": "publish", "topic": "/cramhy/tasks", "msg": {"stamp": "x", "tasks": 5}}, {"op": "publish", "topic": "/rosout"}):
+    for message in (
+        {"op": "publish"},
+        {"op": "publish", "topic": "/other", "msg": {}},
+        {"op": "call_service"},
+        {"op": "status"},
+        {"op": "service_response", "id": "none"},
+        {"op": "publish", "topic": "/cramhy/world", "msg": None},
+        {"op": "publish", "topic": "/cramhy/tasks", "msg": {"stamp": "x", "tasks": 5}},
+        {"op": "publish", "topic": "/rosout"},
+    ):
         connection.send(json.dumps(message))
     connection.send(b"\x00\xff")
     wait_for_text(page, "#notice", "A message of the session could not be read: ")
@@ -82,5 +100,11 @@ def test_the_page_asks_only_for_what_it_may(fake, visit):
     fake.wait_for_call("/cramhy/set_pace")
     assert {message["op"] for message in fake.heard} == {"subscribe", "call_service", "advertise", "publish"}
     assert {message["service"] for message in fake.heard if message["op"] == "call_service"} == {
-        "/cramhy/get_state", "/cramhy/get_history", "/clear", "/reset", "/cramhy/step", "/cramhy/set_pace",
-        "/rosapi/get_param"}
+        "/cramhy/get_state",
+        "/cramhy/get_history",
+        "/clear",
+        "/reset",
+        "/cramhy/step",
+        "/cramhy/set_pace",
+        "/rosapi/get_param",
+    }

@@ -10,11 +10,14 @@ from test_page import BLUE, near, pixel, rows, wait_for_count, wait_for_pixel, w
 
 def seek(page, stamp):
     """Move the slider of the time line."""
-    page.evaluate("""(stamp) => {
+    page.evaluate(
+        """(stamp) => {
       const slider = document.getElementById("moment");
       slider.value = stamp;
       slider.dispatchEvent(new Event("input"));
-    }""", stamp)
+    }""",
+        stamp,
+    )
 
 
 def test_pause_step_and_speed_ask_the_session(fake, visit):
@@ -126,15 +129,22 @@ def test_the_time_line_works_with_the_keys(fake, visit):
     slider.press("Home")
     wait_for_text(page, "#clock", "0.00 s")
     slider.press("End")
-    page.wait_for_function("() => document.getElementById('moment').getAttribute('aria-valuetext') === '3.00 s, live'")
+    page.wait_for_function("() => document.getElementById('moment').getAttribute('aria-valuetext') === 'live'")
 
 
 def test_what_was_before_the_page_came_is_asked_for(fake, visit):
     fake.chapter(2, 1, 2, 5.0, 10.0, fake.state, later_world=[])
     early = {**fake.state, "tasks": {**fake.state["tasks"], "tasks": [task("0", "[AN-EARLY-PLAN]", state="SUCCEEDED", ended=1.0)]}}
     world = fake.state["world"]
-    fake.chapter(1, 1, 2, 0.0, 5.0, early, world=[{**world, "complete": False, "stamp": 1.0, "turtles": [turtle(x=1, y=1)],
-                                                   "strokes": [stroke(1, 1, 2, 1, (255, 0, 0), 9)]}])
+    fake.chapter(
+        1,
+        1,
+        2,
+        0.0,
+        5.0,
+        early,
+        world=[{**world, "complete": False, "stamp": 1.0, "turtles": [turtle(x=1, y=1)], "strokes": [stroke(1, 1, 2, 1, (255, 0, 0), 9)]}],
+    )
     fake.chapters[2]["begin"] = 5.0
     fake.stamp = 9.984
     fake.world([turtle(x=9, y=9)])
@@ -203,8 +213,12 @@ def test_another_session_at_the_same_address_begins_anew(fake, visit):
 
 def test_a_wrong_token_is_said_and_not_tried_again(fake, visit):
     page = visit(fake.address + "-wrong", connected=False)
-    wait_for_text(page, "#banner", "The session does not let this page in: this token is not the session's. "
-                                   "Open the address that it prints; it has a new token each time.")
+    wait_for_text(
+        page,
+        "#banner",
+        "The session does not let this page in: this token is not the session's. "
+        "Open the address that it prints; it has a new token each time.",
+    )
     assert page.locator("#connection").get_attribute("data-state") == "refused"
 
 

@@ -4,14 +4,15 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Connection } from "./connection.js";
-import { clock, decimal, duration, plural } from "./format.js";
+import { clock, decimal, duration, plural, shortName } from "./format.js";
 import { History } from "./history.js";
-import { outline } from "./outline.js";
+import { foremost, outline } from "./outline.js";
 import { Playback, between } from "./playback.js";
 import { Series, WINDOW, numberOf } from "./series.js";
 import { Session } from "./session.js";
 import { State } from "./state.js";
 import { Strokes } from "./strokes.js";
+import { Way } from "./way.js";
 
 // A connection that is left alone tries again for ever; node shall not wait for that.
 const { setTimeout: set } = globalThis;
@@ -208,12 +209,16 @@ test("a chapter of the past comes before what is known", () => {
 
 // ----------------------------------------------------------------------------------------------------------------- outline
 
-test("living tasks are open, and dead plans closed but for the last", () => {
+test("living tasks are open, and dead plans closed but for the last, which is open down to what failed", () => {
   const dead = (id, parent, began, ended) => ({ ...task(id, parent, "SUCCEEDED"), began, ended });
   const rows = outline(treeOf(dead("a", "", 0, 1), dead("a1", "a", 0, 1), dead("b", "", 2, 4), dead("b1", "b", 2, 4), dead("beside", "", 3, 4)));
   assert.deepEqual(rows.map(({ key, level }) => [key, level]), [["beside", 1], ["b", 1], ["b1", 2], ["a", 1]]);
   const live = outline(treeOf(task("a"), task("a1", "a"), task("b")));
   assert.deepEqual(live.map(({ key }) => key), ["b", "a", "a1"]);
+  const failed = outline(treeOf(
+    dead("c", "", 5, 9), dead("c1", "c", 5, 6), dead("c11", "c1", 5, 6), dead("c2", "c", 6, 9), { ...dead("c21", "c2", 6, 9), state: "FAILED" },
+  ));
+  assert.deepEqual(failed.map(({ key, open }) => [key, open]), [["c", true], ["c1", false], ["c2", true], ["c21", false]]);
 });
 
 test("process modules stand below the plan that runs them, and the newest plan on top", () => {
@@ -233,15 +238,64 @@ test("what somebody closed stays closed", () => {
   assert.deepEqual(rows.map(({ key, children, open }) => [key, children, open]), [["a", 1, false]]);
 });
 
-test("of very many children the newest, the living and the failed are shown", () => {
+test("of the children of a living task that ended the newest and the failed are shown, and the others are one row", () => {
   const tasks = [task("top")];
   const states = { 3: "FAILED", 7: "RUNNING" };
   for (let index = 0; index < 1000; index++) tasks.push(task(`t${index}`, "top", states[index] ?? "SUCCEEDED"));
   const rows = outline(treeOf(...tasks));
-  assert.deepEqual(rows.slice(0, 4).map(({ key, hidden }) => hidden ?? key), ["top", 974, "t3", "t7"]);
-  assert.equal(rows.at(-1).key, "t999");
+  assert.deepEqual(rows.map(({ key, hidden, open }) => [hidden ?? key, open]), [["top", true], [997, false], ["t3", false], ["t7", false], ["t999", false]]);
   assert.equal(rows.at(-1).index, 1000);
-  assert.equal(outline(treeOf(...tasks), new Map(), new Set(["top"])).length, 500);
+  const wide = outline(treeOf(...tasks), new Map(), new Set(["top"]));
+  assert.deepEqual([wide.length, wide[1].hidden, wide[1].open, wide[2].key], [500, 997, true, "t0"]);
+});
+
+test("a row that would stand for one task is that task", () => {
+  const rows = outline(treeOf(task("top"), task("a", "top", "SUCCEEDED"), task("b", "top", "SUCCEEDED"), task("c", "top")));
+  assert.deepEqual(rows.map(({ key }) => key), ["top", "a", "b", "c"]);
+});
+
+test("of very many children of a dead task the newest and the failed are shown", () => {
+  const tasks = [task("top", "", "SUCCEEDED")];
+  for (let index = 0; index < 1000; index++) tasks.push(task(`t${index}`, "top", index === 3 ? "FAILED" : "SUCCEEDED"));
+  const rows = outline(treeOf(...tasks));
+  assert.deepEqual([rows.length, rows[1].hidden, rows[2].key, rows.at(-1).key], [27, 975, "t3", "t999"]);
+});
+
+test("what runs now are living tasks without living children, but not modules that have nothing to do", () => {
+  const rows = outline(treeOf(
+    task("top"), task("seq", "top"), task("old", "seq", "SUCCEEDED"), task("drive", "seq"), task("held", "top", "SUSPENDED"),
+    { ...task("pm"), operator: "PROCESS-MODULES" }, { ...task("idle", "pm"), waits_for: "a request to process module PEN" }, task("turn", "pm"),
+  ));
+  assert.deepEqual(rows.filter(({ now }) => now).map(({ key }) => key), ["drive", "turn"]);
+  assert.equal(foremost(rows).key, "drive"); // the plan's before the module's
+  assert.equal(foremost(rows.filter(({ root }) => root === "PROCESS-MODULES")).key, "turn");
+  assert.equal(foremost(outline(treeOf(task("a", "", "SUCCEEDED")))), undefined);
+});
+
+test("the way is a dot for each tenth of a metre, and is known for any time", () => {
+  const way = new Way();
+  for (let tick = 0; tick <= 100; tick++) way.note(tick, [{ name: "t", x: tick * 0.051, y: 0 }, { name: "stands", x: 3, y: 3 }, { name: "nowhere", x: NaN, y: 0 }]);
+  const [first, last] = way.between(-Infinity, Infinity);
+  assert.ok(last - first === 52);
+  assert.ok(way.dots.every(([, x, y]) => (x === 3 && y === 3) || y === 0));
+  const [begin, end] = way.between(20, 40);
+  assert.deepEqual([way.dots[begin][0] >= 20, way.dots[end - 1][0] <= 40, end - begin >= 9], [true, true, true]);
+  const { version } = way;
+  way.restart([{ message: { stamp: 5, turtles: [{ name: "t", x: 1, y: 1 }] } }]);
+  assert.deepEqual([way.dots, way.version > version], [[[5, 1, 1]], true]);
+});
+
+test("of a very long way every other dot goes, again and again", () => {
+  const way = new Way();
+  for (let tick = 0; tick < 90_000; tick++) way.note(tick, [{ name: "t", x: (tick * 0.11) % 11, y: tick % 7 }]);
+  assert.ok(way.dots.length <= 20_000 && way.dots.length > 5_000);
+  assert.equal(way.dots[0][0], 0);
+});
+
+test("the name of a goal is shown without what every goal has", () => {
+  assert.equal(shortName("[GOAL-PERFORM] (GOAL (PERFORM #<A MOTION (TYPE X) (OFF 1)>)), call 2"), "[PERFORM] #<A MOTION (TYPE X) (OFF 1)>, call 2");
+  assert.equal(shortName("[GOAL-PERFORM] (GOAL (PERFORM #<A MOTION (TYPE MOVING) (GO..., call 3"), "[PERFORM] #<A MOTION (TYPE MOVING) (GO..., call 3");
+  for (const name of ["[PAR-CHILD-#1/2]", "[GOAL-X] (GOAL (Y))", "<img>"]) assert.equal(shortName(name), name);
 });
 
 test("a task whose parent is not known stands at the top", () => {

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections import deque
 
 from .. import kernel
-from ..lisp import conditions
-from ..lisp.condition_types import Condition, Error
-from ..lisp.data import MultipleValues, truth
-from ..lisp.packages import keyword, sym
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Condition, Error
+from cramhy_runtime.ground.data import MultipleValues, truth
+from cramhy_runtime.ground.packages import keyword, sym
 from . import goals
 from .client import CONNECTED, ActionClient
 
@@ -109,6 +109,7 @@ def call_goal(client, goal, *, timeout=None, result_timeout=None, feedback_cb=No
 
 def _wait(client, sent, feedbacks, limit):
     """Wait for the end or feedback: True; False when the time ``limit`` is reached. A silent server is an error."""
+
     def something():
         return feedbacks or sent.done
 

@@ -13,8 +13,8 @@ callbacks of topics. Source: roslisp.md 13.1.
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
 from ..ros.messages import message_class
 from ..ros.roslisp import node, topics
 from ..ros.roslisp.clock import ros_time
@@ -87,8 +87,10 @@ class ActionClient:
         """Send a goal and track it from now on; the one before is forgotten. Returns the `Goal`."""
         goals.check_message(message, self.action.goal)
         if not self.node.alive:
-            conditions.error(SimpleError("The node of the client of action ~a has ended.", self.name),
-                             hint="A client lives as long as the node that made it: make a new one.")
+            conditions.error(
+                SimpleError("The node of the client of action ~a has ended.", self.name),
+                hint="A client lives as long as the node that made it: make a new one.",
+            )
         self.forget()
         now = ros_time()
         goal_id = goals.new_goal_id(self.node.name, now)

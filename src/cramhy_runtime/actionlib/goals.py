@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import itertools
 
-from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
-from ..lisp.data import LispString, Symbol
-from ..lisp.evaluation.control import fdefinition
-from ..lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import LispString, Symbol
+from cramhy_runtime.ground.functions import function_named
+from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.messages import message_class, topic_class
-from ..utilities import lines
+from cramhy_runtime.utilities import wait_queue as lines
 
 (PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST) = range(10)
 NAMES = ("PENDING", "ACTIVE", "PREEMPTED", "SUCCEEDED", "ABORTED", "REJECTED", "PREEMPTING", "RECALLING", "RECALLED", "LOST")
@@ -29,15 +29,15 @@ class Action:
     def __init__(self, action_type):
         name = check_name(action_type)
         if not name.endswith("Action"):
-            conditions.error(SimpleError("The action type is invalid. Actions always have the suffix 'Action'"),
-                             hint=f'It was "{name}"; write for instance "turtle_actionlib/ShapeAction".')
+            conditions.error(
+                SimpleError("The action type is invalid. Actions always have the suffix 'Action'"),
+                hint=f'It was "{name}"; write for instance "turtle_actionlib/ShapeAction".',
+            )
         topic_class(name)  # its errors tell whether the package or the type is missing
         base = name.removesuffix("Action")
         self.name = name
         self.goal, self.result, self.feedback = (message_class(base + part) for part in ("Goal", "Result", "Feedback"))
-        self.action_goal, self.action_result, self.action_feedback = (
-            message_class(name + part) for part in ("Goal", "Result", "Feedback")
-        )
+        self.action_goal, self.action_result, self.action_feedback = (message_class(name + part) for part in ("Goal", "Result", "Feedback"))
 
 
 GOAL_ID = "actionlib_msgs/GoalID"
@@ -57,7 +57,7 @@ def check_name(name):
 
 def function_of(designator):
     """The function that ``designator``, itself one or the name of one, stands for; anything else is a type-error."""
-    function = fdefinition(designator) if isinstance(designator, Symbol) else designator
+    function = function_named(designator) if isinstance(designator, Symbol) else designator
     return function if callable(function) else conditions.type_error(function, "FUNCTION")
 
 

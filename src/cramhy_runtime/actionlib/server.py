@@ -11,12 +11,13 @@ end. It lives as long as its node. Source: roslisp.md 13.2, wiki.ros.org/actionl
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import per_image
 from .. import kernel
-from ..lisp import conditions
-from ..lisp.compiler.support import catch, throw
-from ..lisp.condition_types import Error, SimpleError
-from ..lisp.data import truth
-from ..lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.catching import catch, throw
+from cramhy_runtime.ground.condition_types import Error, SimpleError
+from cramhy_runtime.ground.data import truth
+from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.messages import message_class
 from ..ros.roslisp import logging, node, topics
 from ..ros.roslisp.clock import ros_time
@@ -51,8 +52,10 @@ class ActionServer:
         self.waiting = kernel.Waiting()
         here = self.node = node.require_node()
         if here.resolve(f"{name}/status") in here.publications:
-            conditions.error(SimpleError("The action ~a has a server already, on this node.", self.name),
-                             hint="Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node).")
+            conditions.error(
+                SimpleError("The action ~a has a server already, on this node.", self.name),
+                hint="Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node).",
+            )
         self.statuses = topics.advertise(f"{name}/status", goals.STATUS_ARRAY)
         self.feedbacks = topics.advertise(f"{name}/feedback", self.action.action_feedback)
         self.results = topics.advertise(f"{name}/result", self.action.action_result)
@@ -144,8 +147,11 @@ class ActionServer:
         finally:
             del _at_work[task]
         if goal.state not in TERMINAL:
-            conditions.error("Reached the end of exec callback ~a without succeeding, aborting, or preempting", self._callback_name(),
-                             hint="Its last form must be (succeed-current ...), (abort-current ...) or (preempt-current ...).")
+            conditions.error(
+                "Reached the end of exec callback ~a without succeeding, aborting, or preempting",
+                self._callback_name(),
+                hint="Its last form must be (succeed-current ...), (abort-current ...) or (preempt-current ...).",
+            )
 
     def _callback_name(self):
         return getattr(self.callback, "__lisp_name__", None) or princ_to_string(self.callback)
@@ -199,7 +205,7 @@ def _status(goal):
 # ------------------------------------------------------------------------------------------------------- Lisp functions
 
 
-_at_work: dict = {}
+_at_work: dict = per_image({})
 """The task that runs an exec callback → its server and goal. Tasks below it, branches of a plan in the callback, find them too."""
 
 
@@ -224,16 +230,20 @@ def _current(what):
         if task in _at_work:
             return _at_work[task]
         task = task.parent
-    return conditions.error(SimpleError("There is no current goal to ~a.", what),
-                            hint="This belongs into the exec callback of an action server (def-exec-callback).")
+    return conditions.error(
+        SimpleError("There is no current goal to ~a.", what),
+        hint="This belongs into the exec callback of an action server (def-exec-callback).",
+    )
 
 
 def end_current(state, result=None):
     """End the goal that the exec callback works on, and leave the callback. What `succeed-current` and its kin expand into."""
     server, goal = _current("end")
     if kernel.current() not in _at_work:
-        return conditions.error(SimpleError("A branch of a plan cannot end the goal that the exec callback around it works on."),
-                                hint="End it after the par, pursue or top-level: (succeed-current ...) leaves the callback.")
+        return conditions.error(
+            SimpleError("A branch of a plan cannot end the goal that the exec callback around it works on."),
+            hint="End it after the par, pursue or top-level: (succeed-current ...) leaves the callback.",
+        )
     server.finish(goal, state, result)
     return throw(goal, None)
 

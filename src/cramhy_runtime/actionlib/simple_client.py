@@ -7,10 +7,10 @@ waits on. A plan that is evaporated while it waits in `send_goal_and_wait` cance
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
-from ..lisp.data import truth
-from ..lisp.packages import keyword
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import truth
+from cramhy_runtime.ground.packages import keyword
 from ..ros.roslisp import logging
 from . import goals
 from .client import ActionClient

@@ -10,16 +10,26 @@
 `start`, `stop`, `record`, `read` and `replay` are all there is. In CRAM a plan is watched through logs, and ROS has rosbag; here what the
 plan did stands beside what the robot did, with the same times.
 
-Where the parts are: `plans`, `fluents`, `modules`, `world` see what happens, `chronicler` looks at the end of each instant of the kernel,
-`sums` merges, `history` keeps, `board` publishes and serves. `recorder` writes a file, with `schemas` that tell Foxglove what messages
-look like, a `scene` for its 3D panel and a `chunk_index` of what is where; `recordings` reads one, `player` replays it. `texts` shows
-values on one line.
+Where the parts are: `plans`, `fluents`, `modules` (with `goals`), `world` see what happens, `chronicler` looks at the end of each instant
+of the kernel, `merge` merges, `history` keeps, `service_node` publishes and serves. `recorder` writes a file, with `schemas` that tell
+Foxglove what messages look like, a `scene` for its 3D panel and a `chunk_index` of what is where; `recordings` reads one, `player`
+replays it. `texts` shows values on one line.
 """
 
 from __future__ import annotations
 
+TYPE_CHECKING = False  # as type checkers know it by its name
 
-def start():
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from os import PathLike
+
+    from .player import Player
+    from .recorder import Recorder
+    from .recordings import Recording
+
+
+def start() -> None:
     """Tell what happens in the active session, on topics and services of the hidden node ``/cramhy`` (docs/watching.md).
 
     Nothing is done when that happens already, or when a recording is replayed there. Errors: KernelError without a session.
@@ -30,7 +40,7 @@ def start():
         chronicler.active().open_board()
 
 
-def stop():
+def stop() -> None:
     """Tell nothing any more; recordings go on. Without `start` nothing happens."""
     from . import chronicler
 
@@ -40,7 +50,7 @@ def stop():
         chronicler.dismiss()
 
 
-def record(path, program=()):
+def record(path: str | PathLike[str], program: Iterable[str] = ()) -> Recorder:
     """Record everything that happens in the active session from now on in the file ``path``, until the result is closed.
 
     path: a file, ``"run.mcap"``; one that is there is replaced. program: names of the program's files, to be noted in it. Returns a
@@ -52,7 +62,7 @@ def record(path, program=()):
     return Recorder(path, program)
 
 
-def read(path):
+def read(path: str | PathLike[str]) -> Recording:
     """The `recordings.Recording` in the file ``path``: ``topics``, ``messages()``, ``about``, ``begin``, ``end``, ``cut``.
 
     Errors: `recordings.RecordingError` when the file is no recording. One that is cut off is read as far as it goes.
@@ -62,7 +72,7 @@ def read(path):
     return recordings.read(path)
 
 
-def replay(path, speed=1.0):
+def replay(path: str | PathLike[str], speed: float | None = 1.0) -> Player:
     """Publish the messages of the recording ``path`` again, at their times, in the active session, which should have no plans.
 
     speed: recorded seconds per second of the kernel's clock; ``None``: as fast as the machine can. Returns a `player.Player`, with

@@ -6,22 +6,23 @@ may be told. Nothing of it is there before somebody asks; see `chronicle.start` 
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import Cell
 from .. import kernel
-from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import Condition, warn
-from ..lisp.printer.printer import looking_on
+from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime.ground.conditions import Condition, warn
+from cramhy_runtime.ground.looking_on import looking_on
 from ..ros import graph
 from ..ros.messages import message_class_exact
-from .board import Board
+from .service_node import Board
 from .fluents import Fluents
 from .modules import Modules
 from .plans import Plans
-from .sums import State
+from .merge import State
 from .world import World
 
 NAMES = {"world": "the turtles", "tasks": "the tasks of plans", "fluents": "fluents", "modules": "process modules"}
 
-_active = None
+_active = Cell(None, fresh=True)
 
 
 class Chronicler:
@@ -43,8 +44,12 @@ class Chronicler:
         self.kernel.watch_instants(self._instant)
 
     def open_board(self):
-        """Be there for those who look on."""
+        """Be there for those who look on. They are told of plans that ended before, too, as far as the session remembers them."""
         if self.board is None:
+            if "tasks" in self.sources and not self.state.sums["tasks"]:
+                finished = self.sources["tasks"].finished()
+                if finished is not None:
+                    self.state.add("tasks", finished)
             self.board = Board(self)
             for kind, message in self.state.messages().items():
                 self.board.add(kind, message)
@@ -100,7 +105,7 @@ class Chronicler:
             return self.sources[kind].take()
         except (Condition, Exception) as problem:
             source = self.sources.pop(kind)
-            warn(SimpleWarning("~a", f"What happens to {NAMES[kind]} can be told no more: {type(problem).__name__}: {problem}"))
+            warn(SimpleWarning("~a", f"Changes of {NAMES[kind]} can be told no more: {type(problem).__name__}: {problem}"))
             source.end()
 
     # ------------------------------------------------------------------------------------------------------- plan time
@@ -108,8 +113,13 @@ class Chronicler:
     def pace_message(self):
         """How plan time passes, a ``cramhy_msgs/Pace``."""
         pace = kernel.pace()
-        return self.pace_type(stamp=self.kernel.now(), virtual=True if pace.virtual else None, paused=True if pace.paused else None,
-                              speed=pace.speed or 0.0, busy=True if pace.busy else None)
+        return self.pace_type(
+            stamp=self.kernel.now(),
+            virtual=True if pace.virtual else None,
+            paused=True if pace.paused else None,
+            speed=pace.speed or 0.0,
+            busy=True if pace.busy else None,
+        )
 
     def set_pace(self, paused, speed):
         """Let plan time pass with ``speed`` (``None``: as fast as the machine computes), or stand still."""
@@ -123,29 +133,29 @@ class Chronicler:
         kernel.pace().step(seconds)
 
     def seek(self, stamp):
-        raise ValueError("Time goes one way in a session with plans. What was before is told by /cramhy/get_history; a recording "
-                         "(--record, cramhy replay) can be sought through.")
+        raise ValueError(
+            "Time goes one way in a session with plans. /cramhy/get_history tells what was before; a recording "
+            "(--record, cramhy replay) can be sought through."
+        )
 
 
 def active():
     """The `Chronicler` of the active kernel, made when there is none."""
-    global _active
     if there() is None:
-        if _active is not None:  # of a session that is over
-            _active.look()
-            _active.close()
-        _active = Chronicler()
-    return _active
+        if _active.value is not None:  # of a session that is over
+            _active.value.look()
+            _active.value.close()
+        _active.value = Chronicler()
+    return _active.value
 
 
 def there():
     """The `Chronicler` of the active kernel, or ``None``."""
-    return _active if _active is not None and _active.kernel is kernel.active() else None
+    return _active.value if _active.value is not None and _active.value.kernel is kernel.active() else None
 
 
 def dismiss():
     """Close the chronicler if nobody needs it any more."""
-    global _active
-    if _active is not None and _active.board is None and not _active.listeners:
-        _active.close()
-        _active = None
+    if _active.value is not None and _active.value.board is None and not _active.value.listeners:
+        _active.value.close()
+        _active.value = None

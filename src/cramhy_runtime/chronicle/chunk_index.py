@@ -23,8 +23,17 @@ class PackedIndexes:
 
     def append(self, index):
         name, places = index.compression.encode(), index.message_index_offsets
-        self._packed += _FIXED.pack(index.message_start_time, index.message_end_time, index.chunk_start_offset, index.chunk_length,
-                                    index.message_index_length, index.compressed_size, index.uncompressed_size, len(name), len(places))
+        self._packed += _FIXED.pack(
+            index.message_start_time,
+            index.message_end_time,
+            index.chunk_start_offset,
+            index.chunk_length,
+            index.message_index_length,
+            index.compressed_size,
+            index.uncompressed_size,
+            len(name),
+            len(places),
+        )
         self._packed += name
         for place in places.items():
             self._packed += _PLACE.pack(*place)
@@ -37,12 +46,20 @@ class PackedIndexes:
         for _ in range(self._length):
             start, end, offset, length, index_length, compressed, uncompressed, name, topics = _FIXED.unpack_from(self._packed, at)
             at += _FIXED.size + name
-            places = dict(_PLACE.iter_unpack(self._packed[at:at + topics * _PLACE.size]))
-            compression = self._packed[at - name:at].decode()
+            places = dict(_PLACE.iter_unpack(self._packed[at : at + topics * _PLACE.size]))
+            compression = self._packed[at - name : at].decode()
             at += topics * _PLACE.size
-            yield ChunkIndex(message_start_time=start, message_end_time=end, chunk_start_offset=offset, chunk_length=length,
-                             message_index_offsets=places, message_index_length=index_length, compression=compression,
-                             compressed_size=compressed, uncompressed_size=uncompressed)
+            yield ChunkIndex(
+                message_start_time=start,
+                message_end_time=end,
+                chunk_start_offset=offset,
+                chunk_length=length,
+                message_index_offsets=places,
+                message_index_length=index_length,
+                compression=compression,
+                compressed_size=compressed,
+                uncompressed_size=uncompressed,
+            )
 
 
 def pack_indexes(writer):

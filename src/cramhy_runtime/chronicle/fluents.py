@@ -11,15 +11,16 @@ import math
 import re
 from weakref import ref
 
-from ..cpl.fluents import Fluent, Net, peek_value
+from cramhy_runtime.cpl.fluents.fluents import Fluent, Net, peek_value
 from ..cpl.hooks import on_make_fluent_hook
 from ..cpl.statuses import ALL
-from ..cpl.tree_report import cut
-from ..episodes.tracing import living_fluents
-from ..lisp.conditions import Condition
-from ..lisp.data import one
-from ..lisp.numbers.arithmetic import is_real
-from ..lisp.printer.printer import princ_to_string
+from ..process_modules.modules import own_fluents
+from cramhy_runtime.cpl.tree.tree_report import cut
+from ..cpl.fluents.fluents import living_fluents
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import one
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.messages import message_class_exact
 from ..ros.wire import ros_text
 from .texts import value_text
@@ -83,7 +84,8 @@ class Fluents:
                     continue
                 watched.pulses = fluent.pulses
                 text, amount = _value(fluent)
-                changed.append(self.fluent_type(watched.id, ros_text(cut(princ_to_string(fluent.name))), ros_text(text), amount))
+                name, internal = ros_text(cut(princ_to_string(fluent.name))), True if fluent in own_fluents else None
+                changed.append(self.fluent_type(watched.id, name, ros_text(text), amount, internal))
         gone, self.gone = self.gone, []
         return self.type(stamp=self.now(), fluents=changed, removed=gone) if changed or gone else None
 

@@ -14,7 +14,7 @@ import zlib
 
 from ..ros.message_json import MessageJsonError, from_json, to_json
 from ..ros.messages import message_class_exact
-from .sums import KINDS, TYPES
+from .merge import KINDS, TYPES
 
 MOST = 60_000
 """Things that are kept: eight minutes of one turtle that drives and draws."""

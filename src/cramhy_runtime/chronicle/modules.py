@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from ..cpl.tree_report import short
+from cramhy_runtime.cpl.tree.tree_report import short
 from ..process_modules.registry import running
 from ..ros.messages import message_class_exact
 from ..ros.wire import ros_text
+from .goals import goals
 
 
 class Modules:
@@ -30,17 +31,18 @@ class Modules:
         if not modules and not self.seen:
             return None
         now = [(name, *_state(module)) for name, module in modules.items()]
-        key = [(name, state, *map(id, shown)) for name, state, *shown in now]
+        places = [goals(shown[0]) for _, _, *shown in now]  # they may come to be known while it executes
+        key = [(name, state, where, *map(id, shown)) for (name, state, *shown), where in zip(now, places)]
         if key == self.seen:
             return None
         self.seen = key
         before, self.texts = self.texts, {}
         told = []
-        for name, state, *shown in now:
+        for (name, state, *shown), where in zip(now, places):
             for designator in shown:
                 self.texts[id(designator)] = before.get(id(designator)) or (designator, ros_text(short(designator)))
             executes, *queue = ["" if designator is None else self.texts[id(designator)][1] for designator in shown]
-            told.append(self.module_type(ros_text(str(getattr(name, "name", name))), state, executes, queue))
+            told.append(self.module_type(ros_text(str(getattr(name, "name", name))), state, executes, queue, sum(where, ())))
         return self.type(stamp=self.now(), modules=told)
 
 

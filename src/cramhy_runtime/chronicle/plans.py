@@ -1,7 +1,7 @@
 """What the tasks of plans do: each that starts, each change of its status, what it waits for and where, what became of it.
 
-That a task starts or changes is told by the plan itself (``cpl/following.py``), so that none is lost, however short it lives; all
-else is read off the tasks at the end of an instant, as ``describe-task-tree`` reads it, and only of those that ran meanwhile. Dead
+That a task starts or changes is told by the plan itself (``cpl/tasks/task_observers.py``), so that none is lost, however short it lives;
+all else is read off the tasks at the end of an instant, as ``describe-task-tree`` reads it, and only of those that ran meanwhile. Dead
 tasks are remembered as texts, so nothing of a plan is held; the oldest dead are forgotten when there are too many. Children die
 before their parents (law 1), so whoever is still known has known parents.
 """
@@ -13,11 +13,12 @@ import re
 from collections import deque
 
 from .. import kernel
-from ..cpl import past_plans
-from ..cpl.following import follow, unfollow
+from cramhy_runtime.cpl.tree import finished_plans
+from cramhy_runtime.cpl.tasks.task_observers import follow, unfollow
 from ..cpl.statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED
-from ..cpl.tree_report import failure, living_plans, place_of, title, waits_for
-from ..lisp.data import all_values
+from cramhy_runtime.cpl.tasks.tasks import AbstractTask
+from cramhy_runtime.cpl.tree.tree_report import Forest, failure, living_plans, place_of, title, waits_for
+from cramhy_runtime.ground.data import all_values
 from ..ros.messages import message_class_exact
 from ..ros.wire import ros_text
 from .texts import value_text
@@ -59,7 +60,7 @@ class Plans:
     def begin(self, overflow=None):
         """Watch from now on. ``overflow()`` is called in the scheduler when so much happens at one instant that somebody has to look."""
         self.overflow = overflow
-        past_plans.observe(self)
+        finished_plans.observe(self)
         for root in living_plans():
             self.begins(root, None)
             tasks = list(root.children)
@@ -67,9 +68,19 @@ class Plans:
                 self.starts(task)
                 tasks += task.children
 
+    def finished(self):
+        """The plans that ended before anybody watched, as far as the session remembers them, as a message like those of `take`."""
+        roots = dict.fromkeys([*finished_plans.by_name.values(), finished_plans.newest.value])
+        roots = [root for root in roots if isinstance(root, AbstractTask) and root.dead and root.kernel_task.kernel is self.kernel]
+        forest = Forest(roots)
+        tasks = {*roots, *(task for children in forest.children.values() for task in children)}
+        tasks = sorted((task for task in tasks if task.dead and task.kernel_task is not None), key=lambda task: task.kernel_task.id)
+        told = [self._ended(Living(task, self._first_message(task))) for task in tasks[-MOST_DEAD:]]
+        return self.type(stamp=self.kernel.now(), tasks=told) if told else None
+
     def end(self):
         """Watch no more."""
-        past_plans.observe_no_more(self)
+        finished_plans.observe_no_more(self)
         for root in self.roots:
             unfollow(root, self.starts)
         for living in self.living.values():
@@ -173,9 +184,17 @@ class Plans:
         name = task.plain_name
         form = _operator.match(name)
         return self.task_type(
-            id=str(task.kernel_task.id), parent="" if parent is None or parent.kernel_task is None else str(parent.kernel_task.id),
-            name=ros_text(title(task)), operator=ros_text(form["form"] if form else name), state=RUNNING.name, waits_for="", place="",
-            began=task.started_at if task.started_at is not None else math.nan, ended=math.nan, result="")
+            id=str(task.kernel_task.id),
+            parent="" if parent is None or parent.kernel_task is None else str(parent.kernel_task.id),
+            name=ros_text(title(task)),
+            operator=ros_text(form["form"] if form else name),
+            state=RUNNING.name,
+            waits_for="",
+            place="",
+            began=task.started_at if task.started_at is not None else math.nan,
+            ended=math.nan,
+            result="",
+        )
 
     def _looked_at(self, living):
         """Its new message if it waits for something else, or elsewhere, than it did; else ``None``."""

@@ -8,16 +8,17 @@ beginning.
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import Cell
 from .. import kernel
-from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import warn
+from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime.ground.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, from_json
 from ..ros.messages import message_class_exact
-from .board import PERIOD, Board
+from .service_node import PERIOD, Board
 from .history import History
 from .recordings import RecordingError, read
-from .sums import TOPICS, State
+from .merge import TOPICS, State
 
 KINDS_BY_TOPIC = {topic: kind for kind, topic in TOPICS.items()}
 LANDMARK = 2000
@@ -27,7 +28,7 @@ MOST_LANDMARKS = 64
 MOST_AT_ONCE = 2000
 """Messages that are published at one moment when nothing holds the replay back."""
 
-_active = None
+_active = Cell(None, fresh=True)
 
 
 class Moment:
@@ -76,17 +77,16 @@ class Player:
 
     # ------------------------------------------------------------------------------------------------------------- its owner
 
-    def close(self):
+    def close(self) -> None:
         """End the replay, and take its nodes off the graph."""
-        global _active
         self._timer.cancel()
         self.board.close()
         self._node.shutdown()
-        if _active is self:
-            _active = None
+        if _active.value is self:
+            _active.value = None
 
     @property
-    def position(self):
+    def position(self) -> float:
         return self.now.time
 
     @property
@@ -94,7 +94,7 @@ class Player:
         return self.now.state
 
     @property
-    def ended(self):
+    def ended(self) -> bool:
         return self._next is None
 
     def look(self):
@@ -102,16 +102,23 @@ class Player:
 
     def pace_message(self):
         """How the replay goes, a ``cramhy_msgs/Pace``."""
-        return self.pace_type(stamp=self.position, virtual=True, paused=True if self.paused else None, speed=self.speed or 0.0,
-                              busy=None if self.paused or self.ended else True, recording=self.recording.name, begin=self._start,
-                              end=self.recording.end)
+        return self.pace_type(
+            stamp=self.position,
+            virtual=True,
+            paused=True if self.paused else None,
+            speed=self.speed or 0.0,
+            busy=None if self.paused or self.ended else True,
+            recording=self.recording.name,
+            begin=self._start,
+            end=self.recording.end,
+        )
 
-    def set_pace(self, paused, speed):
+    def set_pace(self, paused: bool, speed: float | None) -> None:
         """Go on with ``speed`` recorded seconds per second (``None``: at once), or stand still."""
         self.speed, self.paused = _speed(speed), paused
         self._seen = self.kernel.now()
 
-    def step(self, seconds):
+    def step(self, seconds: float) -> None:
         """Publish what comes in the next ``seconds``, and pause."""
         if not 0 < seconds < float("inf"):
             raise ValueError(f"A step takes a time above zero, in seconds, but not {seconds}.")
@@ -119,7 +126,7 @@ class Player:
         self._publish_until(self.position + seconds)
         self._publish_now()
 
-    def seek(self, stamp):
+    def seek(self, stamp: float) -> None:
         """Go to the time ``stamp``, or the nearest that there is, and publish everything as it was then."""
         if stamp != stamp:
             raise ValueError("The time to go to is not a number.")
@@ -188,8 +195,9 @@ class Player:
         now = self.kernel.now()
         passed, self._seen = now - self._seen, now
         if not self.paused and not self.ended:
-            self._publish_until(float("inf") if self.speed is None else self.position + passed * self.speed,
-                                MOST_AT_ONCE if self.speed is None else None)
+            self._publish_until(
+                float("inf") if self.speed is None else self.position + passed * self.speed, MOST_AT_ONCE if self.speed is None else None
+            )
         self.board.publish()
 
     def _publish_until(self, time, most=None):
@@ -218,25 +226,25 @@ def _speed(speed):
 
 def replay(path, speed=1.0):
     """See `chronicle.replay`."""
-    global _active
     from . import chronicler
 
     if kernel.active() is None:
         raise RecordingError(f"Nothing can be replayed from {path}: no session runs. Start one first, by the REPL or kernel.start().")
     if chronicler.there() is not None:
-        raise RecordingError(f"{path} cannot be replayed in a session that is watched or recorded itself. Use a session of its own: "
-                             f"cramhy replay {path}")
+        raise RecordingError(
+            f"{path} cannot be replayed in a session that is watched or recorded itself. Use a session of its own: cramhy replay {path}"
+        )
     recording = read(path)
     if there() is not None:
-        _active.close()
-    _active = Player(recording, speed)
+        _active.value.close()
+    _active.value = Player(recording, speed)
     if recording.cut:
         warn(SimpleWarning("~a", recording.cut))
     for topic, why in recording.skipped.items():
         warn(SimpleWarning("~a", f"{topic} is left out of the replay: {why}."))
-    return _active
+    return _active.value
 
 
 def there():
     """The `Player` of the active kernel, or ``None``."""
-    return _active if _active is not None and _active.kernel is kernel.active() else None
+    return _active.value if _active.value is not None and _active.value.kernel is kernel.active() else None

@@ -18,16 +18,17 @@ import errno
 import os
 from decimal import Decimal
 
-from .. import __version__, kernel, storage
-from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import warn
+from cramhy_runtime import __version__, kernel, storage
+from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime.ground.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, to_json
 from . import chronicler, scene
 from .chunk_index import pack_indexes
 from .recordings import RecordingError, needs_mcap
 from .schemas import schema_text
-from .sums import TOPICS
+from .merge import TOPICS
+from cramhy_runtime.kernel.typing_names import Self
 
 CHUNK = 256 * 1024
 """Bytes of a chunk before it is packed."""
@@ -86,17 +87,21 @@ class Recorder:
             self.kernel.watch_instants(self._idle)
         self.kernel.at_stop(self.close)
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _about(self, program):
         seed = self.kernel.seed
-        return {"version": __version__, "time": "virtual" if self.kernel.clock.virtual else "wall",
-                "seed": "" if seed is None else str(seed), "epoch": repr(float(self.kernel.epoch)),
-                "program": "\n".join(str(file) for file in program)}
+        return {
+            "version": __version__,
+            "time": "virtual" if self.kernel.clock.virtual else "wall",
+            "seed": "" if seed is None else str(seed),
+            "epoch": repr(float(self.kernel.epoch)),
+            "program": "\n".join(str(file) for file in program),
+        }
 
     def _free_name(self):
         number = 1
@@ -203,7 +208,7 @@ class Recorder:
         self._node.shutdown()
         chronicler.dismiss()
 
-    def close(self):
+    def close(self) -> None:
         """Write what is left, and close the file. Closing twice is closing once."""
         if self.closed:
             return

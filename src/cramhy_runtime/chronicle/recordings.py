@@ -13,6 +13,11 @@ import os
 from decimal import Decimal, InvalidOperation
 
 from ..extras import install_command
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 
 LARGEST_CHUNK = 1 << 28
 """Bytes of a chunk once it is unpacked; a larger one is no honest chunk."""
@@ -40,9 +45,12 @@ class Recording:
     and last message, in seconds of the plan. cut: what is wrong with the end of the file, or "". count: how many messages there are.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str):
         self.path, self.name = path, os.path.basename(path)
-        self.about, self.topics, self.skipped, self.cut = {}, {}, {}, ""
+        self.about: dict[str, str] = {}
+        self.topics: dict[str, str] = {}
+        self.skipped: dict[str, str] = {}
+        self.cut = ""
         self.count = 0
         self._schemas, self._channels = {}, {}
         self._chunks = []  # (first time, last time, how many, a packed chunk or a list of messages), in order
@@ -103,17 +111,17 @@ class Recording:
     # -------------------------------------------------------------------------------------------------------------- using it
 
     @property
-    def begin(self):
+    def begin(self) -> float:
         return self._seconds(self._chunks[0][0]) if self._chunks else 0.0
 
     @property
-    def end(self):
+    def end(self) -> float:
         return self._seconds(self._chunks[-1][1]) if self._chunks else 0.0
 
     def _seconds(self, time):
         return (time - self._epoch) / 1e9
 
-    def messages(self):
+    def messages(self) -> Iterator[tuple[float, str, str, dict[str, Any]]]:
         """Yields (seconds of the plan, topic, type, data as ``json.loads`` gives them) in order; of topics in `topics` only."""
         for _, *message in self.numbered():
             yield tuple(message)
@@ -147,8 +155,10 @@ def read(path):
     except OSError as problem:
         raise RecordingError(f"The recording {path} cannot be read: {problem.strerror or problem}.") from None
     if not content.startswith(b"\x89MCAP"):
-        raise RecordingError(f"{path} is no recording: it does not begin as files of the format MCAP do. What cramhy records with "
-                             "--record x.mcap can be replayed.")
+        raise RecordingError(
+            f"{path} is no recording: it does not begin as files of the format MCAP do. What cramhy records with "
+            "--record x.mcap can be replayed."
+        )
     found = Recording(path)
     complete = False
     try:
@@ -163,15 +173,19 @@ def read(path):
             complete = complete or kind == "DataEnd"
     except Exception:  # broken bytes have broken the reader, in one of many ways
         if not complete:
-            found.cut = (f"The recording {path} is damaged or cut off, as when the process that wrote it was killed; "
-                         f"what comes before that is there.")
+            found.cut = (
+                f"The recording {path} is damaged or cut off, as when the process that wrote it was killed; "
+                f"what comes before that is there."
+            )
     found._finish()
     if not found.topics and not found.about:
         if found.skipped:
             reasons = "; ".join(f"of {name}, {why}" for name, why in found.skipped.items())
             raise RecordingError(f"{path} cannot be replayed: {reasons}.")
-        raise RecordingError(f"{path} is no recording that could be read: " + ("it is cut off before its first message."
-                             if found.cut else "there is nothing in it."))
+        raise RecordingError(
+            f"{path} is no recording that could be read: "
+            + ("it is cut off before its first message." if found.cut else "there is nothing in it.")
+        )
     return found
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 
-from ..turtlesim.measures import EXTENT, METRE
+from cramhy_runtime.turtlesim.dimensions import EXTENT, METRE
 
 TOPIC, TYPE = "/cramhy/scene", "foxglove.SceneUpdate"
 FRAME = "world"
@@ -60,8 +60,19 @@ class Scene:
             points += [{"x": stroke.x1, "y": stroke.y1, "z": 0.0}, {"x": stroke.x2, "y": stroke.y2, "z": 0.0}]
         self.waiting, self.ink_time = [], now
         self.pieces += 1
-        lines = [{"type": 2, "pose": _pose(0.0, 0.0, 0.0), "thickness": (width or 1) / METRE, "scale_invariant": False, "points": points,
-                  "color": _colour(*colour), "colors": [], "indices": []} for (*colour, width), points in pens.items()]
+        lines = [
+            {
+                "type": 2,
+                "pose": _pose(0.0, 0.0, 0.0),
+                "thickness": (width or 1) / METRE,
+                "scale_invariant": False,
+                "points": points,
+                "color": _colour(*colour),
+                "colors": [],
+                "indices": [],
+            }
+            for (*colour, width), points in pens.items()
+        ]
         return _entity(stamp, f"ink {self.pieces}", lines=lines)
 
 
@@ -70,8 +81,15 @@ def _time(nanoseconds):
 
 
 def _entity(stamp, name, **shapes):
-    return {"timestamp": stamp, "frame_id": FRAME, "id": name, "lifetime": {"sec": 0, "nsec": 0}, "frame_locked": True, "metadata": [],
-            **{shape: shapes.get(shape, []) for shape in _SHAPES}}
+    return {
+        "timestamp": stamp,
+        "frame_id": FRAME,
+        "id": name,
+        "lifetime": {"sec": 0, "nsec": 0},
+        "frame_locked": True,
+        "metadata": [],
+        **{shape: shapes.get(shape, []) for shape in _SHAPES},
+    }
 
 
 def _pose(x, y, z, turn=_FLAT):
@@ -83,14 +101,23 @@ def _colour(r, g, b):
 
 
 def _paper(world):
-    return {"pose": _pose(EXTENT / 2, EXTENT / 2, -0.02), "size": {"x": EXTENT, "y": EXTENT, "z": 0.02},
-            "color": _colour(world.r, world.g, world.b)}
+    return {
+        "pose": _pose(EXTENT / 2, EXTENT / 2, -0.02),
+        "size": {"x": EXTENT, "y": EXTENT, "z": 0.02},
+        "color": _colour(world.r, world.g, world.b),
+    }
 
 
 def _turtle(turtle):
     half = turtle.theta / 2
-    return {"pose": _pose(turtle.x, turtle.y, 0.1, {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}), "shaft_length": 0.35,
-            "shaft_diameter": 0.35, "head_length": 0.25, "head_diameter": 0.5, "color": _colour(turtle.r, turtle.g, turtle.b)}
+    return {
+        "pose": _pose(turtle.x, turtle.y, 0.1, {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}),
+        "shaft_length": 0.35,
+        "shaft_diameter": 0.35,
+        "head_length": 0.25,
+        "head_diameter": 0.5,
+        "color": _colour(turtle.r, turtle.g, turtle.b),
+    }
 
 
 # ------------------------------------------------------------------------------------------------------------------- schema
@@ -111,12 +138,27 @@ def schema_text():
     pose = _object(position=vector, orientation=_object(x=number, y=number, z=number, w=number))
     colour = _object(r=number, g=number, b=number, a=number)
     arrow = _object(pose=pose, shaft_length=number, shaft_diameter=number, head_length=number, head_diameter=number, color=colour)
-    line = _object(type=integer, pose=pose, thickness=number, scale_invariant=truth, points=_array(vector), color=colour,
-                   colors=_array(colour), indices=_array(integer))
+    line = _object(
+        type=integer,
+        pose=pose,
+        thickness=number,
+        scale_invariant=truth,
+        points=_array(vector),
+        color=colour,
+        colors=_array(colour),
+        indices=_array(integer),
+    )
     shapes = {shape: _array({"type": "object"}) for shape in _SHAPES}
     shapes.update(arrows=_array(arrow), lines=_array(line), cubes=_array(_object(pose=pose, size=vector, color=colour)))
-    entity = _object(timestamp=moment, frame_id=text, id=text, lifetime=moment, frame_locked=truth,
-                     metadata=_array(_object(key=text, value=text)), **shapes)
+    entity = _object(
+        timestamp=moment,
+        frame_id=text,
+        id=text,
+        lifetime=moment,
+        frame_locked=truth,
+        metadata=_array(_object(key=text, value=text)),
+        **shapes,
+    )
     deletion = _object(timestamp=moment, type=integer, id=text)
     made = {"title": TYPE, **_object(deletions=_array(deletion), entities=_array(entity))}
     return json.dumps(made, separators=(",", ":")).encode()

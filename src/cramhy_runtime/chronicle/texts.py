@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..cpl.tree_report import cut, short
-from ..lisp.data import Cons
+from cramhy_runtime.cpl.tree.tree_report import cut, short
+from cramhy_runtime.ground.data import Cons
 from ..ros.messages import RosMessage
 
 LONGEST = 160
@@ -17,7 +17,7 @@ def value_text(value):
     if not isinstance(value, RosMessage):
         return short(value)
     text = " ".join(f"{name} {shown}" for name, shown in _fields(value, ""))
-    return text if len(text) <= LONGEST else text[:LONGEST - 3] + "..."
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def _quick(value):

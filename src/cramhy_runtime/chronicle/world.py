@@ -58,14 +58,26 @@ class World:
         if simulator is None and not complete or not (self.ticked or self.strokes):
             return None
         self.ticked = False
-        turtles = [] if simulator is None else [(turtle.name, *turtle.pose(), True if turtle.pen_on else None, *turtle.pen_colour,
-                                                 turtle.pen_width, turtle.number & 255) for turtle in simulator.turtles.values()]
+        turtles = (
+            []
+            if simulator is None
+            else [
+                (turtle.name, *turtle.pose(), True if turtle.pen_on else None, *turtle.pen_colour, turtle.pen_width, turtle.number & 255)
+                for turtle in simulator.turtles.values()
+            ]
+        )
         if (self.clears, turtles) == self.seen and not self.strokes and not complete:
             return None
         self.seen = self.clears, turtles
         strokes, self.strokes = self.strokes, []
         make_turtle, make_stroke = self.turtle_type, self.stroke_type
         background, name = ((0, 0, 0), "") if simulator is None else (simulator.canvas.background, simulator.node.name)
-        return self.type(self.now(), True if complete else None, self.clears, *background, name,
-                         [make_turtle(*turtle) for turtle in turtles],
-                         [make_stroke(x1, y1, x2, y2, *colour, width) for x1, y1, x2, y2, colour, width in strokes])
+        return self.type(
+            self.now(),
+            True if complete else None,
+            self.clears,
+            *background,
+            name,
+            [make_turtle(*turtle) for turtle in turtles],
+            [make_stroke(x1, y1, x2, y2, *colour, width) for x1, y1, x2, y2, colour, width in strokes],
+        )

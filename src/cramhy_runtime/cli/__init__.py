@@ -1,8 +1,8 @@
 """The command line: ``cramhy repl | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros`` and ``roslisp_repl``.
 
-`options` says which words there are, `openings` what a session opens to the outside, `apart` has the commands that are no session of
-Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out. Each command
-imports what it needs when it runs, so that the quick ones are quick.
+`options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
+session of Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out.
+Each command imports what it needs when it runs, so that the quick ones are quick.
 """
 
 from __future__ import annotations
@@ -12,27 +12,35 @@ import os
 import sys
 from contextlib import ExitStack, contextmanager
 
-from .surroundings import check_for_session, ends_if_missing, in_any_surroundings
+from .process_environment import check_for_session, ends_if_missing, in_any_surroundings
 
 
 @ends_if_missing
-def session(options, closings, default_time="wall", opened=True):
+def session(options, closings, opened=True):
     """The `Session` that the options describe, opened to the outside as they say, with systems loaded and the package set.
 
     closings: an `ExitStack` that ends the session: first its plans, through their cleanup, then what was opened. opened: whether the
     options can open anything. What cannot be opened is told and ends the process, as a wrong option does.
     """
     from cramhy_runtime import kernel
-    from cramhy_runtime.repl import backtrace
+    from cramhy_runtime.languages.commonlisp.tools import backtrace
     from cramhy_runtime.repl.session import Session
+    from cramhy_runtime.session import time_setting
+    from .options import DEFAULT_TIMES
 
     backtrace.show(options.backtrace)
     check_for_session(options.backend)
-    made = Session(time=options.time or default_time, seed=options.seed, backend=options.backend, time_limit=options.time_limit,
-                   turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)), cleanup_limit=options.cleanup_limit)
+    made = Session(
+        time=time_setting.decide(options.time, DEFAULT_TIMES[options.command], robot=bool(getattr(options, "ros", None))),
+        seed=options.seed,
+        backend=options.backend,
+        time_limit=options.time_limit,
+        turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)),
+        cleanup_limit=options.cleanup_limit,
+    )
     gc.enable()
     if opened:
-        from .openings import NotPossible, open_session
+        from .servers import NotPossible, open_session
 
         try:
             open_session(options, closings)
@@ -44,7 +52,9 @@ def session(options, closings, default_time="wall", opened=True):
         made.load(system)
     if options.package:
         made.package = options.package.upper()
-    if options.command != "run":
+    if options.command == "repl":
+        evaluate_before_prompt(made, options.forms)
+    elif options.command != "run":
         evaluate_forms(made, options.forms)
     return made
 
@@ -52,6 +62,17 @@ def session(options, closings, default_time="wall", opened=True):
 def evaluate_forms(made, forms):
     for form in forms:
         made.evaluate_text(form, "<--eval>")
+
+
+def evaluate_before_prompt(made, forms):
+    """As `evaluate_forms`; Ctrl-C ends these forms, and the prompt comes."""
+    from cramhy_runtime.repl.listener import tell_interrupted
+    from cramhy_runtime.repl.session import Interruption
+
+    try:
+        evaluate_forms(made, forms)
+    except Interruption:
+        tell_interrupted()
 
 
 @in_any_surroundings
@@ -67,9 +88,9 @@ def main(arguments=None):
 @contextmanager
 def program():
     """What stands around a program with a prompt or a session: signals end it in order, and the terminal is as it was afterwards."""
-    from cramhy_runtime.kernel import signals, standard_input
+    from cramhy_runtime.kernel import signals, standard_input, terminals
 
-    with signals.held(), standard_input.terminal_of_a_session():
+    with signals.held(), terminals.terminal_of_a_session():
         standard_input.install()
         yield
 
@@ -86,10 +107,13 @@ def _main(arguments):
             if complaint := shims.meant(arguments):
                 sys.stderr.write(complaint)
                 return 2
-        from .options import parser
+        from .options import DEFAULT_TIMES, parser
 
         options = parser().parse_args(arguments)
-        if options.command in ("repl", "eval", "run", "test"):
+        if hasattr(options, "time") and (complaint := _wrong_time()):
+            print(f"cramhy: {complaint}", file=sys.stderr)
+            return 2
+        if options.command in DEFAULT_TIMES:
             gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
     except Terminated as ended:
@@ -100,6 +124,17 @@ def _main(arguments):
         gc.enable()
 
 
+def _wrong_time():
+    """What is wrong with the variable CRAMHY_TIME, or ``None``."""
+    from cramhy_runtime.session import time_setting
+
+    try:
+        time_setting.decide()
+    except ValueError as problem:
+        return problem
+    return None
+
+
 def roslisp_repl():
     """The console script of that name: ``cramhy repl``."""
     sys.exit(main(["repl", *sys.argv[1:]]))
@@ -107,14 +142,20 @@ def roslisp_repl():
 
 def _checked(options):
     """Whether all that the options ask for can be had; what cannot is told."""
-    if not (options.serve or options.view or options.port or options.origin or os.environ.get("CRAMHY_ROS")
-            or any(getattr(options, name, None) is not None for name in ("record", "ros", "ros_token", "picture"))):
+    if not (
+        options.serve
+        or options.view
+        or options.port
+        or options.origin
+        or os.environ.get("CRAMHY_ROS")
+        or any(getattr(options, name, None) is not None for name in ("record", "ros", "ros_token", "picture"))
+    ):
         return True
-    from . import openings
+    from . import servers
 
     try:
-        openings.check(options)
-    except openings.NotPossible as problem:
+        servers.check(options)
+    except servers.NotPossible as problem:
         print(f"cramhy: {problem}", file=sys.stderr)
         return False
     return True
@@ -125,23 +166,30 @@ def _repl(options):
 
     if not _checked(options):
         return 2
+    sys.path.append("")  # modules of the current folder are found, as at the prompts of Python and Hy, and hide none of others
     with ExitStack() as closings:
+        if options.hy:
+            from cramhy_runtime.repl import hy_prompt
+
+            return hy_prompt.run(lambda: session(options, closings))
         return Console(lambda: session(options, closings)).run()
 
 
 def _eval(options):
-    from cramhy_runtime.lisp.streams import streams
-    from cramhy_runtime.lisp.conditions import Condition
+    from cramhy_runtime.languages.commonlisp.streams import streams
+    from cramhy_runtime.ground.conditions import Condition
     from cramhy_runtime.repl import json_lines
     from cramhy_runtime.repl.console import report
-    from cramhy_runtime.repl.session import condition_of
+    from cramhy_runtime.repl.session import Interruption, condition_of
 
     if not _checked(options):
         return 2
     streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
     with ExitStack() as closings:
         try:
-            made = session(options, closings, "virtual")
+            made = session(options, closings)
+        except Interruption:
+            return 130
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
@@ -151,15 +199,17 @@ def _eval(options):
 def _run(options):
     if not _checked(options):
         return 2
+    from cramhy_runtime.languages.commonlisp.tools.error_reports import end_line
+
     with ExitStack() as closings:
-        closings.callback(_end_line)
+        closings.callback(end_line)
         return _status(lambda: _load(options, closings))
 
 
 def _load(options, closings):
     made = session(options, closings)
     if options.picture:
-        from .openings import save_picture
+        from .servers import save_picture
 
         closings.callback(save_picture, options.picture)
     made.load(options.file)
@@ -170,41 +220,43 @@ def _load(options, closings):
 
 def _status(work):
     """The exit status that ``work()`` gives; 130 after Ctrl-C, 1 after an error, which is reported."""
-    from cramhy_runtime.lisp.conditions import Condition
-    from cramhy_runtime.repl.console import report
-    from cramhy_runtime.repl.session import Interruption, condition_of
+    from cramhy_runtime.ground.conditions import Condition
+    from cramhy_runtime.repl.session import Interruption
 
     try:
         return work()
     except Interruption:
         return 130
     except (Exception, Condition) as problem:
-        report(condition_of(problem))
+        _tell(problem)
         return 1
 
 
-def _end_line():
-    """Let a terminal's prompt begin on a line of its own, after output such as PRINT's; a file or a pipe gets what the program wrote."""
-    from cramhy_runtime.lisp.streams import streams
+def _tell(problem):
+    """Tell of the error that ended a program, in whichever language it is written."""
+    if "hy" in sys.modules:
+        from cramhy_runtime.languages.hy import errors
 
-    if sys.stdout is not None and sys.stdout.isatty():
-        streams.CONSOLE_OUTPUT.fresh_line()
-        streams.CONSOLE_OUTPUT.flush()
+        errors.tell(problem)
+    else:  # no Hy program can have to do with it, so Hy need not be loaded
+        from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
+
+        report(condition_of(problem))
 
 
 def _test(options):
     """Run the tests of a system, an ``.asd``, ``.lisp`` or ``.hy`` file, or of all test files below a folder."""
-    from cramhy_runtime.lisp.systems import unit_tests
+    from cramhy_runtime.languages.commonlisp.systems import unit_tests
 
-    unit_tests.limit = options.limit
+    unit_tests.limit_tests(options.limit)
     with ExitStack() as closings:
-        return _status(lambda: 0 if session(options, closings, "virtual", opened=False).test(options.path) else 1)
+        return _status(lambda: 0 if session(options, closings, opened=False).test(options.path, options.junit) else 1)
 
 
 def _turtlesim(options):
-    from . import apart
+    from . import standalone_commands
 
-    return apart.turtlesim(options.port, options.view)
+    return standalone_commands.turtlesim(options.port, options.view, options.time)
 
 
 def _teleop(options):
@@ -214,15 +266,15 @@ def _teleop(options):
 
 
 def _view(options):
-    from . import apart
+    from . import standalone_commands
 
-    return apart.view(options.port)
+    return standalone_commands.view(options.port, options.time)
 
 
 def _replay(options):
-    from . import apart
+    from . import standalone_commands
 
-    return apart.replay(options.file, options.port)
+    return standalone_commands.replay(options.file, options.port)
 
 
 def _ros_shims(options):

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from cramhy_runtime.lisp.packages import near_names
+from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.ros.names import plain_value
 from cramhy_runtime.ros_tools import yaml_reading
 from cramhy_runtime.ros_tools.hosting import PROGRAMS
@@ -73,11 +73,13 @@ def _files(words):
         package, name = words
         folder = folder_of(package)
         wanted = Path(name).parts
-        below = (path for path in sorted(folder.rglob("*")) if wanted and path.parts[-len(wanted):] == wanted) if folder else ()
+        below = (path for path in sorted(folder.rglob("*")) if wanted and path.parts[-len(wanted) :] == wanted) if folder else ()
         found = [path for path in (folder / name, *below) if path.is_file()] if folder else []
         if not found:
-            raise LaunchError(f"[{name}] is neither a launch file in package [{package}] nor is [{package}] a launch file name\n"
-                              + (_launch_files_of(package, folder) if folder else _package_meant(package)))
+            raise LaunchError(
+                f"[{name}] is neither a launch file in package [{package}] nor is [{package}] a launch file name\n"
+                + (_launch_files_of(package, folder) if folder else _package_meant(package))
+            )
         return found[:1]
     missing = [word for word in words if not Path(word).is_file()]
     if missing:
@@ -99,7 +101,7 @@ def _load_file(launched, scope, values, used):
     if scope.depth > DEEPEST:
         raise LaunchError(f"while processing {scope.file}:\n{DEEPEST} launch files include each other.")
     try:
-        root = ElementTree.fromstring(scope.file.read_text())
+        root = ElementTree.fromstring(scope.file.read_text(encoding="utf-8-sig"))
     except ElementTree.ParseError as problem:
         raise LaunchError(f"Invalid roslaunch XML syntax: {problem} in {scope.file}") from None
     except (OSError, UnicodeDecodeError) as problem:
@@ -231,15 +233,22 @@ def _node(launched, tag, scope, values, used):
     launched.programs.append(Program(package, executable, words, f"{namespace}{name}".lstrip("/")))
 
 
-_TYPES = {"str": str, "string": str, "int": lambda text: int(text, 0), "double": float, "float": float,
-          "bool": lambda text: {"true": True, "1": True, "false": False, "0": False}[text.lower()], "yaml": yaml_reading.read}
+_TYPES = {
+    "str": str,
+    "string": str,
+    "int": lambda text: int(text, 0),
+    "double": float,
+    "float": float,
+    "bool": lambda text: {"true": True, "1": True, "false": False, "0": False}[text.lower()],
+    "yaml": yaml_reading.read,
+}
 
 
 def _param(launched, tag, scope, values, used):
     name, kind = _join(scope.namespace, _text(tag, "name", scope).lstrip("~")), _text(tag, "type", scope, "auto")
     if "textfile" in tag.attrib:
         try:
-            launched.parameters[name] = Path(_text(tag, "textfile", scope)).read_text()
+            launched.parameters[name] = Path(_text(tag, "textfile", scope)).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as problem:
             raise _wrong(scope, tag, f"the file cannot be read: {problem}") from None
         return
@@ -251,7 +260,7 @@ def _param(launched, tag, scope, values, used):
     try:
         launched.parameters[name] = plain_value(text) if kind == "auto" else _TYPES[kind](text)
     except (ValueError, KeyError):
-        raise _wrong(scope, tag, f'"{text}" is no {kind}') from None
+        raise _wrong(scope, tag, f'"{text}" is not of the type {kind}') from None
 
 
 def _rosparam(launched, tag, scope, values, used):
@@ -263,7 +272,7 @@ def _rosparam(launched, tag, scope, values, used):
     if command != "load":
         raise _wrong(scope, tag, f'the command "{command}" is none of load and delete')
     try:
-        text = Path(_text(tag, "file", scope)).read_text() if "file" in tag.attrib else tag.text or ""
+        text = Path(_text(tag, "file", scope)).read_text(encoding="utf-8-sig") if "file" in tag.attrib else tag.text or ""
         value = yaml_reading.read(_undented(text))
     except (OSError, UnicodeDecodeError) as problem:
         raise _wrong(scope, tag, f"the file cannot be read: {problem}") from None
@@ -271,7 +280,7 @@ def _rosparam(launched, tag, scope, values, used):
         raise _wrong(scope, tag, f"its parameters: {problem}") from None
     name = _text(tag, "param", scope, "")
     if not name and not isinstance(value, dict):
-        raise _wrong(scope, tag, "its parameters are no mapping, name: value, and there is no attribute param")
+        raise _wrong(scope, tag, "its parameters are not a mapping, name: value, and there is no attribute param")
     _spread(launched.parameters, _join(space.rstrip("/") + "/", name) if name else space.rstrip("/"), value)
 
 
@@ -311,5 +320,5 @@ def roslaunch(arguments):
         return 1
     print(summary(launched.parameters, [(program.label, f" ({program.package}/{program.executable})") for program in launched.programs]))
     for name in launched.arguments_unused:
-        print(f"WARNING: there is no <arg name=\"{name}\"> in the launch file", file=sys.stderr)
+        print(f'WARNING: there is no <arg name="{name}"> in the launch file', file=sys.stderr)
     return run(launched.programs, launched.parameters)

@@ -1,6 +1,6 @@
 """The words of the command line: which commands there are, and which options each of them takes.
 
-``repl``, ``run``, ``eval`` and ``test`` describe a session with the same options (design.md 4). What a session opens to the world
+``repl``, ``run``, ``eval`` and ``test`` describe a session with the same options. What a session opens to the world
 outside of it is off unless an option asks for it (law 9).
 """
 
@@ -19,19 +19,47 @@ def _seconds(text):
 _seconds.__name__ = "number of seconds"  # what argparse calls it in its complaint
 
 
-def _session_options():
+DEFAULT_TIMES = {"repl": "wall", "run": "virtual", "eval": "virtual", "test": "virtual"}
+"""The commands with a session, and the time in which it lives when nothing else is said (see ``session/time_setting.py``)."""
+
+
+def _add_time(options, default):
+    """``--time``, which is the same for all commands that have a time."""
+    options.add_argument(
+        "--time",
+        choices=["virtual", "wall"],
+        default=None,
+        help=f"virtual: as fast as the machine computes; or wall. It counts before the variable CRAMHY_TIME ({default})",
+    )
+
+
+def _session_options(command):
     options = argparse.ArgumentParser(add_help=False)
-    options.add_argument("--time", choices=["virtual", "wall"], default=None, help="virtual: as fast as the machine computes; or wall time")
-    options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
-    options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks")
-    options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time")
-    options.add_argument("--cleanup-limit", type=_seconds, default=5.0, metavar="SECONDS",
-                         help="what plans get for their cleanup when the process is asked to end (5)")
-    options.add_argument("--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first")
-    options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in")
-    options.add_argument("--no-turtlesim", action="store_true", help="do not start the simulator with the first node")
-    options.add_argument("--backtrace", choices=["none", "lisp", "python"], default="none", help="show the calls that led to an error")
-    options.add_argument("--eval", action="append", default=[], dest="forms", metavar="FORM", help="a form to evaluate after loading")
+    _add_time(options, DEFAULT_TIMES[command])
+    options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly (first come, first served)")
+    options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks (threads)")
+    options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time (no limit)")
+    options.add_argument(
+        "--cleanup-limit",
+        type=_seconds,
+        default=5.0,
+        metavar="SECONDS",
+        help="what plans get for their cleanup when the process is asked to end (5)",
+    )
+    options.add_argument(
+        "--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first; may be repeated (none)"
+    )
+    options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in (CL-USER)")
+    options.add_argument("--no-turtlesim", action="store_true", help="leave the simulator out (it starts with the first node)")
+    options.add_argument(
+        "--backtrace",
+        choices=["none", "lisp", "python"],
+        default=None,
+        help="show the calls that led to an error. It counts before the variable CRAMHY_BACKTRACE (none)",
+    )
+    options.add_argument(
+        "--eval", action="append", default=[], dest="forms", metavar="FORM", help="a form to evaluate after loading; may be repeated (none)"
+    )
     return options
 
 
@@ -48,46 +76,92 @@ _port.__name__ = "port"  # what argparse calls it in its complaint
 def _opening_options():
     """What lets others see the session, or the session see others."""
     options = argparse.ArgumentParser(add_help=False)
-    options.add_argument("--serve", action="store_true", help="let rostopic, rosservice ... and other programs of this user connect")
-    options.add_argument("--view", action="store_true", help="show the turtle's world and the plan in a page")
+    options.add_argument(
+        "--serve", action="store_true", help="let rostopic, rosservice ... and other programs of this user connect (nobody)"
+    )
+    options.add_argument("--view", action="store_true", help="show the turtle's world and the plan in a page (no page)")
     options.add_argument("--port", type=_port, default=None, metavar="N", help="where --serve and --view listen (a free port)")
-    options.add_argument("--origin", action="append", default=[], metavar="URL",
-                         help="a page of another server that may connect, such as https://app.foxglove.dev")
-    options.add_argument("--record", default=None, metavar="FILE.mcap", help="write all messages and events of the plan into a file")
-    options.add_argument("--ros", default=None, metavar="ws://HOST:PORT",
-                         help="join a real ROS through its rosbridge server; @FILE: its address stands in FILE (the variable CRAMHY_ROS)")
-    options.add_argument("--ros-token", default=None, metavar="FILE",
-                         help="the file with the token that this server wants (the variable CRAMHY_ROS_TOKEN holds the token itself)")
+    options.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        metavar="URL",
+        help="a page of another server that may connect, such as https://app.foxglove.dev; may be repeated (none)",
+    )
+    options.add_argument(
+        "--record", default=None, metavar="FILE.mcap", help="write all messages and events of the plan into a file (no file)"
+    )
+    options.add_argument(
+        "--ros",
+        default=None,
+        metavar="ws://HOST:PORT",
+        help="join a real ROS through its rosbridge server; @FILE: its address stands in FILE (the variable CRAMHY_ROS, or none)",
+    )
+    options.add_argument(
+        "--ros-token",
+        default=None,
+        metavar="FILE",
+        help="the file with the token that this server wants (the variable CRAMHY_ROS_TOKEN, which holds the token itself, or none)",
+    )
     return options
+
+
+class _Version(argparse.Action):
+    """``--version`` prints the versions of cramhy, Python and Hy, which a report of a defect needs."""
+
+    def __init__(self, option_strings, dest):
+        super().__init__(option_strings, dest=argparse.SUPPRESS, nargs=0, help="print the versions of cramhy, Python and Hy, and end")
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        import platform
+        from importlib import metadata
+
+        from cramhy_runtime import __version__
+
+        print(f"cramhy {__version__} (Python {platform.python_version()}, Hy {metadata.version('hy')}, {platform.platform()})")
+        parser.exit()
 
 
 def parser():
     """The `argparse.ArgumentParser` of ``cramhy``."""
-    common, openings = _session_options(), _opening_options()
+    common, openings = {command: _session_options(command) for command in DEFAULT_TIMES}, _opening_options()
     main_parser = argparse.ArgumentParser(prog="cramhy", description="CRAM's robot plan language on Hy and Python.")
+    main_parser.add_argument("--version", action=_Version)
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    commands.add_parser("repl", parents=[common, openings], help="the REPL (also called roslisp_repl)")
-    run = commands.add_parser("run", parents=[common, openings], help="load a .lisp, .hy or .asd file and run it")
-    run.add_argument("file")
-    run.add_argument("--picture", default=None, metavar="FILE",
-                     help="write the turtle's paper at the end: .png or .svg; .gif or .replay.svg: the whole way")
-    commands.add_parser("eval", parents=[common, openings], help="evaluate forms given as JSON lines")
-    test = commands.add_parser("test", parents=[common], help="run the lisp-unit and FiveAM tests of a system, file or folder")
+    repl = commands.add_parser("repl", parents=[common["repl"], openings], help="the REPL (also called roslisp_repl)")
+    repl.add_argument(
+        "--hy",
+        action="store_true",
+        help="begin in plain Hy, after (require cramhy *), where (in-package ...) leads to Lisp (begin in Lisp)",
+    )
+    run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
+    run.add_argument("file", help="a .lisp, .hy or .asd file")
+    run.add_argument(
+        "--picture",
+        default=None,
+        metavar="FILE",
+        help="write the turtle's paper at the end: .png or .svg; .gif or .replay.svg: the whole way (no file)",
+    )
+    commands.add_parser("eval", parents=[common["eval"], openings], help="evaluate forms given as JSON lines")
+    test = commands.add_parser("test", parents=[common["test"]], help="run the lisp-unit and FiveAM tests of a system, file or folder")
     test.add_argument("path", help="a system by its name, an .asd, .lisp or .hy file, or a folder")
     test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
+    test.add_argument("--junit", default=None, metavar="FILE", help="write the results into FILE, too, in JUnit's XML (no file)")
     simulator = commands.add_parser("turtlesim", help="the simulator alone, for other programs to drive")
-    simulator.add_argument("--view", action="store_true", help="show it in a page, too")
+    simulator.add_argument("--view", action="store_true", help="show it in a page, too (no page)")
     simulator.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
+    _add_time(simulator, "wall")
     teleop = commands.add_parser("teleop", help="drive the turtle of a running session with the arrow keys")
     teleop.add_argument("turtle", nargs="?", default="turtle1", help="which one (turtle1)")
     view = commands.add_parser("view", help="the live page of a running session, or of a simulator of its own")
     view.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
+    _add_time(view, "wall")
     replay = commands.add_parser("replay", help="show a recording in the page")
-    replay.add_argument("file", metavar="FILE.mcap")
+    replay.add_argument("file", metavar="FILE.mcap", help="the recording, which --record has written")
     replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
     shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
-    shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER instead of printing functions")
-    shims.add_argument("--shell", choices=["sh", "fish"], default="sh", help="whose functions: sh is for bash, zsh and dash, too")
+    shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
+    shims.add_argument("--shell", choices=["sh", "fish"], default="sh", help="whose functions; sh is for bash, zsh and dash, too (sh)")
     ros = commands.add_parser("ros", usage="cramhy ros COMMAND [WORD ...]", help="a command of ROS: cramhy ros rostopic list")
     ros.add_argument("ros_command", metavar="COMMAND", help="rostopic, rosservice, roscore, rosrun, catkin_make ..., with the words of ROS")
     return main_parser

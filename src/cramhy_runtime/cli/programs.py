@@ -32,12 +32,12 @@ class Program(NamedTuple):
 
 def roscore(arguments):
     """``roscore``: there is nothing to start. What the original tells of the master it tells of the session that runs here, if one does."""
-    from cramhy_runtime.ros_tools import there
-    from cramhy_runtime.ros_tools.reach import NoSession, SessionEnded
+    from cramhy_runtime.ros_tools import remote_graph
+    from cramhy_runtime.ros_tools.graph_access import NoSession, SessionEnded
 
     print("No master is needed: the ROS graph lives in the process of roslisp_repl.")
     try:
-        graph = there.current()
+        graph = remote_graph.current()
         try:
             parameters = {name: graph.parameter(name) for name in graph.parameter_names()}
             print(f"It runs already, as process {graph.pid}, and serves at {graph.address}.\n")
@@ -86,7 +86,7 @@ def rosrun(arguments):
 def _known(package, executable):
     """0 when there is such an executable; else the exit status, after the complaint."""
     from cramhy_runtime.ros_tools.hosting import PROGRAMS
-    from cramhy_runtime.ros_tools.words import meant
+    from cramhy_runtime.ros_tools.arguments import meant
 
     from .workspace import folder_of
 
@@ -106,28 +106,29 @@ def _known(package, executable):
 # ------------------------------------------------------------------------------------------------------------ where to run
 
 
-def run(programs, parameters=None, port=None, view=False):
+def run(programs, parameters=None, port=None, view=False, time=None):
     """Run programs, in the session that there is or in this process, until they end or Ctrl-C; the exit status.
 
     parameters: values by global name, which are set before. port, view: where a session of this process listens; with the page.
+    time: what ``--time`` says of a session of this process, or ``None``: what CRAMHY_TIME says, or the wall's.
     """
-    from cramhy_runtime.ros_tools import there
-    from cramhy_runtime.ros_tools.reach import NoSession, Refused, SessionEnded
+    from cramhy_runtime.ros_tools import remote_graph
+    from cramhy_runtime.ros_tools.graph_access import NoSession, Refused, SessionEnded
 
-    from . import openings
+    from . import servers
 
     told = None
     try:
-        openings.require("serve", "To run a program outside of roslisp_repl")
+        servers.require("serve", "To run a program outside of roslisp_repl")
         while True:
             try:
-                graph = there.current()
+                graph = remote_graph.current()
             except NoSession as problem:
                 if str(problem):
-                    raise openings.NotPossible(str(problem)) from None
+                    raise servers.NotPossible(str(problem)) from None
                 if told is not None:
                     _tell(f"The session has ended: {told} here again.")
-                if _run_here(programs, parameters, port, view) != "moved":
+                if _run_here(programs, parameters, port, view, time) != "moved":
                     return 0
                 told = _what(programs)
                 _tell(f"A session has started: {told} there now.")
@@ -138,7 +139,7 @@ def run(programs, parameters=None, port=None, view=False):
                 told = _what(programs)
             finally:
                 graph.close()
-    except (openings.NotPossible, Refused) as problem:
+    except (servers.NotPossible, Refused) as problem:
         print(f"cramhy: {problem}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -184,8 +185,11 @@ def _run_there(graph, programs, parameters):
     with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log:
         try:
             for number, program in enumerate(programs, 1):
-                answer = graph.call("/cramhy/start_program", "", {
-                    "package": program.package, "executable": program.executable, "arguments": list(program.arguments)})
+                answer = graph.call(
+                    "/cramhy/start_program",
+                    "",
+                    {"package": program.package, "executable": program.executable, "arguments": list(program.arguments)},
+                )
                 shown.add(answer["node"])
                 if answer["there"]:
                     _tell(f"{answer['node']} runs in the session of process {graph.pid} already. This is its log; Ctrl-C leaves it alone.")
@@ -208,21 +212,29 @@ def _run_there(graph, programs, parameters):
     return 0
 
 
-def _run_here(programs, parameters, port, view):
+def _run_here(programs, parameters, port, view, time=None):
     """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``."""
-    from cramhy_runtime import image, kernel
+    from cramhy_runtime import kernel
+    from cramhy_runtime.session import boot, time_setting
     from cramhy_runtime.ros import graph
     from cramhy_runtime.ros.services import Refusal
 
-    from . import openings
+    from . import servers
 
-    kernel.start(clock="wall")
-    image.boot()
+    try:
+        kernel.start(clock=time_setting.decide(time, time_setting.PROMPT))
+    except ValueError as problem:
+        raise servers.NotPossible(str(problem)) from None
+    boot()
+    if kernel.active().clock.virtual:
+        kernel.pace().set_speed(1.0)  # the program is there to be watched, and nothing else tells virtual time where to stop
     labels = []
     with ExitStack() as closings:
         closings.callback(kernel.stop)
         try:
-            _, host = openings.serve(closings, port, view)
+            _, host = servers.serve(closings, port, view)
+            if kernel.run_blocking(_others):  # it began while we did, and is older: nobody would tell us of it later
+                return "moved"
             for name, value in (parameters or {}).items():
                 graph.active().parameters.set(name, value)
             nodes = []
@@ -230,7 +242,7 @@ def _run_here(programs, parameters, port, view):
                 try:
                     name, _, lines = host.start_program(program.package, program.executable, program.arguments)
                 except Refusal as problem:
-                    raise openings.NotPossible(str(problem)) from None
+                    raise servers.NotPossible(str(problem)) from None
                 node = graph.active().nodes[name]
                 nodes.append(node)
                 labels = _started(program, number, os.getpid()) + labels
@@ -261,6 +273,16 @@ def _wait(nodes):
         if newest is not None and newest.pid != os.getpid():
             return "moved"
     return "ended"
+
+
+def _others():
+    """The sessions of other processes that live now."""
+    from cramhy_runtime.rosbridge import sessions
+
+    try:
+        return [each for each in sessions.living() if each.pid != os.getpid()]
+    except sessions.Unsafe:
+        return []
 
 
 def _newest():

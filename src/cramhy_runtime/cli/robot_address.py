@@ -12,6 +12,7 @@ import stat
 import sys
 
 from cramhy_runtime.rosbridge import addresses
+from cramhy_runtime.storage import owners
 
 ADDRESS, TOKEN = "CRAMHY_ROS", "CRAMHY_ROS_TOKEN"
 LONGEST = 4096  # bytes of a file that are read
@@ -83,7 +84,7 @@ def _line_of(path, asked, what):
 
 def _not_for_others(path, asked):
     status = os.stat(path)
-    if hasattr(os, "getuid") and stat.S_ISREG(status.st_mode) and status.st_mode & 0o077:
+    if stat.S_ISREG(status.st_mode) and owners.open_to_others(status):
         raise Unusable(f"{asked}: others than you can read this file, and it holds a token. Type: chmod 600 {path}")
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from cramhy_runtime import storage
 from cramhy_runtime.ros_tools import running
 
-from .surroundings import missing, working_folder
+from .process_environment import missing, working_folder
 
 _HOMES = {
     **dict.fromkeys(("catkin_create_pkg", "catkin_make", "rosls", "rospack", "rosversion", "roscd"), "workspace"),
@@ -41,8 +41,10 @@ def run(folder=None, shell="sh"):
         real += [name for name in _OF_A_REAL_SHELL if name not in real]
     if real:
         verb = "stay as they are" if len(real) > 1 else "stays as it is"
-        print(f"cramhy: a ROS is installed here, so {', '.join(real)} {verb}. "
-              f"Those of cramhy are called like this: cramhy ros {real[-1]}", file=sys.stderr)
+        print(
+            f"cramhy: a ROS is installed here, so {', '.join(real)} {verb}. Those of cramhy are called like this: cramhy ros {real[-1]}",
+            file=sys.stderr,
+        )
     names = ["cramhy", *(name for name in names if name not in real)]
     if folder is None:
         print("".join(_FUNCTIONS[shell](name) for name in names), end="")
@@ -80,8 +82,11 @@ def _install(target, names):
     """Write the commands ``names`` as programs into the folder ``target``; the exit status. What others have put there stays."""
     strange = [name for name in names if os.path.lexists(target / name) and not _is_ours(target / name)]
     if strange:
-        print(f"cramhy: {', '.join(str(target / name) for name in strange)} {'is' if len(strange) == 1 else 'are'} there already, and not "
-              "from cramhy. Nothing was written. Choose another folder.", file=sys.stderr)
+        print(
+            f"cramhy: {', '.join(str(target / name) for name in strange)} {'is' if len(strange) == 1 else 'are'} there already, and not "
+            "from cramhy. Nothing was written. Choose another folder.",
+            file=sys.stderr,
+        )
         return 1
     # pip's scripts do the same, and stay
     names = [name for name in names if not os.path.lexists(target / name) or _MARK in _beginning(target / name)]
@@ -93,8 +98,10 @@ def _install(target, names):
     except OSError as problem:
         print(f"cramhy: the programs cannot be written into {target}: {problem.filename}: {storage.why(problem)}", file=sys.stderr)
         return 1
-    print(f"Wrote {', '.join(names)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
-          f'eval "$({shlex.join(words_of("cramhy"))} ros-shims)"')
+    print(
+        f"Wrote {', '.join(names)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
+        f'eval "$({shlex.join(words_of("cramhy"))} ros-shims)"'
+    )
     return 0
 
 
@@ -104,7 +111,7 @@ def _is_ours(path):
 
 def _beginning(path):
     try:
-        with open(path, errors="ignore") as file:
+        with open(path, encoding="utf-8", errors="ignore") as file:
             return file.read(2000)
     except OSError:
         return ""
@@ -116,8 +123,10 @@ def meant(words):
         return None
     mine = own_name()
     meant = ["repl", *words[1:]] if words[0] == "roslisp_repl" else ["ros", *words]
-    return (f"cramhy: {words[0]} is a command of ROS. Type: {mine} {shlex.join(meant)}\n"
-            f'Or make it a command of this shell first: eval "$({mine} ros-shims)"\n')
+    return (
+        f"cramhy: {words[0]} is a command of ROS. Type: {mine} {shlex.join(meant)}\n"
+        f'Or make it a command of this shell first: eval "$({mine} ros-shims)"\n'
+    )
 
 
 def own_name():
@@ -149,10 +158,10 @@ def tool(name, arguments):
 
 def _graph_command(words):
     """A command on the graph of the session that serves on this machine."""
-    from cramhy_runtime.ros_tools import there
+    from cramhy_runtime.ros_tools import remote_graph
 
     def write(text):
         sys.stdout.write(text)
         sys.stdout.flush()  # line by line, also into a pipe
 
-    return running.run(words, running.Terminal(write, sys.stderr.write, there.current))
+    return running.run(words, running.Terminal(write, sys.stderr.write, remote_graph.current))

@@ -28,7 +28,9 @@ def catkin_create_pkg(arguments):
         return _fail("usage: catkin_create_pkg NAME [DEPENDENCY ...]", 2)
     name, *dependencies = names
     if not re.fullmatch(r"[a-z][a-z0-9_-]*", name):
-        return _fail(f"catkin_create_pkg: '{name}' is no name for a package: a lower-case letter, then such letters, digits, _ and - only.")
+        return _fail(
+            f"catkin_create_pkg: '{name}' is not a name for a package: a lower-case letter, then such letters, digits, _ and - only."
+        )
     folder = Path.cwd() / name
     for file in ("package.xml", "CMakeLists.txt"):
         if os.path.lexists(folder / file):
@@ -38,15 +40,24 @@ def catkin_create_pkg(arguments):
             made.folder(folder / sub)
         made.write(folder / "CMakeLists.txt", _cmake(name, dependencies))
         made.write(folder / "package.xml", _manifest(name, dependencies))  # with it, it is a package
-    print(f"Created file {name}/package.xml\nCreated file {name}/CMakeLists.txt\nCreated folder {name}/include/{name}\n"
-          f"Created folder {name}/src\nSuccessfully created files in {folder}. Please adjust the values in package.xml.")
+    print(
+        f"Created file {name}/package.xml\nCreated file {name}/CMakeLists.txt\nCreated folder {name}/include/{name}\n"
+        f"Created folder {name}/src\nSuccessfully created files in {folder}. Please adjust the values in package.xml."
+    )
     return 0
 
 
 def _manifest(name, dependencies):
-    lines = ['<?xml version="1.0"?>', '<package format="2">', f"  <name>{name}</name>", "  <version>0.0.0</version>",
-             f"  <description>The {name} package</description>", '  <maintainer email="user@example.org">user</maintainer>',
-             "  <license>unknown</license>", "  <buildtool_depend>catkin</buildtool_depend>"]
+    lines = [
+        '<?xml version="1.0"?>',
+        '<package format="2">',
+        f"  <name>{name}</name>",
+        "  <version>0.0.0</version>",
+        f"  <description>The {name} package</description>",
+        '  <maintainer email="user@example.org">user</maintainer>',
+        "  <license>unknown</license>",
+        "  <buildtool_depend>catkin</buildtool_depend>",
+    ]
     for kind in ("build_depend", "build_export_depend", "exec_depend"):
         lines += [f"  <{kind}>{dependency}</{kind}>" for dependency in dependencies]
     return "\n".join([*lines, "</package>", ""])
@@ -54,8 +65,9 @@ def _manifest(name, dependencies):
 
 def _cmake(name, dependencies):
     components = " ".join(dependencies)
-    return (f"cmake_minimum_required(VERSION 3.0.2)\nproject({name})\n"
-            f"find_package(catkin REQUIRED COMPONENTS {components})\ncatkin_package()\n")
+    return (
+        f"cmake_minimum_required(VERSION 3.0.2)\nproject({name})\nfind_package(catkin REQUIRED COMPONENTS {components})\ncatkin_package()\n"
+    )
 
 
 def catkin_make(arguments):
@@ -66,7 +78,7 @@ def catkin_make(arguments):
 
 def folder_of(package):
     """The folder of a package, or ``None``: the user's first, then those of cramhy."""
-    from cramhy_runtime.lisp.systems import systems
+    from cramhy_runtime.languages.commonlisp.systems import systems
     from cramhy_runtime.ros import definition_files
 
     return systems.find_package_folder(package) or definition_files.package_folder(package)
@@ -74,7 +86,7 @@ def folder_of(package):
 
 def packages():
     """The folders of all packages by name."""
-    from cramhy_runtime.lisp.systems import search_folders
+    from cramhy_runtime.ros import search_folders
     from cramhy_runtime.ros import definition_files
 
     found = {package: folder_of(package) for package in definition_files.known_packages()}
@@ -159,7 +171,7 @@ def _dependencies(package, deep):
     while waiting:
         folder = folder_of(waiting.pop(0))
         manifest = folder and folder / "package.xml"
-        for name in _DEPENDENCY.findall(manifest.read_text(errors="replace")) if manifest and manifest.is_file() else ():
+        for name in _DEPENDENCY.findall(manifest.read_text(encoding="utf-8", errors="replace")) if manifest and manifest.is_file() else ():
             if name not in found:
                 found.append(name)
                 if deep:
@@ -192,5 +204,5 @@ def rosversion(arguments):
 def _version_in_manifest(package):
     manifest = folder_of(package)
     manifest = manifest and manifest / "package.xml"
-    found = manifest and manifest.is_file() and re.search(r"<version>\s*([^\s<]+)", manifest.read_text(errors="replace"))
+    found = manifest and manifest.is_file() and re.search(r"<version>\s*([^\s<]+)", manifest.read_text(encoding="utf-8", errors="replace"))
     return found.group(1) if found else None

@@ -25,25 +25,18 @@ The page docs/plans-in-python.md tells the whole story. In short: a plan runs be
 take branches as functions, or begin a ``with`` block that starts them. When a form is left, its branches are dead, and what one of
 them failed with is raised. Waiting is for values that are not ``None`` and not ``False``; 0 and "" are true, as in Lisp.
 
-Where the parts are (reference: cpl.md):
-
-* fluents: ``fluents``, ``pulse_fluents``, ``fluent_operators``, ``waiting``
-* tasks: ``tasks``, ``statuses``, ``current``, ``task_variables``, ``task_readers``; how they stop and end: ``pausing``, ``suspension``,
-  ``ending``; pieces of a task: ``blocks``, ``errands``
-* forms with branches: ``branches``, ``operators``, ``orderings``, ``watching``, ``policies``
-* failures: ``failure_types``, ``failures``, ``retry_counters``, ``debugging``
-* plans as trees: ``tree``, ``tree_report``, ``tags``, ``plans``, ``past_plans``, ``following``, ``walker``, ``plan_tree``
-* around them: ``hooks``, ``logging``, ``printing``
-* the Lisp faces: ``symbols``, ``package``, ``readers``, ``typed``, ``user_methods``, ``markers``, ``macro_shapes``, ``macro_support``
-* Python's face: ``python_forms``, ``plan_run``, ``branch_blocks``, ``attempts``, ``steps``, ``fluent_notation``, ``border``
+Where the parts are (reference: cpl.md): `failures`, `fluents`, `tasks`, `tree` and `forms`, folders in this order, each of which knows only
+those before it; below them `symbols`, `statuses`, `current` (the task that runs), `task_variables`, `hooks`, `logging` and
+`type_checks`; `plain_printing` shows fluents and tasks where no language does; `signatures` is for type checkers.
 """
 
-from ..kernel import Deadlock, TimeLimit, checkpoint, cleanup, now, run_blocking
-from . import fluent_notation, printing  # noqa: F401  they teach fluents Python's operators, and how they are shown
-from .attempts import Attempt, attempts, handling
-from .blocks import Timeout, TimedOut, move_on_after, timeout
-from .branch_blocks import ParBlock, RaceBlock, TryAllBlock
-from .failure_types import (
+from cramhy_runtime.kernel import Deadlock, TimeLimit, checkpoint, now, run_blocking, cleanup
+from .fluents import python_operators as fluent_notation  # noqa: F401  they teach fluents Python's operators, and how they are shown
+from . import plain_printing  # noqa: F401
+from .tasks.attempts import Attempt, attempts, handling
+from .tasks.timeouts import Timeout, TimedOut, move_on_after, timeout
+from .forms.branch_blocks import ParBlock, RaceBlock, TryAllBlock
+from .failures.failure_types import (
     CommonLispErrorEnvelope,
     CompositeFailure,
     PlanFailure,
@@ -56,13 +49,13 @@ from .failure_types import (
     envelope,
     opened,
 )
-from .failures import Handling as Retry, with_failure_handling
-from .fluent_operators import fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed
-from .fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
-from .operators import named_top_level, seq, top_level
-from .plan_run import plan, run
-from .policies import Policy, make_policy
-from .python_forms import (
+from .failures.handling import Handling as Retry, with_failure_handling
+from .fluents.operators import fl_and, fl_apply, fl_eq, fl_eql, fl_funcall, fl_not, fl_or, fl_pulsed, fl_value_changed, pulsed
+from .fluents.fluents import Fluent, ValueFluent, make_fluent, peek_value, pulse, register_update_callback, remove_update_callback, value
+from .forms.operators import named_top_level, seq, top_level
+from .forms.plan_run import plan, run
+from .forms.policies import Policy, make_policy
+from .forms.python_forms import (
     fail,
     join_task,
     on_suspension,
@@ -79,16 +72,16 @@ from .python_forms import (
     with_task,
     without_scheduling,
 )
-from .retry_counters import RetryCounter
+from .failures.retry_counters import RetryCounter
 from .statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
-from .steps import Tag, plan_function, tag
-from .suspension import retry_after_suspension, suspend, wake_up, with_task_suspended
+from .forms.named_steps import Tag, plan_function, tag
+from .tasks.suspension import retry_after_suspension, suspend, wake_up, with_task_suspended
 from .task_variables import define_task_variable
 from .current import current_task
-from .ending import cleanup_time_limit
-from .tasks import Task, ToplevelTask, evaporate
-from .tree_report import describe_task_tree, task_tree_text
-from .waiting import sleep, wait_for
+from .tasks.ending import cleanup_time_limit
+from .tasks.tasks import Task, ToplevelTask, evaporate
+from .tree.tree_report import describe_task_tree, task_tree_text
+from .tasks.waiting import sleep, wait_for
 
 __all__ = [
     "Attempt", "attempts", "checkpoint", "cleanup", "cleanup_time_limit", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED",

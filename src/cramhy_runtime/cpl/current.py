@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 from cramhy_runtime import kernel
 
-from ..lisp import condition_types as types
-from ..lisp.conditions import error
+from cramhy_runtime.ground import condition_types as types
+from cramhy_runtime.ground.conditions import error
 
 
-def current_task() -> Any:
+if TYPE_CHECKING:
+    from .tasks.tasks import AbstractTask
+
+
+def current_task() -> AbstractTask[object] | None:
     """The plan task that runs, or ``None`` outside of plans."""
-    return kernel.current().owner
+    return kernel.current().owner  # type: ignore[no-any-return]  # the kernel does not know whose its tasks are
 
 
-def inside_plan(form):
+def inside_plan(form: object) -> AbstractTask[object]:
     """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
     active = kernel.active()
     task = None if active is None else active.current.owner

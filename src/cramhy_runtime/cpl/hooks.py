@@ -1,8 +1,8 @@
-"""The hooks of the plan language (cpl.md section 11); what a hook is stands in ``lisp/hooks.py``."""
+"""The hooks of the plan language (cpl.md section 11); what a hook is stands in ``ground/hooks.py``."""
 
 from __future__ import annotations
 
-from ..lisp.hooks import Hook
+from cramhy_runtime.ground.hooks import Hook
 from . import symbols  # noqa: F401  the packages must exist
 
 on_make_fluent_hook = Hook("CPL-IMPL::ON-MAKE-FLUENT-HOOK", "(fluent allow-tracing max-tracing-freq)")
@@ -14,8 +14,7 @@ on_preparing_named_top_level = Hook("CPL-IMPL::ON-PREPARING-NAMED-TOP-LEVEL", "(
 on_finishing_named_top_level = Hook("CPL-IMPL::ON-FINISHING-NAMED-TOP-LEVEL", "(id)")
 on_begin_execute_tag_task = Hook("CPL-IMPL::ON-BEGIN-EXECUTE-TAG-TASK", "(task)")
 on_finish_execute_tag_task = Hook("CPL-IMPL::ON-FINISH-EXECUTE-TAG-TASK", "(id)")
-on_preparing_task_execution = Hook("CPL-IMPL::ON-PREPARING-TASK-EXECUTION",
-                                   "(name log-parameters log-pattern lambda-list parameters)")
+on_preparing_task_execution = Hook("CPL-IMPL::ON-PREPARING-TASK-EXECUTION", "(name log-parameters log-pattern lambda-list parameters)")
 on_finishing_task_execution = Hook("CPL-IMPL::ON-FINISHING-TASK-EXECUTION", "(id)")
 on_with_failure_handling_begin = Hook("CPL-IMPL::ON-WITH-FAILURE-HANDLING-BEGIN", "(clauses)")
 on_with_failure_handling_end = Hook("CPL-IMPL::ON-WITH-FAILURE-HANDLING-END", "(id)")

@@ -13,19 +13,22 @@ from __future__ import annotations
 
 import time
 
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
-from ..lisp.conditions import CompileError, error
-from ..lisp.data import Keyword, list_from, python_list
-from ..lisp.dynamic import binding
-from ..lisp.format.format import format_to_string
-from ..lisp.packages import keyword
-from ..lisp.streams.streams import TRACE_OUTPUT, output_stream
+from cramhy_runtime.ground.conditions import CompileError, error
+from cramhy_runtime.ground.data import Keyword, list_from, python_list
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.printing import format_to_string
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.output import output_stream
 from .current import current_task
 from .symbols import sym
 
-TAGS = ("DEBUG FINISH SEND-EVENT RECEIVE-EVENT DEBUGGER PROPAGATE-EVENT JOIN-TASK WAIT-FOR REGISTER-CHILD TEARDOWN EVENT-LOOP "
-        "CHANGE-STATUS GC ON-SUSPENSION WITH-PARALLEL-CHILDS FAIL PAR PURSUE TRY-ALL TRY-IN-ORDER WITH-TAGS").split()
+TAGS = (
+    "DEBUG FINISH SEND-EVENT RECEIVE-EVENT DEBUGGER PROPAGATE-EVENT JOIN-TASK WAIT-FOR REGISTER-CHILD TEARDOWN EVENT-LOOP "
+    "CHANGE-STATUS GC ON-SUSPENSION WITH-PARALLEL-CHILDS FAIL PAR PURSUE TRY-ALL TRY-IN-ORDER WITH-TAGS"
+).split()
 DEFAULT = TAGS[:5]
 VERBOSE = "PROPAGATE-EVENT JOIN-TASK WAIT-FOR REGISTER-CHILD TEARDOWN".split() + DEFAULT
 VERY_VERBOSE = "EVENT-LOOP CHANGE-STATUS GC".split() + VERBOSE
@@ -37,8 +40,8 @@ LINE = "~8@A , ~8A - ~20A > ~30@<~?~> ; ~@<~?~:>~%"
 EVENT = "#<EVENT :~a~@[ ~s~]>"
 NAME_WIDTH = 20
 
-known_tags = list(TAGS)
-active_tags = set()
+known_tags = per_image(list(TAGS))
+active_tags = per_image(set())
 """The names of the active tags. Who wants to log asks first whether there are any."""
 
 
@@ -72,9 +75,16 @@ def write_line(context, context_arguments, display, arguments):
     """Write one line: format controls and arguments for the kind of event and for what happened."""
     task = current_task()
     with binding(sym("*PRINT-PRETTY*"), True, sym("*PRINT-RIGHT-MARGIN*"), RIGHT_MARGIN.value):
-        line = format_to_string(LINE, *_times(task), shortened(task.name if task else str(kernel.current().name)),
-                                context, list_from(context_arguments), display, list_from(arguments))
-    stream = output_stream(LOG_OUTPUT.value if LOG_OUTPUT.value is not None else TRACE_OUTPUT.value)
+        line = format_to_string(
+            LINE,
+            *_times(task),
+            shortened(task.name if task else str(kernel.current().name)),
+            context,
+            list_from(context_arguments),
+            display,
+            list_from(arguments),
+        )
+    stream = output_stream(LOG_OUTPUT.value)
     stream.write(line)
     stream.flush()
 
@@ -92,7 +102,7 @@ def _times(task):
 
 def shortened(name, width=NAME_WIDTH):
     """``name`` cut to ``width`` by replacing its middle with two dots."""
-    return name if len(name) <= width else name[:(width - 2) // 2] + ".." + name[-(width - 2) // 2:]
+    return name if len(name) <= width else name[: (width - 2) // 2] + ".." + name[-(width - 2) // 2 :]
 
 
 def log_enable(tags):
@@ -130,8 +140,10 @@ def check_constant_tags(tags):
     """At expansion time: ``tags`` (a Python list) must be known."""
     for tag in tags:
         if not _is_known(tag):
-            error(CompileError("~S not a known log tag. See DEFINE-LOG-TAGS.", tag),
-                  hint=f"The log tags are {' '.join(f':{name}' for name in known_tags).lower()}.")
+            error(
+                CompileError("~S not a known log tag. See DEFINE-LOG-TAGS.", tag),
+                hint=f"The log tags are {' '.join(f':{name}' for name in known_tags).lower()}.",
+            )
 
 
 def define_log_tags(tags):

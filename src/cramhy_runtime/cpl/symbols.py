@@ -1,9 +1,9 @@
 """The Lisp packages of this room, made before anything interns a symbol in them.
 
-What they contain is declared in ``package.py``, when all the code is there.
+What they contain is declared in ``languages/commonlisp/faces/cpl/package.py``, when all the code is there.
 """
 
-from ..lisp.packages import COMMON_LISP, ensure_package, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
 
 CPL_IMPL = ensure_package("CRAM-LANGUAGE-IMPLEMENTATION", "CPL-IMPL", use=[COMMON_LISP])
 CPL = ensure_package("CRAM-LANGUAGE", "CPL")

@@ -10,16 +10,23 @@ and ``*task-tree*`` are not bound at all: `TaskStateSymbol` computes them from t
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime import kernel
 
-from ..lisp.data import UNBOUND, Symbol
-from ..lisp.dynamic import Bindings, special
-from ..lisp.evaluation.functions import function_of
-from ..lisp.packages import find_package
+from cramhy_runtime.ground.data import UNBOUND, Symbol
+from cramhy_runtime.ground.dynamic import Bindings, special
+from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.packages import find_package, redefined
 
-_inherited = set()  # the language's own: inherited when bound
-_within_plans = set()  # those of them that a new top-level does not inherit
-_declared = {}  # the user's: symbol -> init function or None; bound in every task
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .tasks.tasks import AbstractTask
+
+_inherited: set[Symbol] = set()  # the language's own: inherited when bound
+_within_plans: set[Symbol] = set()  # those of them that a new top-level does not inherit
+_declared: dict[Symbol, Callable[..., Any] | None] = per_image({})  # the user's: init function or None; bound in every task
 
 
 class TaskStateSymbol(Symbol):
@@ -49,7 +56,7 @@ def define_task_state(package, name, getter, setter=None):
     return symbol
 
 
-def inherit(symbol, initial, within_plans=False):
+def inherit(symbol: Any, initial: object, within_plans: bool = False) -> Any:
     """Declare one of the language's own task variables, with its global value; ``within_plans``: no top-level inherits its value."""
     _inherited.add(special(symbol, initial))
     if within_plans:
@@ -57,12 +64,23 @@ def inherit(symbol, initial, within_plans=False):
     return symbol
 
 
-def define_task_variable(symbol, global_value=None, *, init_function=None):
-    """``(define-task-variable name value)``: every task gets its own binding of ``symbol``, from its parent's value.
+def define_task_variable(
+    symbol: str | Symbol,
+    global_value: object = None,
+    *,
+    init_function: Callable[[AbstractTask[object], AbstractTask[object] | None, Any], object] | None = None,
+) -> Symbol:
+    """``(define-task-variable name value)``: every task gets its own binding of ``symbol``, from its parent's value. Returns the symbol.
 
+    symbol: one of Lisp, or a name, which becomes a symbol of its own. ``symbol.value`` is the value in the task that asks.
     ``init_function(task, parent, value)`` computes the initial value in the parent; ``parent`` is nil for a top-level.
     """
-    special(symbol, global_value)
+    if isinstance(symbol, str):
+        symbol = Symbol(symbol.upper(), None)
+    redefined(symbol)
+    symbol.special = True
+    if symbol.value is UNBOUND:
+        symbol.value = global_value
     _declared[symbol] = None if init_function is None else function_of(init_function)
     return symbol
 
@@ -108,4 +126,3 @@ def tv_closure(task, parent, continuation):
                 outer.enter()
 
     return call
-

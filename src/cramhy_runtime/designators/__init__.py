@@ -14,26 +14,26 @@
 The page docs/reasoning-in-python.md tells the whole story.
 
 ``classes`` the kinds and their properties · ``protocol`` what one can ask of them · ``equating`` chains of designators for one
-thing · ``resolution``, ``locations`` from description to thing · ``hints`` why not · ``predicates`` for Prolog · ``syntax`` the
-notation ``(a motion ...)`` · ``printing`` · ``language_support`` with-designators · ``package`` the Lisp faces. Python's face:
-``python_kinds`` making and reading them, ``python_resolution``, ``python_grounding``. Reference: designators.md.
+thing · ``resolution``, ``locations`` from description to thing · ``hints`` why not · ``predicates`` for Prolog · ``plain_printing``.
+Python's face: ``python_kinds`` making and reading them, ``python_resolution``, ``python_grounding``. The Lisp face, with the notation
+``(a motion ...)``, is ``languages/commonlisp/faces/designators/package.py`` and its neighbours. Reference: designators.md.
 """
 
-from .. import cpl as _cpl  # noqa: F401  the floor below comes first
+from cramhy_runtime import cpl as _cpl  # noqa: F401  the floor below comes first
 from . import hints as _hints  # noqa: F401  errors explain themselves with it
 from . import predicates as _predicates  # noqa: F401
 from .classes import (
-                      ActionDesignator,
-                      Designator,
-                      DesignatorError,
-                      HumanDesignator,
-                      LocationDesignator,
-                      MotionDesignator,
-                      ObjectDesignator,
-                      desig_prop_value,
-                      desig_prop_values,
-                      make_all_designator,
-                      make_designator,
+    ActionDesignator,
+    Designator,
+    DesignatorError,
+    HumanDesignator,
+    LocationDesignator,
+    MotionDesignator,
+    ObjectDesignator,
+    desig_prop_value,
+    desig_prop_values,
+    make_all_designator,
+    make_designator,
 )
 from .equating import current_desig, desig_equal, first_desig
 from .python_grounding import action_grounding, forget, location_generator, location_validator, motion_grounding

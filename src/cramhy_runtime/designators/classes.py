@@ -9,31 +9,41 @@ Designators are equal by identity; that two describe the same thing is said by e
 
 from __future__ import annotations
 
+import functools
 import itertools
 from weakref import ref
 
-from ..lisp.condition_types import SimpleError, SimpleWarning
-from ..lisp.conditions import error, type_error, warn
-from ..lisp.data import UNBOUND, Cons, Keyword, Symbol, list_from
-from ..lisp.dynamic import binding, special
-from ..lisp.objects.classes import find_class_or_error
-from ..lisp.objects.generic import GenericFunction, generic, when_methods_change
-from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.objects.instances import make_instance, plan_for
-from ..lisp.packages import is_symbol, keyword, near_names, symbol_name
+from cramhy_runtime.kernel.images import Cell, per_image
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.ground.condition_types import SimpleError, SimpleWarning
+from cramhy_runtime.ground.conditions import error, type_error, warn
+from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.ground.classes import find_class_or_error
+from cramhy_runtime.ground.generic_functions import generic, when_methods_change
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.ground.classes import make_instance
+from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
 from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cramhy_runtime.kernel import Task
+    from .signatures import MakeDesignator
 
 A, ALL = keyword("A"), keyword("ALL")
 DESCRIPTION = keyword("DESCRIPTION")
 IN_ERROR_TEXT = special(Symbol("*IN-ERROR-TEXT*"))
 """Whether the text of an error is made, which must not become an error itself."""
 _object_ids = itertools.count(1)
-_live = {}  # a weak reference to each living designator, in the order of their making: a run must not depend on addresses
-_classes = {}  # type keyword -> class, or the symbol that is to name it
-_types = {}  # class -> the first keyword registered for it
-_quick = {}  # type keyword -> class, for the kinds whose instances are made by their constructor alone
+_live = Cell({}, fresh=True)  # a weak reference to each living designator, in the order of their making: a run must not depend on addresses
+_classes = per_image({})  # type keyword -> class, or the symbol that is to name it
+_types = per_image({})  # class -> the first keyword registered for it
+_makers = per_image({})  # type keyword -> the function of a description that makes such a designator, until methods change
 
 
 class DesignatorError(SimpleError):
@@ -45,62 +55,90 @@ class DesignatorError(SimpleError):
 
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR-ERROR"
     initargs = {**SimpleError.initargs, "DESIGNATOR": "designator"}
-    designator = None
+    designator: Designator | None = None
 
-    def report(self):
+    def report(self) -> str:
         if self.format_control is UNBOUND:
             return "DESIGNATOR-ERROR"
         with binding(IN_ERROR_TEXT, True):
             return super().report()
 
     @property
-    def hint(self):
+    def hint(self) -> str | None:  # type: ignore[override]  # nobody sets it
         if self.told is not None:
             return self.told()
         return self.explain(self.about) if self.about is not None else None
 
-    told = None
-    explain = None  # the function of hints.py, which knows the clauses that were tried
-    about = None  # the designator that could not be resolved; the slot DESIGNATOR stays as the original leaves it
+    told: Callable[[], str | None] | None = None
+    explain: Callable[[Designator], str | None] | None = None  # the function of hints.py, which knows the clauses that were tried
+    about: Designator | None = None  # that could not be resolved; the slot DESIGNATOR stays as the original leaves it
 
 
 class Designator:
     """The root of all designators; see the table of slots in designators.md 2."""
 
-    __slots__ = ("description", "parent", "successor", "effective", "timestamp", "data", "quantifier", "solutions",
-                 "current_solution", "_object_id", "callbacks", "resolver", "__weakref__", "__dict__")
+    __slots__ = (
+        "description",
+        "parent",
+        "successor",
+        "effective",
+        "timestamp",
+        "data",
+        "quantifier",
+        "solutions",
+        "current_solution",
+        "_object_id",
+        "callbacks",
+        "resolver",
+        "__weakref__",
+        "__dict__",
+    )
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR"
-    initargs = {"DESCRIPTION": "description", "PARENT": "parent", "SUCCESSOR": "successor", "EFFECTIVE": "effective",
-                "TIMESTAMP": "timestamp", "DATA": "data", "QUANTIFIER": "quantifier", "OBJECT-ID": "object_id",
-                "SOLUTIONS": "solutions", "CURRENT-SOLUTION": "current_solution"}
+    initargs = {
+        "DESCRIPTION": "description",
+        "PARENT": "parent",
+        "SUCCESSOR": "successor",
+        "EFFECTIVE": "effective",
+        "TIMESTAMP": "timestamp",
+        "DATA": "data",
+        "QUANTIFIER": "quantifier",
+        "OBJECT-ID": "object_id",
+        "SOLUTIONS": "solutions",
+        "CURRENT-SOLUTION": "current_solution",
+    }
 
-    def __init__(self, description=None, parent=None):
+    def __init__(self, description: Cons | None = None, parent: Designator | None = None):
         self.description = description
         self.parent = parent
-        self.successor = None
-        self.effective = None
-        self.timestamp = None
-        self.data = None
+        self.successor: Designator | None = None
+        self.effective: bool | None = None
+        self.timestamp: float | None = None
+        self.data: Any = None
         self.quantifier = A
-        self.solutions = UNBOUND
-        self.current_solution = None
-        self._object_id = None
-        self.callbacks = None
-        self.resolver = None  # the kernel task that resolves it now
-        _live[ref(self, _live.pop)] = None
+        self.solutions: object = UNBOUND
+        self.current_solution: Any = None
+        self._object_id: object = None
+        self.callbacks: list[Callable[[Designator], object]] | None = None
+        self.resolver: Task[object] | None = None  # the kernel task that resolves it now
+        living_ones = _live.value
+        living_ones[ref(self, living_ones.pop)] = None
 
     @property
-    def object_id(self):
+    def object_id(self) -> object:
         if self._object_id is None:
             self._object_id = Symbol(f"OBJ-ID-{next(_object_ids)}")
         return self._object_id
 
     @object_id.setter
-    def object_id(self, new):
+    def object_id(self, new: object) -> None:
         self._object_id = new
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.description!r}>"
+
+
+Designator._found = Designator.data  # type: ignore[attr-defined]
+"""The slot that holds what an effective designator stands for; kinds of designators may name another one."""
 
 
 class DesignatorIdMixin:
@@ -143,6 +181,7 @@ class LocationDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin)
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::LOCATION-DESIGNATOR"
+    _found = Designator.current_solution  # its data is the list of the solutions that are left
 
 
 class HumanDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
@@ -169,15 +208,20 @@ def register_designator_class(type_, cls):
     ``cls`` may be a symbol that will name a class by the time that one is made.
     """
     _classes[type_] = cls
-    _quick.pop(type_, None)
+    _makers.clear()
     _types.clear()
     for known, registered in _classes.items():
         _types.setdefault(registered, known)
     return type_
 
 
-for _name, _class in (("OBJECT", ObjectDesignator), ("ACTION", ActionDesignator), ("MOTION", MotionDesignator),
-                      ("LOCATION", LocationDesignator), ("HUMAN", HumanDesignator)):
+for _name, _class in (
+    ("OBJECT", ObjectDesignator),
+    ("ACTION", ActionDesignator),
+    ("MOTION", MotionDesignator),
+    ("LOCATION", LocationDesignator),
+    ("HUMAN", HumanDesignator),
+):
     register_designator_class(keyword(_name), _class)
 
 STANDARD = frozenset(_types)
@@ -191,53 +235,57 @@ def type_keyword(designator):
 
 def new(cls, description):
     """A designator of the class ``cls``, made as ``make-instance`` makes it."""
-    if cls in STANDARD and not plan_for(cls).custom:
-        return cls(description)
-    return make_instance(cls, DESCRIPTION, description)
+    return _maker(cls)(description)
 
 
-make_designator = generic("DESIG::MAKE-DESIGNATOR", "(class description &optional parent)", documentation="""
-A new designator of the class that the keyword ``class`` stands for; equated to ``parent`` if there is one.""")
+def _maker(cls):
+    """The function of a description that makes a designator of the class ``cls`` as ``make-instance`` makes it.
+
+    It is the class itself, where users have no say in how it is made.
+    """
+    if cls in STANDARD and not PORTS.classes.customized(cls):
+        return cls
+    return functools.partial(make_instance, cls, DESCRIPTION)
 
 
+make_designator: MakeDesignator = generic(
+    "DESIG::MAKE-DESIGNATOR",
+    "(class description &optional parent)",
+    documentation="""
+A new designator of the class that the keyword ``class`` stands for; equated to ``parent`` if there is one.""",
+)
+
+
+@make_designator.call_directly
 @make_designator.method(None, None)
-def _make_designator(class_, description, parent=None):
-    cls = _classes.get(class_)
-    if cls is None:
-        if not isinstance(class_, type):
-            return _undefined_type(class_)
-        cls = class_
-    elif cls.__class__ is Symbol:
-        cls = find_class_or_error(cls)
-        register_designator_class(class_, cls)
-    designator = new(cls, description)
+def _make_designator(class_=UNSUPPLIED, description=UNSUPPLIED, parent=None, *more):
+    if description is UNSUPPLIED or more:
+        return make_designator.refuse(class_, description, parent, *more) if more else make_designator.refuse(class_)
+    maker = _makers.get(class_)
+    if maker is None:
+        maker = _maker(_class_of_type(class_))
+        if class_ in _classes:
+            _makers[class_] = maker
+    designator = maker(description)
     if parent is not None:
         equate(parent, designator)
     return designator
 
 
+def _class_of_type(type_):
+    """The class that the keyword ``type_`` stands for; a class stands for itself."""
+    cls = _classes.get(type_)
+    if cls is None:
+        return type_ if isinstance(type_, type) else _undefined_type(type_)
+    if cls.__class__ is Symbol:
+        cls = find_class_or_error(cls)
+        register_designator_class(type_, cls)
+    return cls
+
+
 @when_methods_change
 def _methods_changed(generic_function):
-    _quick.clear()
-
-
-class QuickMaking(GenericFunction):
-    """``make-designator`` while nobody has added methods."""
-
-    def __call__(self, *arguments):
-        cls = None
-        if len(arguments) == 2 and arguments[0].__class__ is Keyword:
-            cls = _quick.get(arguments[0])
-        if cls is not None:
-            return cls(arguments[1])
-        made = self.lookup(arguments)(*arguments)
-        cls = made.__class__
-        if cls in STANDARD and _classes.get(arguments[0]) is cls and not plan_for(cls).custom:
-            _quick[arguments[0]] = cls
-        return made
-
-
-make_designator.take_shortcut(QuickMaking)
+    _makers.clear()
 
 
 def _undefined_type(type_):
@@ -252,7 +300,7 @@ def _undefined_type(type_):
     return error(SimpleError("Designator type `~a' undefined", type_), hint=hint)
 
 
-def make_all_designator(class_, description=None):
+def make_all_designator(class_: Keyword, description: Cons | None = None) -> Designator:
     """What the macro ``all`` makes: a designator with the quantifier ``:all``."""
     designator = make_designator(class_, description)
     designator.quantifier = ALL
@@ -265,7 +313,7 @@ def get_all_designators():
 
 
 def living():
-    return [designator for reference in list(_live) if (designator := reference()) is not None]
+    return [designator for reference in list(_live.value) if (designator := reference()) is not None]
 
 
 # ------------------------------------------------------------------------------------------------------- derived designators
@@ -315,8 +363,13 @@ def check_key(key):
     """Warn of a property name that is an ordinary symbol: keys are keywords."""
     if isinstance(key, Keyword) or not isinstance(key, Symbol) or key.package is None or key.package is DESIG_PROPS:
         return
-    warn(SimpleWarning("Designator property ~s has not been declared properly. This may cause problems. To fix it, use the macro "
-                       "DEF-DESIG-PACKAGE and declare the symbol as a designator property.", key))
+    warn(
+        SimpleWarning(
+            "Designator property ~s has not been declared properly. This may cause problems. To fix it, use the macro "
+            "DEF-DESIG-PACKAGE and declare the symbol as a designator property.",
+            key,
+        )
+    )
 
 
 def pairs(description):
@@ -342,7 +395,7 @@ def value_of(pair):
     return None if rest is None else type_error(rest, "LIST")
 
 
-def desig_prop_value(desig, prop_name):
+def desig_prop_value(desig: Designator | None, prop_name: Symbol) -> Any:
     """The value of the first pair with the key ``prop_name``; nil if there is none, or no designator."""
     if prop_name.__class__ is not Keyword:
         check_key(prop_name)
@@ -353,7 +406,7 @@ def desig_prop_value(desig, prop_name):
     return None
 
 
-def desig_prop_values(designator, property_name):
+def desig_prop_values(designator: Designator, property_name: Symbol) -> Cons | None:
     """The values of all pairs with the key ``property_name``, in order."""
     check_key(property_name)
     return list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is property_name])

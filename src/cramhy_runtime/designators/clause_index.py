@@ -26,14 +26,14 @@ from __future__ import annotations
 
 from operator import itemgetter
 
-from ..lisp.data import Cons, Keyword, Symbol, list_from
-from ..lisp.packages import keyword
-from ..prolog.compiler import compile_clauses
-from ..prolog.database import Clause, Predicate, changed, functor_entry, traced
-from ..prolog.lisp_calls import BREAK_ON_LISP_ERRORS
-from ..prolog.machine import fail
-from ..prolog.source import proper
-from ..prolog.terms import Var, deref
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.prolog.compiler.compiler import compile_clauses
+from cramhy_runtime.prolog.engine.database import Clause, Predicate, changed, functor_entry, traced
+from cramhy_runtime.prolog.builtins.function_calls import BREAK_ON_LISP_ERRORS
+from cramhy_runtime.prolog.engine.machine import fail
+from cramhy_runtime.prolog.compiler.generated_code import proper
+from cramhy_runtime.prolog.terms.terms import Var, deref
 from ..utilities.patterns import ANONYMOUS, variable
 from .classes import Designator
 from .symbols import sym
@@ -105,13 +105,13 @@ class ClauseIndex:
             return _nothing, _failing
         if not all(proper(rule.clause.head) for rule in rules):  # the end of a dotted head would take the values for itself
             return _nothing, self.code
-        wanted = list(dict.fromkeys(key for rule in rules for key, value in rule.values.items()
-                                    if key is not TYPE or not isinstance(value, Keyword)))
+        wanted = list(
+            dict.fromkeys(key for rule in rules for key, value in rule.values.items() if key is not TYPE or not isinstance(value, Keyword))
+        )
         # The name is one that no goal has: a goal of the predicate itself in a body is to come back to the index.
         part = Predicate(Symbol(self.predicate.functor.name), self.predicate.arity + len(wanted))
         part.call, _ = compile_clauses(part, [rule.with_arguments(wanted) for rule in rules])
-        pick = (_nothing if not wanted else itemgetter(*wanted) if len(wanted) > 1 else
-                lambda values, key=wanted[0]: (values[key],))
+        pick = _nothing if not wanted else itemgetter(*wanted) if len(wanted) > 1 else lambda values, key=wanted[0]: (values[key],)
         return pick, part.call
 
 

@@ -7,19 +7,23 @@ their callbacks are told. Source: designators.md section 6.
 
 from __future__ import annotations
 
-from ..lisp.conditions import error, handler_case, type_error
-from ..lisp.data import list_from
-from ..lisp.hooks import Hook
-from ..lisp.objects.generic import generic
-from ..lisp.packages import is_symbol
+from cramhy_runtime.ground.conditions import error, handler_case, type_error
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError
 from .protocol import equate, next_solution, reference
 
+if TYPE_CHECKING:
+    from .signatures import EqualityOfTwo, OfOne
+
 on_equate_designators = Hook("CUT::ON-EQUATE-DESIGNATORS", "(successor parent)")
-desig_equal = generic("DESIG::DESIG-EQUAL", "(desig-1 desig-2)", documentation="Whether both are designators of one chain.")
-first_desig = generic("DESIG::FIRST-DESIG", "(desig)", documentation="The oldest of its chain.")
-current_desig = generic("DESIG::CURRENT-DESIG", "(desig)", documentation="The youngest of its chain; nil for nil.")
+desig_equal: EqualityOfTwo = generic("DESIG::DESIG-EQUAL", "(desig-1 desig-2)", documentation="Whether both are designators of one chain.")
+first_desig: OfOne = generic("DESIG::FIRST-DESIG", "(desig)", documentation="The oldest of its chain.")
+current_desig: OfOne = generic("DESIG::CURRENT-DESIG", "(desig)", documentation="The youngest of its chain; nil for nil.")
 
 
 @equate.method(Designator, Designator)
@@ -49,7 +53,7 @@ def _tell(callbacks, successor):
         try:
             callback(successor)
         except BaseException:
-            _tell(callbacks[index + 1:], successor)
+            _tell(callbacks[index + 1 :], successor)
             raise
 
 
@@ -110,6 +114,7 @@ def get_equal_designators(d):
 
 def designator_solutions(desig, from_root=None):
     """The lazy list of its reference (or that of the oldest) and those of the solutions after it; empty if it has none."""
+
     def solutions():
         member = oldest(desig) if from_root is not None else desig
         while member is not None:
@@ -125,10 +130,18 @@ def designator_solutions(desig, from_root=None):
 _END = object()
 
 
-register_equate_callback = generic("DESIG::REGISTER-EQUATE-CALLBACK", "(designator callback)", documentation="""
-Call ``callback`` with the new member whenever the chain is joined to another.""")
-unregister_equate_callback = generic("DESIG::UNREGISTER-EQUATE-CALLBACK", "(designator callback)", documentation="""
-Forget ``callback``; an unknown one is ignored.""")
+register_equate_callback = generic(
+    "DESIG::REGISTER-EQUATE-CALLBACK",
+    "(designator callback)",
+    documentation="""
+Call ``callback`` with the new member whenever the chain is joined to another.""",
+)
+unregister_equate_callback = generic(
+    "DESIG::UNREGISTER-EQUATE-CALLBACK",
+    "(designator callback)",
+    documentation="""
+Forget ``callback``; an unknown one is ignored.""",
+)
 
 
 @register_equate_callback.method(Designator, None)

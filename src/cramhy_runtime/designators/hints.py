@@ -7,15 +7,15 @@ at the error, and proves nothing that could do something a second time: goals th
 
 from __future__ import annotations
 
-from ..lisp.condition_types import Warning_
-from ..lisp.conditions import handler_bind, muffle_warning
-from ..lisp.data import Cons, Symbol, lisp_list, python_list
-from ..prolog import explanations
-from ..prolog.database import extended
-from ..prolog.python_ground import reasoning
-from ..prolog.reasons import declare_harmless, explains, spelled_like
-from ..prolog.showing import show
-from ..prolog.terms import Var, deref
+from cramhy_runtime.ground.condition_types import Warning_
+from cramhy_runtime.ground.conditions import handler_bind, muffle_warning
+from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, python_list
+from cramhy_runtime.prolog.explanations import explanations
+from cramhy_runtime.prolog.engine.database import extended
+from cramhy_runtime.prolog.python.ground import reasoning
+from cramhy_runtime.prolog.explanations.failure_reasons import declare_harmless, explains, spelled_like
+from cramhy_runtime.prolog.engine.goal_text import show
+from cramhy_runtime.prolog.terms.terms import Var, deref
 from .classes import (
     ActionDesignator,
     Designator,
@@ -47,11 +47,12 @@ def hint(designator):
 
 def _why_not_grounded(designator):
     predicate = _predicate(designator)
-    told = handler_bind([(Warning_, muffle_warning)],
-                        lambda: explanations.explain(designator, _MOST_GOALS, dry=True))
+    told = handler_bind([(Warning_, muffle_warning)], lambda: explanations.explain(designator, _MOST_GOALS, dry=True))
     if told.outcome == "fails" and not told.root.attempts:
-        return (f"There is no clause of {show(predicate).rpartition(':')[2]} that could resolve it. Define one in a fact group that lists "
-                f"desig:{show(predicate).rpartition(':')[2]}, and load the file.")
+        return (
+            f"There is no clause of {show(predicate).rpartition(':')[2]} that could resolve it. Define one in a fact group that lists "
+            f"desig:{show(predicate).rpartition(':')[2]}, and load the file."
+        )
     if told.outcome == "given up":
         return f"{told}\n{explanations.offer(designator)} goes on longer."
     if told.holds:
@@ -60,8 +61,13 @@ def _why_not_grounded(designator):
 
 
 def _predicate(designator):
-    return sym("DESIG::MOTION-GROUNDING" if isinstance(designator, MotionDesignator) else
-               "DESIG::LOCATION-GROUNDING" if isinstance(designator, LocationDesignator) else "DESIG::ACTION-GROUNDING")
+    return sym(
+        "DESIG::MOTION-GROUNDING"
+        if isinstance(designator, MotionDesignator)
+        else "DESIG::LOCATION-GROUNDING"
+        if isinstance(designator, LocationDesignator)
+        else "DESIG::ACTION-GROUNDING"
+    )
 
 
 for _class in (ActionDesignator, MotionDesignator, LocationDesignator):
@@ -73,9 +79,14 @@ DesignatorError.explain = staticmethod(hint)
 
 # --------------------------------------------------------------------------------------------------- why predicates fail
 
-declare_harmless(*(f"DESIG::{name}" for name in """DESIG-PROP LOC-DESIG? OBJ-DESIG? ACTION-DESIG? MOTION-DESIG? DESIG-DESCRIPTION
+declare_harmless(
+    *(
+        f"DESIG::{name}"
+        for name in """DESIG-PROP LOC-DESIG? OBJ-DESIG? ACTION-DESIG? MOTION-DESIG? DESIG-DESCRIPTION
     DESIG-TIMESTAMP DESIG-EFFECTIVE DESIG-VALUE EFFECTIVE-DESIGNATOR EQUATED-DESIGS DESIG-EQUAL DESIG-CLASS CURRENT-DESIGNATOR
-    NEWEST-EFFECTIVE-DESIGNATOR MOTION-GROUNDING ACTION-GROUNDING LOCATION-GROUNDING""".split()))
+    NEWEST-EFFECTIVE-DESIGNATOR MOTION-GROUNDING ACTION-GROUNDING LOCATION-GROUNDING""".split()
+    )
+)
 
 
 def _no_clauses(functor):
@@ -94,7 +105,7 @@ def _no_designator(term):
     found = deref(term)
     if isinstance(found, Designator):
         return None
-    return f"{show(term)} has no value" if found.__class__ is Var else f"{show(term)} is no designator"
+    return f"{show(term)} has no value" if found.__class__ is Var else f"{show(term)} is not a designator"
 
 
 @explains("DESIG::DESIG-PROP")
@@ -134,15 +145,18 @@ def _define_type_test(name, kind):
     @explains(f"DESIG::{name}")
     def test(m, desig):
         problem = _no_designator(desig)
-        return problem or f"{show(desig)} is no {kind} designator"
+        return problem or f"{show(desig)} is not {kind} designator"
 
 
-for _name, _kind in (("LOC-DESIG?", "location"), ("OBJ-DESIG?", "object"), ("ACTION-DESIG?", "action"), ("MOTION-DESIG?", "motion")):
+for _name, _kind in (
+    ("LOC-DESIG?", "a location"),
+    ("OBJ-DESIG?", "an object"),
+    ("ACTION-DESIG?", "an action"),
+    ("MOTION-DESIG?", "a motion"),
+):
     _define_type_test(_name, _kind)
 
 
 @explains("DESIG::EFFECTIVE-DESIGNATOR")
 def _not_effective(m, desig):
     return _no_designator(desig) or "it has not been resolved yet"
-
-

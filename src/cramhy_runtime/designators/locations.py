@@ -8,19 +8,20 @@ ends. Source: designators.md section 8.
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
-from ..lisp.condition_types import SimpleTypeError
-from ..lisp.conditions import error, restart_case, type_error
-from ..lisp.data import Cons, UndefinedFunction, list_from, one, truth
-from ..lisp.dynamic import binding, special
-from ..lisp.evaluation.places_in_source import circumstance
-from ..lisp.packages import is_symbol, keyword
-from ..lisp.printer.printer import prin1_to_string
-from ..prolog.database import extended
+from cramhy_runtime.ground.condition_types import SimpleTypeError
+from cramhy_runtime.ground.conditions import error, restart_case, type_error
+from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, truth
+from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.ground.packages import is_symbol, keyword
+from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.prolog.engine.database import extended
 from ..prolog.query import ask
-from ..prolog.terms import Var
+from cramhy_runtime.prolog.terms.terms import Var
 from ..utilities.lazy_lists import from_iterator, lazy_cdr, tail
 from .classes import LocationDesignator
 from .protocol import designator_solutions_equal, next_solution
@@ -41,11 +42,21 @@ class Registry:
 
     def register(self, priority, name):
         if not is_symbol(name) or name is None:
-            _refuse("The name of a function is wanted, not ~s.", [name], name, "SYMBOL",
-                    "Write the bare name of the function, without #': what it names is looked up at each use.")
+            _refuse(
+                "The name of a function is wanted, not ~s.",
+                [name],
+                name,
+                "SYMBOL",
+                "Write the bare name of the function, without #': what it names is looked up at each use.",
+            )
         if priority.__class__ is not int:
-            _refuse("The priority of ~a is no integer: ~s.", [name, priority], priority, "INTEGER",
-                    "The priority comes first, then the name of the function. Lower priorities are asked earlier.")
+            _refuse(
+                "The priority of ~a is not an integer: ~s.",
+                [name, priority],
+                priority,
+                "INTEGER",
+                "The priority comes first, then the name of the function. Lower priorities are asked earlier.",
+            )
         self.delete(name, forget=False)
         at = next((index for index, entry in enumerate(self.entries) if entry[0] >= priority), len(self.entries))
         self.entries.insert(at, (priority, name))
@@ -71,8 +82,8 @@ def _refuse(control, arguments, datum, expected, hint):
     error(SimpleTypeError(control, *arguments, datum=datum, expected_type=expected), hint=hint)
 
 
-generators = Registry()
-validators = Registry()
+generators = per_image(Registry())
+validators = per_image(Registry())
 
 
 def register_location_generator(priority, name, documentation=None):
@@ -183,21 +194,33 @@ class Search:
                 self.drawn[self.names[0]] = self.drawn.get(self.names[0], 0) + 1
 
     def _candidates(self, given):
+        if type(given) is list:  # of a generator in Python or Hy
+            return list_from(given)
         if given is not None and given is not False and not isinstance(given, Cons):
-            _refuse("The location generator ~a gave ~s, which is no list.", [self.names[0], given], given, "LIST",
-                    "A generator returns a list of candidates, lazy or not: (list candidate) for a single one, nil for none.")
+            _refuse(
+                "The location generator ~a gave ~s, which is not a list.",
+                [self.names[0], given],
+                given,
+                "LIST",
+                "A generator returns a list of candidates, lazy or not: (list candidate) for a single one, nil for none.",
+            )
         return given or None
 
     def account(self):
         """What was searched, and what became of it."""
         asked = [name for _, name in generators.entries if name not in generators.disabled]
         if not self.drawn:
-            return ("No location generator is registered." if not asked else
-                    f"None of the location generators gave a candidate: {', '.join(_shown(name) for name in asked)}.")
+            return (
+                "No location generator is registered."
+                if not asked
+                else f"None of the location generators gave a candidate: {', '.join(_shown(name) for name in asked)}."
+            )
         drawn = sum(self.drawn.values())
         candidate, validator, verdict = self.refusal
-        text = (f"{drawn} candidate{'s were' if drawn > 1 else ' was'} refused, from "
-                f"{', '.join(f'{_shown(name)} ({count})' for name, count in self.drawn.items())}. ")
+        text = (
+            f"{drawn} candidate{'s were' if drawn > 1 else ' was'} refused, from "
+            f"{', '.join(f'{_shown(name)} ({count})' for name, count in self.drawn.items())}. "
+        )
         text += f"The last one, {_shown(candidate)}, {_reason(validator, verdict)}."
         if drawn > self.most:
             text += f" The search ends after {drawn}, since *location-generator-max-retries* is {self.most}."
@@ -208,7 +231,7 @@ def _reason(validator, verdict):
     if validator is None:
         return "was refused by a restart" if verdict is None else "was accepted by no validator, and :maybe-reject came from one"
     if verdict is True:
-        return f"was refused by {_shown(validator)}: t is no verdict, :accept is one"
+        return f"was refused by {_shown(validator)}: t is not a verdict, :accept is one"
     return f"was refused by {_shown(validator)}, which returned {_shown(verdict)}"
 
 
@@ -267,8 +290,10 @@ def _judge(designator, solution):
 
 
 _VALID = True, None, None
-_RESTARTS = [(sym("DESIG::ACCEPT-SOLUTION"), lambda: _VALID, "Accept this designator solution"),
-             (sym("DESIG::REJECT-SOLUTION"), lambda: (None, None, None), "Refuse this designator solution")]
+_RESTARTS = [
+    (sym("DESIG::ACCEPT-SOLUTION"), lambda: _VALID, "Accept this designator solution"),
+    (sym("DESIG::REJECT-SOLUTION"), lambda: (None, None, None), "Refuse this designator solution"),
+]
 
 
 # ------------------------------------------------------------------------------------------------------- what comes with CRAM
@@ -320,5 +345,3 @@ def register_defaults():
     register_location_generator(10, sym("DESIG::LOCATION-PROLOG-GENERATOR"))
     register_location_validation_function(1, sym("DESIG::FILTER-SOLUTION"))
     register_location_validation_function(10, sym("DESIG::LOCATION-PROLOG-VALIDATOR"))
-
-

@@ -10,23 +10,14 @@ warns of nothing; their default clauses only check, with ``*break-on-lisp-errors
 
 from __future__ import annotations
 
-from ..lisp.conditions import error
-from ..lisp.data import Cons, Keyword, Symbol
-from ..prolog.facts import built_in_group
-from ..prolog.lisp_calls import call_lisp
-from ..prolog.machine import fail, retry_iterator
-from ..prolog.natives import deref, predicate, resolve, step_predicate, test
-from ..prolog.terms import Var, ground, unify
-from .classes import (
-    ActionDesignator,
-    Designator,
-    LocationDesignator,
-    MotionDesignator,
-    ObjectDesignator,
-    check_key,
-    living,
-    type_keyword,
-)
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.prolog.engine.fact_groups import built_in_group
+from cramhy_runtime.prolog.builtins.function_calls import call_lisp
+from cramhy_runtime.prolog.engine.machine import fail, retry_iterator
+from cramhy_runtime.prolog.builtins.native_predicates import deref, predicate, resolve, step_predicate, test
+from cramhy_runtime.prolog.terms.terms import Var, ground, unify
+from .classes import ActionDesignator, Designator, LocationDesignator, MotionDesignator, ObjectDesignator, check_key, living, type_keyword
 from .clause_index import index_by_properties
 from .equating import chain, desig_equal, designator_solutions, get_equal_designators, newest_effective_designator, youngest
 from .symbols import sym

@@ -24,34 +24,48 @@ validators are registered with their priority. A second definition of the same n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, TypeVar, overload
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
 
-from ..lisp.data import Keyword, Symbol
-from ..lisp.packages import sym
-from ..lisp.printer.printer import define_printer, print_unreadable
-from ..prolog import natives
-from ..prolog.python_ground import reasoning
-from ..prolog.python_rules import fact_group, remove_fact_group
-from ..prolog.python_terms import USER, Goal, Name, P, V, import_predicates, kw, lisp_name, to_lisp, to_python
-from ..prolog.reasons import explains
-from ..prolog.terms import deref, import_term
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground.data import Keyword, Symbol
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.prolog.builtins import native_predicates as natives
+from cramhy_runtime.prolog.python.ground import reasoning
+from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group
+from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, import_predicates, kw, lisp_name, to_lisp, to_python
+from cramhy_runtime.prolog.explanations.failure_reasons import explains
+from cramhy_runtime.prolog.terms.terms import deref, import_term
 from ..utilities.lazy_lists import from_iterator
 from . import locations
 from .classes import ActionDesignator, LocationDesignator, MotionDesignator
 from .locations import ACCEPT, MAYBE_REJECT, UNKNOWN
 from .python_kinds import TYPE, Kind, type_name
 
-F = TypeVar("F", bound=Callable[..., Any])
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from .signatures import Generates, Grounds, Judges
+
+F = TypeVar("F", bound="Callable[..., object]")
+M = TypeVar("M", bound=MotionDesignator)
+A = TypeVar("A", bound=ActionDesignator)
+L = TypeVar("L", bound=LocationDesignator)
 PYTHON_GROUNDING = sym("CRAMHY::PYTHON-GROUNDING")
 REJECT = kw.reject
 VERDICTS = (ACCEPT, UNKNOWN, MAYBE_REJECT, REJECT)
-_forgetting: dict[Callable[..., Any], Callable[[], None]] = {}
+_forgetting: dict[Callable[..., object], Callable[[], None]] = per_image({})
 
-import_predicates(PYTHON_GROUNDING, *(sym(f"DESIG::{name}") for name in """ACTION-GROUNDING MOTION-GROUNDING LOCATION-GROUNDING DESIG-PROP
+import_predicates(
+    PYTHON_GROUNDING,
+    *(
+        sym(f"DESIG::{name}")
+        for name in """ACTION-GROUNDING MOTION-GROUNDING LOCATION-GROUNDING DESIG-PROP
     DESIG-REFERENCE DESIG-DESCRIPTION DESIG-LOCATION-PROP DESIGNATOR-GROUNDINGS CURRENT-DESIGNATOR EFFECTIVE-DESIGNATOR EQUATED-DESIGS
-    ACTION-DESIG? MOTION-DESIG? LOC-DESIG? OBJ-DESIG?""".split()))
+    ACTION-DESIG? MOTION-DESIG? LOC-DESIG? OBJ-DESIG?""".split()
+    ),
+)
 
 
 class Grounding:
@@ -134,7 +148,7 @@ def _no_solution(m: Any, grounding: Any, designator: Any, solution: Any) -> str:
 
 
 @overload
-def motion_grounding(kind: type[MotionDesignator], /) -> Callable[[F], F]: ...
+def motion_grounding(kind: type[M], /) -> Grounds[M]: ...
 @overload
 def motion_grounding(function: F, /) -> F: ...
 def motion_grounding(given: Any) -> Any:
@@ -143,7 +157,7 @@ def motion_grounding(given: Any) -> Any:
 
 
 @overload
-def action_grounding(kind: type[ActionDesignator], /) -> Callable[[F], F]: ...
+def action_grounding(kind: type[A], /) -> Grounds[A]: ...
 @overload
 def action_grounding(function: F, /) -> F: ...
 def action_grounding(given: Any) -> Any:
@@ -152,9 +166,9 @@ def action_grounding(given: Any) -> Any:
 
 
 @overload
-def location_generator(kind: type[LocationDesignator], /, *, priority: int = 10) -> Callable[[F], F]: ...
+def location_generator(kind: type[L], /, *, priority: int = 10) -> Generates[L]: ...
 @overload
-def location_generator(*, priority: int = 10) -> Callable[[F], F]: ...
+def location_generator(*, priority: int = 10) -> Generates[Any]: ...
 @overload
 def location_generator(function: F, /) -> F: ...
 def location_generator(given: Any = None, /, *, priority: int = 10) -> Any:
@@ -163,9 +177,9 @@ def location_generator(given: Any = None, /, *, priority: int = 10) -> Any:
 
 
 @overload
-def location_validator(kind: type[LocationDesignator], /, *, priority: int = 10) -> Callable[[F], F]: ...
+def location_validator(kind: type[L], /, *, priority: int = 10) -> Judges[L]: ...
 @overload
-def location_validator(*, priority: int = 10) -> Callable[[F], F]: ...
+def location_validator(*, priority: int = 10) -> Judges[Any]: ...
 @overload
 def location_validator(function: F, /) -> F: ...
 def location_validator(given: Any = None, /, *, priority: int = 10) -> Any:
@@ -197,8 +211,11 @@ def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> 
     name, head = Name(_symbol(function)), sym(f"DESIG::{what.upper()}-GROUNDING")
     goals = kind_goals(kind) if kind is not None else []
     with fact_group(name, extends=[head]) as group:
-        group.rule(Goal(to_lisp([Name(head), V.designator, V.solution])), *goals,
-                   Goal(to_lisp([Name(PYTHON_GROUNDING), grounding, V.designator, V.solution])))
+        group.rule(
+            Goal(to_lisp([Name(head), V.designator, V.solution])),
+            *goals,
+            Goal(to_lisp([Name(PYTHON_GROUNDING), grounding, V.designator, V.solution])),
+        )
     _forgetting[function] = lambda: remove_fact_group(name)
 
 
@@ -275,9 +292,8 @@ def _verdict(answer: Any) -> Keyword:
     raise TypeError(f"A validator returns True, False, None or kw.maybe_reject, not {answer!r}.")
 
 
-def forget(function: Callable[..., Any]) -> None:
+def forget(function: Callable[..., object]) -> None:
     """Take out what a decorator of this module made of ``function``; for another one nothing is done."""
     taking_out = _forgetting.pop(function, None)
     if taking_out is not None:
         taking_out()
-

@@ -21,31 +21,29 @@ Designators are equal by identity, and shown as Lisp prints them. Source: design
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, dataclass_transform
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, annotations_of_body, dataclass_transform
 
-from ..lisp.data import Cons, Keyword, Symbol, lisp_list, list_from
-from ..lisp.packages import near_names
-from ..lisp.printer.printer import prin1_to_string
-from ..lisp.python.python_names import lisp_spelling
-from ..prolog.python_ground import reasoning
-from ..prolog.python_terms import kw, lisp_name, nil_as, python_name, show, to_lisp, to_python
-from . import package as _package  # noqa: F401  how designators are printed, and the functions of their package
-from .classes import (
-    ActionDesignator,
-    Designator,
-    HumanDesignator,
-    LocationDesignator,
-    MotionDesignator,
-    ObjectDesignator,
-    new,
-)
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.python_names import lisp_spelling
+from cramhy_runtime.prolog.python.ground import reasoning
+from cramhy_runtime.prolog.python.terms import kw, lisp_name, nil_as, python_name, show, to_lisp, to_python
+from . import defaults as _defaults  # noqa: F401  the predicates and the generators that come along
+from .classes import ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from .signatures import Key, Pair
+
+D = TypeVar("D", bound=Designator)
 TYPE = kw.type
 _OWN = frozenset(name for cls in Designator.__mro__ for name in vars(cls) if not name.startswith("_"))
 """The attributes that every designator has, whatever its properties are."""
-_declared: dict[tuple[type, Keyword], list[Kind]] = {}
+_declared: dict[tuple[type, Keyword], list[Kind]] = per_image({})
 """(class of designators, type) → the classes that declare it, the newest first."""
 
 
@@ -69,7 +67,7 @@ class Kind(type):
         parent: Any = bases[0]
         made.designators = parent.designators
         made.type_ = _type_keyword(name, type)
-        own = body.get("__annotations__", {})
+        own = annotations_of_body(body)
         made.fields = {**parent.fields, **{field: annotation for field, annotation in own.items() if "ClassVar" not in str(annotation)}}
         made.defaults = {**parent.defaults, **{field: body[field] for field in own if field in body}}
         for field in own:
@@ -83,16 +81,20 @@ class Kind(type):
     def __init__(cls, name: str, bases: tuple[type, ...], body: dict[str, Any], **options: Any):
         super().__init__(name, bases, body)
 
-    def __call__(cls, *pairs: Any, **properties: Any) -> Any:
-        return new(cls.designators, list_from([*map(_pair, pairs), *cls._entries(properties)]))
+    if not TYPE_CHECKING:  # which knows the initializers: those below, and those that `dataclass_transform` makes
+
+        def __call__(cls, *pairs, **properties):
+            return new(cls.designators, list_from([*map(_pair, pairs), *cls._entries(properties)]))
 
     def _entries(cls, properties: dict[str, Any]) -> Iterator[Cons]:
         if cls.type_ is None:
             for name in properties:
                 _check_name(name, cls.__name__)
             if isinstance(properties.get("type"), str):
-                raise TypeError(f"The type of a designator is a keyword: {cls.__name__}(type=kw.{properties['type']}). "
-                                "A string is never the same as it.")
+                raise TypeError(
+                    f"The type of a designator is a keyword: {cls.__name__}(type=kw.{properties['type']}). "
+                    "A string is never the same as it."
+                )
             given = properties
         else:
             cls._check_given(properties)
@@ -125,7 +127,7 @@ class Kind(type):
     def _fits(cls, designator: Any) -> bool:
         if value_of(designator, TYPE) is cls.type_:
             return all(_entry(designator, lisp_name(name)) is not None for name in cls.required)
-        derived: Any = type.__subclasses__(cls)  # type: ignore[arg-type, var-annotated]
+        derived: Any = type.__subclasses__(cls)
         return any(other._fits(designator) for other in derived)
 
 
@@ -136,29 +138,32 @@ def _type_keyword(class_name: str, given: Any) -> Keyword:
         return kw[lisp_name(given)]
     if isinstance(given, Keyword):
         return given
-    raise TypeError(f"The type of {class_name} is to be a keyword or its name, not {given!r}: "
-                    f"class {class_name}(Motion, type=\"driving\").")
+    raise TypeError(f'The type of {class_name} is to be a keyword or its name, not {given!r}: class {class_name}(Motion, type="driving").')
 
 
 def _check_name(name: str, of: str) -> None:
     if name in _OWN:
-        raise TypeError(f"A property of {of} cannot be called {name!r}: designators have an attribute of that name. "
-                        f"Give it as a pair, {of}((\"{name}\", value)), and read designator[\"{name}\"].")
+        raise TypeError(
+            f"A property of {of} cannot be called {name!r}: designators have an attribute of that name. "
+            f'Give it as a pair, {of}(("{name}", value)), and read designator["{name}"].'
+        )
 
 
 def _check_body(field: str, value: Any, annotations: dict[str, Any], of: str) -> None:
     if field.startswith("__") or field in annotations or isinstance(value, type):
         return
     if isinstance(value, (FunctionType, property, classmethod, staticmethod)):
-        raise TypeError(f"{of}.{field} would be a method, but what {of}(...) makes is a plain designator, which has properties only. "
-                        f"Write a function: def {field}(designator): ...")
+        raise TypeError(
+            f"{of}.{field} would be a method, but what {of}(...) makes is a plain designator, which has properties only. "
+            f"Write a function: def {field}(designator): ..."
+        )
     raise TypeError(f"{of}.{field} has a value, but no type, and would be no property: {field}: {type(value).__name__} = {value!r}.")
 
 
 def _pair(pair: Any) -> Cons:
     if isinstance(pair, (tuple, list)) and len(pair) == 2 and isinstance(pair[0], (str, Symbol)):
         return lisp_list(_key(pair[0]), to_lisp(pair[1]))
-    raise TypeError(f"{pair!r} is no property. In front of the keyword arguments stand pairs: (\"goal\", value).")
+    raise TypeError(f'{pair!r} is no property. In front of the keyword arguments stand pairs: ("goal", value).')
 
 
 def _key(key: str | Symbol) -> Symbol:
@@ -169,40 +174,40 @@ class _Readable:
     """What a type checker is to know of all designators: `Designator` itself learns it below. Attributes are those that are declared."""
 
     if TYPE_CHECKING:
-        type: Any
+        type: Keyword
 
-        def __getitem__(self, key: str | Symbol) -> Any: ...
-        def __contains__(self, key: str | Symbol) -> bool: ...
+        def __getitem__(self, key: Key) -> Any: ...
+        def __contains__(self, key: Key) -> bool: ...
 
 
 class Motion(MotionDesignator, _Readable, metaclass=Kind, of=MotionDesignator):
     """A movement, which `perform` hands to a process module."""
 
-    def __init__(self, *pairs: Any, **properties: Any): ...
+    def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 class Action(ActionDesignator, _Readable, metaclass=Kind, of=ActionDesignator):
     """Something to be done, by a plan function that `reference` finds."""
 
-    def __init__(self, *pairs: Any, **properties: Any): ...
+    def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 class Location(LocationDesignator, _Readable, metaclass=Kind, of=LocationDesignator):
     """A place, which generators propose and validators judge."""
 
-    def __init__(self, *pairs: Any, **properties: Any): ...
+    def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 class Object(ObjectDesignator, _Readable, metaclass=Kind, of=ObjectDesignator):
     """An object in the world; perception sets its ``data``."""
 
-    def __init__(self, *pairs: Any, **properties: Any): ...
+    def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 class Human(HumanDesignator, _Readable, metaclass=Kind, of=HumanDesignator):
     """A human; perception sets its ``data``."""
 
-    def __init__(self, *pairs: Any, **properties: Any): ...
+    def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 # ------------------------------------------------------------------------------------------------------------------ reading
@@ -219,7 +224,7 @@ def property_values(designator: Designator, name: str | Symbol) -> list[Any]:
     return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name == wanted]
 
 
-def replace(designator: Designator, **changed: Any) -> Any:
+def replace(designator: D, **changed: object) -> D:
     """A new designator, not equated to the old one, in which these properties have these values; ``None`` takes one out.
 
     The order is kept; the first of a repeated key is replaced and the others go; properties that are new stand at the end.
@@ -320,6 +325,12 @@ def _names(self: Designator) -> list[str]:
     return sorted({*object.__dir__(self), *(name for name, _ in properties(self))})
 
 
-for _special, _function in (("__getattr__", _attribute), ("__getitem__", _item), ("__contains__", _contains), ("__iter__", None),
-                            ("__repr__", _representation), ("__dir__", _names)):
+for _special, _function in (
+    ("__getattr__", _attribute),
+    ("__getitem__", _item),
+    ("__contains__", _contains),
+    ("__iter__", None),
+    ("__repr__", _representation),
+    ("__dir__", _names),
+):
     setattr(Designator, _special, _function)

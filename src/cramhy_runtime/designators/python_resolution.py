@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from cramhy_runtime.kernel.typing_names import Any, ParamSpec, TypeVar
 
 from .. import kernel
-from ..cpl.border import for_python, raise_in_python
-from ..lisp import package as lisp_package
-from ..lisp.condition_types import Condition
-from ..lisp.data import UNSUPPLIED, Cons
-from ..prolog.python_ground import reasoning
-from ..prolog.python_terms import in_python_names, to_lisp, to_python
+from cramhy_runtime.cpl.failures.python_exceptions import for_python, raise_in_python
+from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons
+from cramhy_runtime.prolog.python.ground import reasoning
+from cramhy_runtime.prolog.python.terms import in_python_names, to_lisp, to_python
 from . import protocol
 from .classes import Designator, DesignatorError
 from .resolution import known
 
 P = ParamSpec("P")
 T = TypeVar("T")
+D = TypeVar("D", bound=Designator)
 
 
 def for_reasoning(function: Callable[P, T]) -> Callable[P, T]:
@@ -37,7 +37,7 @@ def for_reasoning(function: Callable[P, T]) -> Callable[P, T]:
     return call
 
 
-def reference(designator: Designator, role: Any = UNSUPPLIED) -> Any:
+def reference(designator: Designator, role: object = UNSUPPLIED) -> Any:
     """What the designator stands for: a pose, a command, an object; always the same object for the same designator.
 
     A motion is what ``motion-grounding`` says, an action the list of its plan function and arguments. Errors: DesignatorError if it cannot
@@ -50,7 +50,6 @@ def reference(designator: Designator, role: Any = UNSUPPLIED) -> Any:
     if kernel.active() is None:
         with reasoning():
             return reference(designator, role)
-    lisp_package.fill()
     try:
         found = protocol.reference(_designator(designator), *(() if role is UNSUPPLIED else (to_lisp(role),)))
     except Condition as condition:
@@ -91,13 +90,14 @@ setattr(DesignatorError, "__notes__", property(_notes))
 
 
 @for_reasoning
-def next_solution(designator: Designator) -> Any:
+def next_solution(designator: D) -> D | None:
     """A designator, equated to this one, for the next thing that it may stand for; ``None`` if there is no other."""
-    return protocol.next_solution(_designator(designator))
+    found: D | None = protocol.next_solution(_designator(designator))  # type: ignore[assignment]  # of the same kind
+    return found
 
 
 @for_reasoning
-def equate(parent: Designator, successor: Designator) -> Designator:
+def equate(parent: Designator, successor: D) -> D:
     """Say that both describe the same thing: the successor, now the youngest of the chain. An error if that was said already."""
     protocol.equate(_designator(parent), _designator(successor))
     return successor

@@ -11,20 +11,20 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from ..lisp import equality
-from ..lisp.condition_types import SimpleError
-from ..lisp.conditions import error, wrong_argument_count
-from ..lisp.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
-from ..lisp.dynamic import special
-from ..lisp.objects.generic import GenericFunction, generic, no_applicable_method
-from ..lisp.objects.generic_errors import NoApplicableMethodError
-from ..lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground import equality
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
+from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.generic_errors import NoApplicableMethodError
+from cramhy_runtime.ground.printing import princ_to_string
 from ..utilities.lazy_lists import lazy_car, lazy_cdr, tail
-from ..utilities.lines import Line
+from cramhy_runtime.utilities.wait_queue import Line
 from ..utilities.patterns import is_var
-from ..prolog.database import find_predicate
-from ..prolog.machine import SOLVED, Machine
-from ..prolog.terms import Var, resolve
+from cramhy_runtime.prolog.engine.database import find_predicate
+from cramhy_runtime.prolog.engine.machine import SOLVED, Machine
+from cramhy_runtime.prolog.terms.terms import Var, resolve
 from ..utilities.small_functions import current_timestamp
 from .classes import (
     ActionDesignator,
@@ -40,17 +40,33 @@ from .equating import youngest
 from .locations import location_solutions, why_no_place
 from .protocol import designator_solutions_equal, equate, next_solution, reference
 from .symbols import sym
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cramhy_runtime.ground.signatures import GenericOf
 
 DEFAULT_ROLE = special(sym("DESIG::*DEFAULT-ROLE*"))
 ACTION_GROUNDING = find_predicate(sym("DESIG::ACTION-GROUNDING"), 2)
 MOTION_GROUNDING = find_predicate(sym("DESIG::MOTION-GROUNDING"), 2)
 
-resolve_designator = generic("DESIG::RESOLVE-DESIGNATOR", "(desig role)", documentation="""
-Find what the designator stands for; called by reference. Methods on ``(eql role)`` resolve in their own way.""")
-designator_pose = generic("DESIG::DESIGNATOR-POSE", "(desig)", documentation="""
-The pose of an effective designator; nil before. Methods come from packages that know poses (cram-tf).""")
-designator_distance = generic("DESIG::DESIGNATOR-DISTANCE", "(desig-1 desig-2)", documentation="""
-The distance of two effective designators; nil if one is not effective.""")
+resolve_designator: GenericOf[[Designator, object], Any] = generic(
+    "DESIG::RESOLVE-DESIGNATOR",
+    "(desig role)",
+    documentation="""
+Find what the designator stands for; called by reference. Methods on ``(eql role)`` resolve in their own way.""",
+)
+designator_pose = generic(
+    "DESIG::DESIGNATOR-POSE",
+    "(desig)",
+    documentation="""
+The pose of an effective designator; nil before. Methods come from packages that know poses (cram-tf).""",
+)
+designator_distance = generic(
+    "DESIG::DESIGNATOR-DISTANCE",
+    "(desig-1 desig-2)",
+    documentation="""
+The distance of two effective designators; nil if one is not effective.""",
+)
 
 
 def unresolved(designator, control, told=None):
@@ -62,17 +78,22 @@ def unresolved(designator, control, told=None):
 
 def known(designator):
     """What the designator was found to stand for; ``None`` if that is not known."""
-    if designator.effective:
-        return designator.current_solution if isinstance(designator, LocationDesignator) else designator.data
-    return None
+    return designator._found if designator.effective else None
 
 
+@reference.call_directly
 @reference.method(Designator)
-def _reference(designator, role=UNSUPPLIED):
-    if designator.effective:
-        found = known(designator)
-        if found is not None:
-            return found
+def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
+    try:
+        found = designator._found
+    except AttributeError:
+        if isinstance(designator, Designator):
+            raise
+        return reference.refuse(designator, role, *more)
+    if more:
+        return reference.refuse(designator, role, *more)
+    if found is not None and designator.effective:
+        return found
     me = kernel.current()
     while designator.resolver is not None:
         _wait_for_resolver(designator, me)
@@ -89,25 +110,6 @@ def _reference(designator, role=UNSUPPLIED):
         if line is not None:
             line.serve_all()
 
-
-class QuickReference(GenericFunction):
-    """``reference`` while nobody has added methods: a designator that is resolved already gives its value without any dispatch."""
-
-    def __call__(self, desig=UNSUPPLIED, role=UNSUPPLIED, *more):
-        cls = desig.__class__
-        if (cls is MotionDesignator or cls is ActionDesignator or cls is ObjectDesignator) and not more:
-            if desig.effective:
-                found = desig.data
-                if found is not None:
-                    return found
-        elif more or desig is UNSUPPLIED:
-            return wrong_argument_count(len(more) + 2 if more else 0)
-        elif not isinstance(desig, Designator):
-            return no_applicable_method(self, (desig,))
-        return _reference(desig, role)
-
-
-reference.take_shortcut(QuickReference)
 
 _lines = {}
 """Designator → the line of the tasks that want it while another one resolves it."""
@@ -143,8 +145,10 @@ def _endless(ring):
         others = ", ".join(" ".join(princ_to_string(other).split()) for other in ring[1:])
         hint = f"The task that resolves it waits for {others}, which this task resolves: each waits for the other, for ever."
     else:
-        hint = ("A clause, generator or validator asks for the designator that it is to resolve: look at its properties with "
-                "desig-prop instead.")
+        hint = (
+            "A clause, generator or validator asks for the designator that it is to resolve: look at its properties with "
+            "desig-prop instead."
+        )
     return error(SimpleError("Recursive lock attempt: designator ~a is needed to resolve itself.", ring[0]), hint=hint)
 
 
@@ -196,30 +200,12 @@ def _resolve_location(designator, role=None):
 
 @resolve_designator.method(ObjectDesignator, None)
 def _resolve_object(designator, role=None):
-    return designator.data if designator.data is not None else unresolved(
-        designator, "Designator `~a' does not reference an object.")
+    return designator.data if designator.data is not None else unresolved(designator, "Designator `~a' does not reference an object.")
 
 
 @resolve_designator.method(HumanDesignator, None)
 def _resolve_human(designator, role=None):
-    return designator.data if designator.data is not None else unresolved(
-        designator, "Designator `~a' does not reference an human.")
-
-
-class QuickResolution(GenericFunction):
-    """``resolve-designator`` while nobody has added methods."""
-
-    def __call__(self, *arguments):
-        if len(arguments) == 2:
-            cls = arguments[0].__class__
-            if cls is MotionDesignator or cls is ActionDesignator:
-                return _resolve_by_prolog(*arguments)
-            if cls is LocationDesignator:
-                return _resolve_location(*arguments)
-        return self.lookup(arguments)(*arguments)
-
-
-resolve_designator.take_shortcut(QuickResolution)
+    return designator.data if designator.data is not None else unresolved(designator, "Designator `~a' does not reference an human.")
 
 
 @next_solution.method(LocationDesignator)
@@ -238,9 +224,11 @@ def _next_location(designator):
 
 @next_solution.method(Designator)
 def _no_solutions(designator):
-    return error(NoApplicableMethodError(next_solution, lisp_list(designator)),
-                 hint="Only actions, motions and locations have further solutions. An object or a human stands for what perception put "
-                      "into its data; perceive again for another one.")
+    return error(
+        NoApplicableMethodError(next_solution, lisp_list(designator)),
+        hint="Only actions, motions and locations have further solutions. An object or a human stands for what perception put "
+        "into its data; perceive again for another one.",
+    )
 
 
 @next_solution.method(ActionDesignator)
@@ -279,5 +267,3 @@ def _distance_if_effective(next_method, first, second):
 def loc_desig_location(loc_desig):
     """The reference of the current designator; nil if it is no location designator."""
     return reference(youngest(loc_desig)) if isinstance(loc_desig, LocationDesignator) else None
-
-

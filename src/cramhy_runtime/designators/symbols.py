@@ -1,7 +1,10 @@
-"""The Lisp packages of this room, made before anything interns a symbol in them; their contents are in ``package.py``."""
+"""The Lisp packages of this room, made before anything interns a symbol in them.
 
-from ..lisp.packages import ensure_package, sym
-from ..prolog import package as _prolog  # noqa: F401  this room's predicates and hooks have names of its packages
+What they contain is declared in ``languages/commonlisp/faces/designators/package.py``.
+"""
+
+from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.prolog import symbols as _prolog  # noqa: F401  its package, whose predicates this room extends
 
 DESIG = ensure_package("CRAM-DESIGNATORS", "DESIG")
 DESIG_PROPS = ensure_package("CRAM-DESIGNATOR-PROPERTIES", "DESIG-PROPS")

@@ -11,9 +11,10 @@ Where the parts are:
 * `knowledge`  episodes: the running one, the last one, the last one of a name
 * `trees`      the tasks of an episode
 * `tracing`    recording what fluents were, when somebody asked for it
-* `queries`    what can be asked of an episode; `offline` those that were read from a file
-* `values_on_file`, `files`, `backends`  saving and loading; `auto_tracing` saving every plan
-* `symbols`, `macro_support`, `printing`, `package`  the Lisp face
+* `queries`    what can be asked of an episode
+* `symbols`    the Lisp package
+
+Files hold episodes in Lisp's notation, so the Lisp face saves and loads them: ``languages/commonlisp/faces/episodes/files.py``.
 
 Reference: projection-and-events.md part C.
 """

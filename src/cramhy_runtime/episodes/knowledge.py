@@ -1,7 +1,7 @@
 """Episodes: the knowledge of what one run of a plan did. Every top-level is one.
 
 An episode is made when somebody asks for it, from the task at the root of the plan, which knows when it began and ended and keeps
-the tree of what ran (``cpl/past_plans.py``). So a plan that nobody asks about pays for two assignments. The plan that runs, the
+the tree of what ran (``cpl/tree/finished_plans.py``). So a plan that nobody asks about pays for two assignments. The plan that runs, the
 one that ended last, and the last one of each name can be asked for; others live as long as somebody holds their episode.
 
 ``*episode-knowledge*`` is the episode that queries are about: within a plan that plan's own, elsewhere nil, unless one is chosen by
@@ -12,24 +12,27 @@ projection-and-events.md C1.
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime import kernel
 
-from ..cpl import past_plans
+from cramhy_runtime.cpl.tree import finished_plans
 from ..cpl.current import current_task
-from ..cpl.plan_tree import TOP_LEVEL_PLAN
-from ..cpl.plans import plan_property
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.cpl.forms.plans import plan_property
 from ..cpl.statuses import DEAD
 from ..cpl.task_variables import define_task_state, inherit
-from ..cpl.tasks import AbstractTask
-from ..lisp.conditions import SimpleError, error, type_error
-from ..lisp.data import UNBOUND, DoubleFloat
-from ..lisp.dynamic import binding
-from ..lisp.packages import near_names
-from ..lisp.printer.printer import prin1_to_string
+from cramhy_runtime.cpl.tasks.tasks import AbstractTask
+from cramhy_runtime.ground.conditions import SimpleError, error, type_error
+from cramhy_runtime.ground.data import UNBOUND, DoubleFloat
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.printing import prin1_to_string
 from ..utilities.lazy_lists import with_lazy_list_dynamic_environment
 from ..utilities.small_functions import current_timestamp
 from .symbols import CET, sym
 from .trees import task_tree
+
+TOP_LEVEL_PLAN = keyword("TOP-LEVEL-PLAN")
 
 
 class EpisodeKnowledge:
@@ -111,27 +114,26 @@ def running_episode():
     return episode_of(task)
 
 
-_chosen = None  # what the current task has bound or assigned the variable to
+_chosen = Cell(None, fresh=True)  # what the current task has bound or assigned the variable to
 
 
 def current_episode():
     """The value of ``*episode-knowledge*``."""
-    return running_episode() if _chosen is None else _chosen
+    return running_episode() if _chosen.value is None else _chosen.value
 
 
 def _choose(episode):
     # A plan's own episode is what the variable is without a choice: to put that back is to choose nothing.
-    global _chosen
-    _chosen = None if episode is None or episode.running else episode
+    _chosen.value = None if episode is None or episode.running else episode
 
 
 def last_episode():
     """The value of ``*last-episode-knowledge*``: the episode of the plan that ended last, or ``None``."""
-    return episode_of(past_plans.newest)
+    return episode_of(finished_plans.newest.value)
 
 
 def _set_last(episode):
-    past_plans.newest = episode
+    finished_plans.newest.value = episode
 
 
 EPISODE = define_task_state(CET, "*EPISODE-KNOWLEDGE*", current_episode, lambda new: _choose(checked(new, True)))
@@ -143,26 +145,34 @@ def checked(episode, or_nil=False):
     """``episode``, when it is one; else the type-error that says how to choose one."""
     if isinstance(episode, EpisodeKnowledge) or (or_nil and (episode is None or episode is UNBOUND)):
         return episode
-    return type_error(episode, sym("CRAM-EXECUTION-TRACE::EPISODE-KNOWLEDGE"),
-                      "\n(Which episode is meant? Write (with-last-episode-knowledge ...) around the query, or give one as last argument.)")
+    return type_error(
+        episode,
+        sym("CRAM-EXECUTION-TRACE::EPISODE-KNOWLEDGE"),
+        "\n(Which episode is meant? Write (with-last-episode-knowledge ...) around the query, or give one as last argument.)",
+    )
 
 
 def get_top_level_episode_knowledge(name):
     """The episode of the last run of the top-level plan ``name`` (nil: of the last without a name); an empty one before its first run."""
-    if name in past_plans.by_name:
-        return episode_of(past_plans.by_name[name])
+    if name in finished_plans.by_name:
+        return episode_of(finished_plans.by_name[name])
     if plan_property(name, "PLAN-TYPE") is TOP_LEVEL_PLAN:
         return register_top_level_episode_knowledge(name)
-    known = [prin1_to_string(key) for key in past_plans.by_name if key is not None]
+    known = [prin1_to_string(key) for key in finished_plans.by_name if key is not None]
     near = near_names(prin1_to_string(name), known, 1)
-    hint = (f"Did you mean {near[0]}?" if near else f"There are episodes of {', '.join(known)}." if known else
-            "No plan with a name has run yet; the last plan of all is in (with-last-episode-knowledge ...).")
+    hint = (
+        f"Did you mean {near[0]}?"
+        if near
+        else f"There are episodes of {', '.join(known)}."
+        if known
+        else "No plan with a name has run yet; the last plan of all is in (with-last-episode-knowledge ...)."
+    )
     return error(SimpleError("Accessing top-level episode-knowledge for unregisterd top-level plan ~a.", name), hint=hint)
 
 
 def register_top_level_episode_knowledge(name):
     """Let an empty episode stand under ``name``; returns it."""
-    past_plans.by_name[name] = episode = LiveEpisodeKnowledge(name)
+    finished_plans.by_name[name] = episode = LiveEpisodeKnowledge(name)
     return episode
 
 

@@ -17,29 +17,32 @@ Repaired: the last change that a limit of frequency held back is recorded when t
 
 from __future__ import annotations
 
-import gc
 import math
 from weakref import WeakSet, ref
 
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
-from ..cpl import past_plans
+from cramhy_runtime.cpl.tree import finished_plans
 from ..cpl.current import current_task
-from ..cpl.following import follow
-from ..cpl.fluents import Fluent, Net, ValueFluent, tracing_options
+from cramhy_runtime.cpl.tasks.task_observers import follow
+from cramhy_runtime.cpl.fluents.fluents import living_fluents, tracing_options
 from ..cpl.hooks import on_make_fluent_hook
-from ..cpl.tasks import AbstractTask
-from ..lisp.conditions import Condition, warn
-from ..lisp.data import Cons, DoubleFloat, Symbol, list_from, one, truth
-from ..lisp.objects.generic import generic
+from cramhy_runtime.ground.conditions import Condition, warn
+from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, list_from, one, truth
+from cramhy_runtime.ground.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 from .knowledge import episode_of
 
 MILLISECOND, STEP = 0.001, 0.0001
 
-durable_copy = generic("CRAM-EXECUTION-TRACE::DURABLE-COPY", "(obj)", documentation="""
-A snapshot of ``obj`` for the trace: a list is copied one level deep, anything else is itself. Add methods for what is changed in place.""")
+durable_copy = generic(
+    "CRAM-EXECUTION-TRACE::DURABLE-COPY",
+    "(obj)",
+    documentation="""
+A snapshot of ``obj`` for the trace: a list is copied one level deep, anything else is itself. Add methods for what is changed in place.""",
+)
 
 
 @durable_copy.method(object)
@@ -98,15 +101,15 @@ class Recorder:
         key = Symbol("TRACE")
         if fluent.callbacks is None:
             fluent.callbacks = {}
-        fluent.callbacks[key] = (lambda value: self.record(name, value)) if interval is None else (
-            lambda value: self.record_seldom(name, value, interval))
+        fluent.callbacks[key] = (
+            (lambda value: self.record(name, value)) if interval is None else (lambda value: self.record_seldom(name, value, interval))
+        )
         self.watched.append((ref(fluent), key))
 
     def record(self, name, value, time=None):
         records = self.episode.traces.setdefault(name, [])
         time = current_timestamp() if time is None else time
-        records.append(TracedFluent(name, one(durable_copy(value)),
-                                    distinct(time, records[-1].timestamp if records else -math.inf)))
+        records.append(TracedFluent(name, one(durable_copy(value)), distinct(time, records[-1].timestamp if records else -math.inf)))
 
     def record_seldom(self, name, value, interval):
         records, now = self.episode.traces.get(name), current_timestamp()
@@ -165,9 +168,9 @@ class Tracing:
 
     def observe(self):
         if self.on or self.saving is not None:
-            past_plans.observe(self)
+            finished_plans.observe(self)
         else:
-            past_plans.observe_no_more(self)
+            finished_plans.observe_no_more(self)
 
     # ----------------------------------------------------------------------------------------------------------- fluents
 
@@ -214,7 +217,7 @@ class Tracing:
             self.recorders.remove(recorder)
 
 
-tracing = Tracing()
+tracing = per_image(Tracing())
 
 
 def _root_of_current_plan():
@@ -222,19 +225,6 @@ def _root_of_current_plan():
     while task is not None and task.parent is not None:
         task = task.parent
     return task
-
-
-def living_fluents():
-    """All fluents that are no nets and no task's status, in the order in which they were made."""
-    fluents, statuses = [], set()
-    for thing in gc.get_objects():
-        kind = type(thing)
-        if issubclass(kind, Fluent):
-            if kind is ValueFluent or not issubclass(kind, Net):
-                fluents.append(thing)
-        elif issubclass(kind, AbstractTask):
-            statuses.add(thing._status_fluent)
-    return [fluent for fluent in fluents if fluent not in statuses]
 
 
 def enable_fluent_tracing():

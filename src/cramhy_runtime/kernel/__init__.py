@@ -20,21 +20,23 @@ timer, so the virtual clock jumps there. The wall clock is the same with a pace-
 
 Where the parts are:
 
-* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `signals` what the
-  system asks of the process; `outside` other threads and calls that block; `standard_input` lines that are typed;
-  `company` a thread of the system's that serves clients, and its share of the processor
+* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `uncaught` exceptions that
+  end the program; `signals` what the system asks of the process; `inbox` other threads and calls that block; `standard_input` lines
+  that are typed; `terminals` their keys and modes; `asyncio_thread` a thread of the system's that serves clients, and its share of the
+  processor
 * `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
-* `timers`, `clocks`, `pace` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`
+* `timers`, `clocks`, `throttle` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
 * `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
-* `active`     the functions below, which act on the kernel that is active
+* `active`     the functions below, which act on the kernel that is active; `typing_names`, `signatures` what their annotations say
+* `images`     what is global, in cells and tables, and how the state of one image takes the place of another's
 
 Taken from trio: cancellation at checkpoints, the shield, a clock that jumps, the deadlock as an error with a text. Left
 out: cancel scopes and nurseries, because CPL brings its own tree and its own rules for it. Taken from Erlang:
 counting reductions. Taken from SimPy: real time on top of simulated time, and not the other way round.
 
-Two hooks are attributes of this package, to be replaced by assignment: `describe_frame` and `unhandled` (see `reports`). Whatever
-serves a session and has to end with it says so by ``at_stop`` of the kernel.
+`install_reporter` lets a floor above describe frames and failures in its own terms (see `reports`). A room that serves a session and
+has to end with it says so by ``at_stop`` of the kernel.
 """
 
 from .active import (
@@ -54,6 +56,7 @@ from .active import (
     post,
     refill,
     run_blocking,
+    set_clock,
     settle,
     shield,
     sleep,
@@ -67,12 +70,12 @@ from .active import (
     woken_by,
     yield_,
 )
-from .cleanup import cleanup
+from .cleanup import cleanup, limit_by
 from .clocks import VirtualClock, WallClock
 from .depth import allow_deep_recursion
 from .endings import CLEANUP_LIMIT
 from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, Terminated, TimeLimit, WaitEnded
-from .reports import describe_frame, unhandled
+from .reports import describe_frame, install_reporter, unhandled
 from .scheduler import Kernel
 from .tasks import Task
 from .timers import Timer
@@ -81,7 +84,7 @@ from .waiting import Waiting
 __all__ = [
     "Abandoned", "CLEANUP_LIMIT", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "Terminated", "TimeLimit",
     "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
-    "call_every", "checkpoint", "cleanup", "current", "describe_frame", "interrupt", "interrupt_over", "now", "outside_source",
-    "pace", "park", "post", "refill", "run_blocking", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop",
-    "time_held", "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
+    "call_every", "checkpoint", "cleanup", "current", "describe_frame", "install_reporter", "interrupt",
+    "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill", "run_blocking", "set_clock", "settle",
+    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
 ]  # fmt: skip

@@ -4,24 +4,45 @@ A process has one active kernel at a time; tests start hundreds, one after the o
 floors above call: `kernel.park(...)` is `kernel.active().park(...)`.
 """
 
+from __future__ import annotations
+
 import atexit
 from _thread import get_ident
-from collections.abc import Callable
 from contextlib import contextmanager
-from typing import Any, TypeVar
 
-from . import signals
+from . import images, signals
 from .budget import budget
+from .clocks import make_clock
 from .endings import CLEANUP_LIMIT
 from .errors import KernelError, Terminated
-from .pace import Pace, TimeWanted
+from .images import Cell
+from .throttle import Pace, TimeWanted
 from .scheduler import Kernel
+from .typing_names import TYPE_CHECKING, NoReturn, TypeVar, TypeVarTuple
 
-_active = None
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
+
+    from .inbox import OutsideSource, TimeHeld
+    from .signatures import BackendName, Backend, Callback, Clock, ClockName, Name, Seed, Why
+    from .tasks import Task, shield as Shield
+    from .timers import Timer
+
 T = TypeVar("T")
+K = TypeVar("K", bound=Kernel, default=Kernel)
+Arguments = TypeVarTuple("Arguments")
+_active: Cell[Kernel | None] = Cell(None, fresh=True)
 
 
-def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=Kernel, cleanup_limit=CLEANUP_LIMIT):
+def start(
+    clock: ClockName | Clock = "virtual",
+    backend: BackendName | Backend = "threads",
+    seed: Seed | None = None,
+    time_limit: float | None = None,
+    kind: type[K] = Kernel,  # type: ignore[assignment]  # which is what K is then
+    cleanup_limit: float | None = CLEANUP_LIMIT,
+) -> K:
     """Make a fresh kernel active, whose main task is the caller. The one before, if any, is stopped first.
 
     In the main thread it hears SIGINT and the signals that end a process from now on, if nobody else has a handler for them
@@ -33,54 +54,52 @@ def start(clock="virtual", backend="threads", seed=None, time_limit=None, kind=K
     KIND: a subclass of `Kernel`, for tests that look on. CLEANUP_LIMIT: seconds that plans get for their cleanup when the process is
     asked to end, by the kernel's clock and by the wall's, or None.
     """
-    global _active
-    if _active is not None and _active.main.carrier.ident == get_ident():
-        _active.stop()
-    _active = None
+    before = _active.value
+    if before is not None and before.main.carrier.ident == get_ident():
+        before.stop()
+    _active.value = None
     kernel = kind(clock, backend, seed, time_limit)
     kernel.cleanup_limit = cleanup_limit
     kernel.when_stopped = lambda: _forget(kernel)
-    _active = kernel
+    _active.value = kernel
     signals.listen(kernel)
     return kernel
 
 
-def stop():
+def stop() -> None:
     """Stop the active kernel (see `Kernel.stop`); afterwards none is active."""
-    if _active is not None:
-        _active.stop()
+    if _active.value is not None:
+        _active.value.stop()
 
 
 @contextmanager
-def aside():
+def aside() -> Iterator[None]:
     """While the block runs, the active kernel is put aside as if there were none, and others may be started and stopped."""
-    global _active
-    before, _active = _active, None
+    before, _active.value = _active.value, None
     try:
         yield
     finally:
         stop()
-        _active = before
+        _active.value = before
         budget.renew()
 
 
-_idle = None
+_idle: Cell[Kernel | None] = Cell(None, fresh=True)
 
 
 @contextmanager
-def at_hand():
+def at_hand() -> Iterator[None]:
     """While the block runs a kernel is active: the one that is, or one in virtual time that is there for the moment.
 
     For what may be asked outside of any plan. The moment's kernel is kept for the next one, if nothing has happened in it.
     """
-    global _active, _idle
-    if _active is not None:
+    if _active.value is not None:
         yield
         return
-    kernel, _idle = _idle, None
+    kernel, _idle.value = _idle.value, None
     if kernel is None or kernel.main.carrier.ident != get_ident():
         kernel = Kernel()
-    _active = kernel
+    _active.value = kernel
     unused = False
     try:
         yield
@@ -88,25 +107,33 @@ def at_hand():
     finally:
         if not (unused or kernel.stopped):
             kernel.stop()
-        if _active is kernel:
-            _active = None
+        if _active.value is kernel:
+            _active.value = None
         if unused:
-            _idle = kernel
+            _idle.value = kernel
         budget.renew()
 
 
-def _forget(kernel):
-    global _active
+def _forget(kernel: Kernel) -> None:
     signals.forget(kernel)
-    if _active is kernel:
-        _active = None
+    if _active.value is kernel:
+        _active.value = None
 
 
 @atexit.register
-def _stop_at_exit():
+def _stop_at_exit() -> None:
     """A script that just ends shall not leave out the cleanup of its tasks, nor what serves them (a recording, a robot's connection)."""
-    kernel = _active
-    signals.leaving = True
+    signals.leaving.set()
+    for image in signals.listening_images():
+        if image is not images.current():
+            with image.entered():
+                _stop_active_at_exit()
+    _stop_active_at_exit()
+    signals.end_as_interrupted()
+
+
+def _stop_active_at_exit() -> None:
+    kernel = _active.value
     if kernel is not None:
         asked_before = kernel.ended_by
         try:
@@ -117,15 +144,14 @@ def _stop_at_exit():
         except Terminated as ended:
             if asked_before is None:  # else the main program has an exit status already
                 signals.end_by(ended.number)
-    signals.end_as_interrupted()
 
 
-def active():
+def active() -> Kernel | None:
     """The active kernel, or None."""
-    return _active
+    return _active.value
 
 
-def _none():
+def _none() -> NoReturn:
     raise KernelError("No kernel is running. Call kernel.start() first; the caller becomes the main task.")
 
 
@@ -136,98 +162,98 @@ def checkpoint() -> None:
         slice_over()
 
 
-def slice_over():
+def slice_over() -> None:
     """What comes when all checkpoints of a slice are used up."""
-    if _active is None:
+    if _active.value is None:
         budget.renew()
     else:
-        _active.end_slice()
+        _active.value.end_slice()
 
 
-def refill():
+def refill() -> None:
     """What a compiled loop calls when it has no more ticks (see ``budget.py``)."""
     if budget.refill():
         slice_over()
 
 
-def current():
+def current() -> Task[object]:
     """The task that runs. While timers fire and messages are read this is a stand-in, which cannot park."""
-    return (_active or _none()).current
+    return (_active.value or _none()).current
 
 
 def now() -> float:
     """Seconds of the kernel's clock since `start`."""
-    return (_active or _none()).clock.now()
+    return (_active.value or _none()).clock.now()
 
 
-def spawn(fn, *args, name=None, parent=None):
+def spawn(fn: Callable[[*Arguments], T], *args: *Arguments, name: Name | None = None, parent: Task[object] | None = None) -> Task[T]:
     """See `Kernel.spawn`."""
-    return (_active or _none()).spawn(fn, *args, name=name, parent=parent)
+    return (_active.value or _none()).spawn(fn, *args, name=name, parent=parent)
 
 
-def park(why="", until=None):
+def park(why: Why = "", until: float | None = None) -> bool:
     """See `Kernel.park`."""
-    return (_active or _none()).park(why, until)
+    return (_active.value or _none()).park(why, until)
 
 
-def unpark(task):
+def unpark(task: Task[object]) -> bool:
     """See `Kernel.unpark`."""
     return task.kernel.unpark(task)
 
 
-def sleep(seconds):
+def sleep(seconds: float) -> None:
     """See `Kernel.sleep`."""
-    (_active or _none()).sleep(seconds)
+    (_active.value or _none()).sleep(seconds)
 
 
-def yield_():
+def yield_() -> None:
     """See `Kernel.yield_`."""
-    (_active or _none()).yield_()
+    (_active.value or _none()).yield_()
 
 
-def settle():
+def settle() -> None:
     """See `Kernel.settle`."""
-    (_active or _none()).settle()
+    (_active.value or _none()).settle()
 
 
-def shield():
+def shield() -> Shield:
     """See `Kernel.shield`."""
-    return (_active or _none()).shield()
+    return (_active.value or _none()).shield()
 
 
-def call_at(time, fn):
+def call_at(time: float, fn: Callback) -> Timer:
     """See `Kernel.call_at`."""
-    return (_active or _none()).call_at(time, fn)
+    return (_active.value or _none()).call_at(time, fn)
 
 
-def call_every(period, fn, first=None):
+def call_every(period: float, fn: Callback, first: float | None = None) -> Timer:
     """See `Kernel.call_every`."""
-    return (_active or _none()).call_every(period, fn, first)
+    return (_active.value or _none()).call_every(period, fn, first)
 
 
-def post(fn):
+def post(fn: Callback) -> None:
     """See `Kernel.post`."""
-    (_active or _none()).post(fn)
+    (_active.value or _none()).post(fn)
 
 
-def outside_source():
+def outside_source() -> OutsideSource:
     """See `Kernel.outside_source`."""
-    return (_active or _none()).outside_source()
+    return (_active.value or _none()).outside_source()
 
 
-def woken_by(wake):
+def woken_by(wake: Callback) -> AbstractContextManager[None]:
     """See `Kernel.woken_by`."""
-    return (_active or _none()).woken_by(wake)
+    return (_active.value or _none()).woken_by(wake)
 
 
-def run_blocking(fn: Callable[..., T], *args: Any) -> T:
+def run_blocking(fn: Callable[[*Arguments], T], *args: *Arguments) -> T:
     """See `Kernel.run_blocking`."""
-    return (_active or _none()).run_blocking(fn, *args)
+    return (_active.value or _none()).run_blocking(fn, *args)
 
 
-def pace():
+def pace() -> Pace:
     """The `Pace` of the active kernel's time; as fast as the machine computes until it is told otherwise."""
-    kernel = _active or _none()
+    kernel = _active.value or _none()
     if not kernel.clock.virtual:
         return Pace(kernel)
     if kernel.clock.pace is None:
@@ -235,21 +261,37 @@ def pace():
     return kernel.clock.pace
 
 
-def time_wanted():
+def set_clock(kind: ClockName) -> None:
+    """Let the active kernel go on in "virtual" or in "wall" time, from the same second on. Nothing happens if that is its time already.
+
+    Plans that wait keep the moments that they wait for. ValueError for another word.
+    """
+    kernel = _active.value or _none()
+    before = kernel.clock
+    clock = make_clock(kind, kernel.now())
+    if clock.virtual == before.virtual:
+        return
+    clock.wanted, clock.pace = before.wanted, before.pace
+    kernel.clock = clock
+    if clock.pace is not None:
+        clock.pace.clock_changed()
+
+
+def time_wanted() -> TimeWanted:
     """See `TimeWanted`."""
-    return TimeWanted(_active or _none())
+    return TimeWanted(_active.value or _none())
 
 
-def time_held():
+def time_held() -> TimeHeld:
     """See `Kernel.time_held`."""
-    return (_active or _none()).time_held()
+    return (_active.value or _none()).time_held()
 
 
-def interrupt():
+def interrupt() -> None:
     """See `Kernel.interrupt`."""
-    (_active or _none()).interrupt()
+    (_active.value or _none()).interrupt()
 
 
-def interrupt_over():
+def interrupt_over() -> None:
     """See `Kernel.interrupt_over`."""
-    (_active or _none()).interrupt_over()
+    (_active.value or _none()).interrupt_over()

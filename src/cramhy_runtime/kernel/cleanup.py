@@ -5,33 +5,52 @@ task waits until the block is left (law 2). A wait inside may be stuck, on a flu
 parent and the whole run would be stuck with it. So a wait can be ended from outside (`Task.end_wait`): `WaitEnded` unwinds to the
 innermost such block and no further, the rest of the block is left out, and the exit that led here goes on to the outer blocks.
 
-`begins` is a hook, called with each block that is entered and its task; what it returns, a limit, is told when the block ends.
+`limit_by` installs a function that is called with each block that is entered and its task. It returns a limit, which is told when the
+block ends, or ``None``.
 """
+
+from __future__ import annotations
 
 from .active import current
 from .budget import budget
 from .errors import WaitEnded
 from .tasks import shield
+from .typing_names import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .tasks import Task
+
+
+class Limit(Protocol):
+    """What holds a block of cleanup to its time."""
+
+    def end(self) -> None:
+        """The block is left."""
 
 
 class cleanup(shield):  # noqa: N801 (reads as a statement)
-    """A block of cleanup of the current task. ``outer``: the block around it, if one is; ``limit``: what `begins` returned."""
+    """A block of cleanup of the current task.
+
+    ``outer``: the block around it, if one is; ``limit``: what the function of `limit_by` returned.
+    """
 
     __slots__ = ("outer", "limit")
-    begins = None
+    _begins: Callable[[cleanup, Task[object]], Limit | None] | None = None
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._task = current()
 
-    def __enter__(self):
+    def __enter__(self) -> None:
         task = self._task
         task.shielded += 1
-        self.outer = task.cleanup
+        self.outer: cleanup | None = task.cleanup
         task.cleanup = self
-        begins = cleanup.begins
-        self.limit = None if begins is None else begins(self, task)
+        begins = cleanup._begins
+        self.limit: Limit | None = None if begins is None else begins(self, task)
 
-    def __exit__(self, kind, exception, traceback):
+    def __exit__(self, kind: object = None, *_: object) -> bool | None:
         task = self._task
         task.cleanup = self.outer
         if self.limit is not None:
@@ -40,3 +59,8 @@ class cleanup(shield):  # noqa: N801 (reads as a statement)
         if task.attention and not task.shielded:
             budget.end()
         return kind is WaitEnded
+
+
+def limit_by(function: Callable[[cleanup, Task[object]], Limit | None]) -> None:
+    """Call ``function(block, task)`` with each block of cleanup that begins from now on; its ``end()`` is called when the block is left."""
+    cleanup._begins = staticmethod(function)

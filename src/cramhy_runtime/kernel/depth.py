@@ -6,16 +6,23 @@ uses none of the stack, but each call that goes through C (`f(*args)`, `sorted(k
 (measured with Python 3.11 on Linux, 64 bit: 24 MiB for 10,000 levels of `sorted` within `sorted`). So every stack has 64 MiB,
 that is 6.5 KiB a level: the main thread's by `RLIMIT_STACK`, those of tasks when their threads start. Room is reserved, not
 used: 1000 parked tasks take 30 MB of memory with stacks of 16 MiB and with stacks of 64 MiB, and start as fast.
+
+Where the main thread's stack cannot grow, as on Windows, the limit is lower. From Python 3.14 on it need not be: that Python looks at the
+stack itself, and an endless recursion through C is an error, too.
 """
+
+from __future__ import annotations
 
 import sys
 import threading
 
 LEVELS = 10_000
+SMALL_STACK = 2_000_000
+"""Bytes of the main thread's stack where the system has no limit that could be raised: python.exe of Windows is linked with that many."""
 STACK_SIZE = 64 << 20 if sys.maxsize > 2**32 else 1 << 20  # bytes
 
 
-def allow_deep_recursion():
+def allow_deep_recursion() -> None:
     """Raise Python's recursion limit to `LEVELS`, or as far as the main thread's stack allows. Never lowers it.
 
     In another thread than the main one nothing is done, for the size of its stack was fixed when it was started.
@@ -25,12 +32,12 @@ def allow_deep_recursion():
         sys.setrecursionlimit(max(sys.getrecursionlimit(), levels))
 
 
-def _main_stack():
+def _main_stack() -> int:
     """Give the main thread's stack `STACK_SIZE` bytes if the system lets us; the bytes that it has, at most that many."""
     try:
         import resource
-    except ImportError:  # no such limits here; the stack has the size that the interpreter was linked with
-        return min(STACK_SIZE, 8 << 20)
+    except ImportError:
+        return STACK_SIZE if sys.version_info >= (3, 14) else min(STACK_SIZE, SMALL_STACK)  # from 3.14 on Python looks at the stack itself
     soft, hard = resource.getrlimit(resource.RLIMIT_STACK)
     if soft == resource.RLIM_INFINITY or soft >= STACK_SIZE:
         return STACK_SIZE

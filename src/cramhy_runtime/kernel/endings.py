@@ -9,6 +9,8 @@ the clock, or is outside in a blocking call. So `interrupt` only puts a message 
 rings the bell: three operations that a handler may do between any two instructions. The message does the rest.
 """
 
+from __future__ import annotations
+
 import sys
 import time
 from _thread import get_ident
@@ -17,6 +19,14 @@ from . import reports, signals
 from .budget import budget
 from .errors import Abandoned, Deadlock, Interrupted, KernelError, Terminated, TerminatedAtOnce
 from .tasks import BLOCKED, RUNNABLE, Alarm
+from .typing_names import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+    from .signatures import Callback
+    from .tasks import Task
 
 CLEANUP_LIMIT = 5.0  # s that plans get for their cleanup when the kernel stops, or the process is asked to end
 GRACE = 1.0  # s of kernel time that tasks get to come down when their cleanup was given up
@@ -29,10 +39,10 @@ class Request:
 
     __slots__ = ("_read", "void")
 
-    def __init__(self, read):
+    def __init__(self, read: Callback):
         self._read, self.void = read, False
 
-    def __call__(self):
+    def __call__(self) -> None:
         if not self.void:
             self._read()
 
@@ -44,7 +54,7 @@ class Endings:
 
     # ------------------------------------------------------------------ interrupts, and signals that end the process
 
-    def interrupt(self):
+    def interrupt(self) -> None:
         """Raise `Interrupted` in the main task. Safe from signal handlers and from any thread.
 
         A second call before the first is over (`interrupt_over`, `settle`) gives up cleanup: `Abandoned` is raised at
@@ -52,7 +62,7 @@ class Endings:
         """
         self._ask_main_task(Interrupted, Abandoned)
 
-    def terminate(self, number):
+    def terminate(self, number: int) -> None:
         """Raise `Terminated` in the main task, because of the signal NUMBER. Safe from signal handlers and from any thread.
 
         Plans get `cleanup_limit` seconds for their cleanup. A second call, or an interrupt before it, gives up cleanup as a second
@@ -61,13 +71,13 @@ class Endings:
         self.will_end(number)
         self._ask_main_task(lambda: Terminated(number), lambda: TerminatedAtOnce(number))
 
-    def will_end(self, number):
+    def will_end(self, number: int) -> None:
         """The signal NUMBER has asked the process to end; from now on it is watched whether it does."""
         if self.ended_by is None:
             self.ended_by = number
             signals.watch(self, number)
 
-    def _ask_main_task(self, first, second):
+    def _ask_main_task(self, first: Callable[[], BaseException], second: Callable[[], BaseException]) -> None:
         """Have an exception raised in the main task: one that FIRST makes, or SECOND when it unwinds already."""
         main = self.main
         if self.interruptible and not self._wakers and get_ident() == main.carrier.ident and (self._unwinding or not main.shielded):
@@ -87,12 +97,12 @@ class Endings:
         self._bell.ring()
         self.wake()
 
-    def interrupt_over(self):
+    def interrupt_over(self) -> None:
         """Whoever caught `Interrupted` says that it is dealt with: the next interrupt is a first one again. A process that was asked
         to end goes on to do so."""
         self._unwinding = self.ended_by is not None
 
-    def interrupt_waits(self):
+    def interrupt_waits(self) -> bool:
         """True if the main task, about to go outside, would only hear when it is back that it was interrupted before."""
         waiting = self._interrupts  # asked before the alarms, see `_read_interrupt`
         alarms = list(self.main.alarms or ())
@@ -101,21 +111,21 @@ class Endings:
         return bool(waiting or alarms)
 
     @property
-    def interrupted(self):
+    def interrupted(self) -> bool:
         """Whether an interrupt, or a signal that ends the process, was sent and is not over yet."""
         return bool(self._interrupts) or self._unwinding
 
-    def cleanup_began(self):
+    def cleanup_began(self) -> float | None:
         """When the cleanup that goes on began to count, by the wall's clock; ``None`` before it stops. First the plan of the main task
         cleans up, and then what runs beside it, which the plan may need for that: each has the whole limit."""
         return self._stops_since
 
-    def deaf_for(self):
+    def deaf_for(self) -> float:
         """For how many seconds an interrupt has been waiting to be read: the task that has the baton passes no checkpoint."""
         since = self._asked_at
         return 0.0 if since is None or not self._interrupts else time.monotonic() - since
 
-    def take_back(self):
+    def take_back(self) -> None:
         """Nobody reads the requests in the inbox, so the signal handler raises by itself: they are dealt with by that."""
         for message in list(self._inbox):
             if isinstance(message, Request) and not message.void:
@@ -125,7 +135,7 @@ class Endings:
         self._unwinding = True
         self._limit_cleanup()
 
-    def _read_interrupt(self, first, second):
+    def _read_interrupt(self, first: Callable[[], BaseException], second: Callable[[], BaseException]) -> None:
         if not self._unwinding:
             self._unwinding = True
             self._limit_cleanup()
@@ -138,19 +148,19 @@ class Endings:
         self._interrupts -= 1  # last, so that `interrupt_waits` sees it either here or among the alarms
         self._asked_at = time.monotonic() if self._interrupts else None
 
-    def _limit_cleanup(self):
+    def _limit_cleanup(self) -> None:
         """The process shall end: after `cleanup_limit` seconds of the kernel's clock cleanup is given up."""
         if self.ended_by is not None and self.cleanup_limit is not None:
             self.post(lambda: self._timers.add(self.now() + self.cleanup_limit, self.give_up))
 
-    def give_up(self):
+    def give_up(self) -> None:
         """The limit of cleanup is reached: abandon it, in the scheduler."""
         if not (self._stopping or self.stopped):
             self._abandon_tasks(f"It took longer than {self.cleanup_limit:g} s.")
             if self.ended_by is not None:
                 self._alarm(TerminatedAtOnce(self.ended_by), True)
 
-    def _abandon_tasks(self, why=""):
+    def _abandon_tasks(self, why: str = "") -> None:
         """Give up the cleanup of all tasks that were asked to end, and the tasks below them: a request to end would not reach one
         that is in a shield, and nobody waits for it any more. The user is told whose cleanup it is, and WHY."""
         main = self.main
@@ -167,7 +177,7 @@ class Endings:
             if below:
                 cleaning.add(task)
 
-    def _alarm(self, exception, pierces_shield):
+    def _alarm(self, exception: BaseException, pierces_shield: bool) -> None:
         """Have EXCEPTION raised in the main task, before anything else runs."""
         main = self.main
         if main.alarms is None:
@@ -184,7 +194,7 @@ class Endings:
             self._queue.remove(main)
             self._urgent = main
 
-    def leave_for_dead(self, task):
+    def leave_for_dead(self, task: Task[object]) -> NoReturn:
         """TASK swallows every request to end. Count it as dead, and never give it the baton again."""
         carrier = task.carrier
         task._exception = Abandoned()
@@ -196,7 +206,7 @@ class Endings:
 
     # ------------------------------------------------------------------ stopping
 
-    def stop(self):
+    def stop(self) -> None:
         """Cancel all tasks, let them unwind, and end the kernel. Called by the main task.
 
         Tasks get `cleanup_limit` seconds of the kernel's clock; then what serves them is closed (`at_stop`), and their cleanup is
@@ -232,20 +242,20 @@ class Endings:
         if self.ended_by is not None and not isinstance(sys.exc_info()[1], Terminated):
             raise Terminated(self.ended_by)  # the signal came while it stopped
 
-    def close_what_serves(self):
+    def close_what_serves(self) -> None:
         """Call what was registered by `at_stop`, the last first."""
         while self._at_stop:
             self._call(self._at_stop.popitem()[0])
 
-    def at_stop(self, fn):
+    def at_stop(self, fn: Callback) -> None:
         """Have FN called when the kernel stops and the tasks had their time to clean up; what was registered last comes first."""
         self._at_stop[fn] = None
 
-    def not_at_stop(self, fn):
+    def not_at_stop(self, fn: Callback) -> None:
         """FN need not be called any more; harmless when it was not registered, or is being called."""
         self._at_stop.pop(fn, None)
 
-    def _let_unwind(self, seconds):
+    def _let_unwind(self, seconds: float) -> None:
         until = self.now() + seconds
         try:
             while len(self._tasks) > 1 and self.now() < until:
@@ -255,7 +265,7 @@ class Endings:
 
     # ------------------------------------------------------------------ failures that nobody looked at
 
-    def _report_unclaimed(self, parent=None):
+    def _report_unclaimed(self, parent: Task[object] | None = None) -> None:
         """Tell of the tasks that died of an exception nobody looked at: those whose PARENT is dead now, or all.
 
         All of them when the instant is over in which they died: whoever waits for them has had the baton since.
@@ -269,16 +279,16 @@ class Endings:
             else:
                 self._unclaimed.append(task)
 
-    def _report(self, task, exception):
+    def _report(self, task: Task[object], exception: BaseException) -> None:
         if isinstance(exception, SystemExit):  # a task that nobody joins asks for the end of the program
             self._alarm(exception, False)
             return
         try:
-            reports.hooks().unhandled(task, exception)
-        except BaseException as broken:  # the hook is somebody else's, and the scheduler must go on
             reports.unhandled(task, exception)
-            reports.unhandled(task, broken)
+        except BaseException as broken:  # the reporter is somebody else's, and the scheduler must go on
+            reports.PLAIN.unhandled(task, exception)
+            reports.PLAIN.unhandled(task, broken)
 
-    def frame_of(self, task):
+    def frame_of(self, task: Task[object]) -> FrameType | None:
         """The innermost Python frame of a task that waits, or None."""
         return None if task.carrier is None else self.backend.frame(task.carrier)

@@ -6,6 +6,8 @@ What went wrong with a run as a whole (`Deadlock`, `TimeLimit`) and wrong use of
 ordinary exceptions.
 """
 
+from __future__ import annotations
+
 import signal
 
 
@@ -15,11 +17,11 @@ class Cancelled(BaseException):
     `reason` is what the caller of `Task.cancel` gave.
     """
 
-    def __init__(self, reason=None):
+    def __init__(self, reason: object = None):
         super().__init__(reason)
         self.reason = reason
 
-    def __str__(self):
+    def __str__(self) -> str:
         return "cancelled" if self.reason is None else f"cancelled: {self.reason}"
 
 
@@ -30,32 +32,32 @@ class WaitEnded(Cancelled):
 class Interrupted(KeyboardInterrupt):
     """The user asked the main task to stop (Ctrl-C). A script that does not catch it ends as Python ends one at Ctrl-C."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return "interrupted"
 
 
 class Terminated(SystemExit):
     """The system asked the process to end by the signal ``number``. Raised in the main task; as exit status it gives 128 + ``number``."""
 
-    def __init__(self, number):
+    def __init__(self, number: int):
         super().__init__(128 + number)
         self.number = number
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"ended by {signal.Signals(self.number).name}"
 
 
 class Abandoned(BaseException):
     """The user asked a second time, while the first request was still unwinding: cleanup is given up."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return "cleanup abandoned"
 
 
 class TerminatedAtOnce(Abandoned, Terminated):
     """The system asked the process to end a second time, or cleanup took longer than its limit: cleanup is given up."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{Terminated.__str__(self)}, cleanup abandoned"
 
 

@@ -16,27 +16,39 @@ CRAM leaves all this to the threads of SBCL and gains data races; structured con
 jumps are taken from trio and SimPy.
 """
 
-import random
+from __future__ import annotations
+
 from _thread import get_ident
 from collections import deque
 
-from . import reports
+from . import images, reports
 from .backends import make_backend
 from .budget import SLICE, budget, need_headroom, need_steps
 from .clocks import Bell, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
-from .outside import Outside
+from .inbox import Outside
 from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
-from .timers import CALLBACK, TimerHeap
+from .timers import CALLBACK, Timer, TimerHeap
+from .typing_names import TYPE_CHECKING, NoReturn, TypeVar, TypeVarTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .signatures import Backend, BackendName, Callback, Carrier, Clock, ClockName, Name, Seed, Why
 
 ROUND = 0.005  # s of virtual time that pass when every runnable task used up its slice
 STEPS_PER_INSTANT = 100_000  # hand-overs at one instant, after which time passes all the same
 INFINITY = float("inf")
 
+T = TypeVar("T")
+Arguments = TypeVarTuple("Arguments")
 
-def lots(seed):
+
+def lots(seed: int | float | str) -> Callable[[deque[Task[object]]], int]:
     """A choice by lot: the place in the queue of the task that goes next."""
+    import random  # only who shuffles has to pay for it
+
     draw = random.Random(seed).random
     return lambda queue: int(draw() * len(queue))
 
@@ -46,77 +58,89 @@ class Kernel(Endings, Outside):
 
     # Slots, since Python finds attributes of an object that has thirty or more of them in a slower way.
     __slots__ = (
-        "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_tasks", "_born", "_streak",
-        "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts", "_asked_at",
-        "_unwinding", "_stopping", "_stops_since",
-        "_patience", "_at_stop", "_wakers", "cleanup_limit", "ended_by", "stopped", "when_stopped",
-        "interruptible", "_scheduler", "main", "current", "__weakref__",
-    )
+        "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_tasks",
+        "_born", "_streak", "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts",
+        "_asked_at", "_unwinding", "_stopping", "_stops_since", "_patience", "_at_stop", "_wakers", "cleanup_limit", "ended_by",
+        "stopped", "when_stopped", "interruptible", "_scheduler", "main", "current", "__weakref__",
+    )  # fmt: skip
 
-    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
+    def __init__(
+        self,
+        clock: ClockName | Clock = "virtual",
+        backend: BackendName | Backend = "threads",
+        seed: Seed | None = None,
+        time_limit: float | None = None,
+    ):
         self.clock = make_clock(clock)
         self.backend = make_backend(backend)
         self.time_limit = time_limit
         self._limit = time_limit
-        self.seed = seed
+        self.seed: Seed | None = seed
         self._choose = None if seed is None else seed if callable(seed) else lots(seed)
-        self._queue = deque()
+        self._queue: deque[Task[object]] = deque()
         self._timers = TimerHeap()
-        self._inbox = deque()
+        self._inbox: deque[Callback] = deque()
         self._bell = Bell()
-        self._tasks = {}
+        self._tasks: dict[int, Task[object]] = {}
         self._born = 0
         self._streak = 0  # slices that ended since a task was last made runnable
         self._steps = 0  # hand-overs at this instant
-        self._urgent = None  # the main task, when an alarm wakes it ahead of the queue
-        self._settlers = []
-        self._watchers = ()  # functions that are called whenever an instant is over
-        self._unclaimed = []  # tasks dead of an exception that nobody has looked at yet
+        self._urgent: Task[object] | None = None  # the main task, when an alarm wakes it ahead of the queue
+        self._settlers: list[Task[object]] = []
+        self._watchers: tuple[Callback, ...] = ()  # functions that are called whenever an instant is over
+        self._unclaimed: list[Task[object]] = []  # tasks dead of an exception that nobody has looked at yet
         self._blocking = 0
         self._outside = 0
         self._interrupts = 0  # sent, but not yet read from the inbox
-        self._asked_at = None  # when the first of these was sent, by the wall's clock
+        self._asked_at: float | None = None  # when the first of these was sent, by the wall's clock
         self._unwinding = False  # one was raised in the main task and is not over
         self._stopping = False
-        self._stops_since = None
+        self._stops_since: float | None = None
         self._patience = PATIENCE
-        self._at_stop = {}  # its keys: see `at_stop`
-        self._wakers = ()  # functions that end what the main thread waits for outside of the kernel: see `woken_by`
-        self.cleanup_limit = CLEANUP_LIMIT
-        self.ended_by = None  # the number of the signal that asked the process to end
+        self._at_stop: dict[Callback, None] = {}  # its keys: see `at_stop`
+        self._wakers: tuple[Callback, ...] = ()  # functions that end what the main thread waits for outside of the kernel: see `woken_by`
+        self.cleanup_limit: float | None = CLEANUP_LIMIT
+        self.ended_by: int | None = None  # the number of the signal that asked the process to end
         self.stopped = False
-        self.when_stopped = lambda: None  # for `active`, which keeps track of the kernels
+        self.when_stopped: Callback = lambda: None  # for `active`, which keeps track of the kernels
         self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
         self._scheduler = SchedulerTask(self)
-        self.main = main = self._new_task(None, (), "main", None)
+        main: Task[object] = self._new_task(None, (), "main", None)
+        self.main = main
         main.carrier = self.backend.adopt(self)
         main.state = RUNNING
-        self.current = main
+        self.current: Task[object] = main
         budget.renew()
 
     # ------------------------------------------------------------------ tasks
 
     @property
-    def tasks(self):
+    def tasks(self) -> list[Task[object]]:
         """The tasks that are alive, oldest first; the main task is the first."""
         return list(self._tasks.values())
 
     @property
-    def untouched(self):
+    def untouched(self) -> bool:
         """Whether it is as it was at first: no task but the main one, no timer, no message, and no time has passed."""
-        return (len(self._tasks) == 1 and self.current is self.main and not self.now()
-                and not (self.stopped or self._at_stop or self._timers.entries or self._inbox or self._unclaimed))
+        return (
+            len(self._tasks) == 1
+            and self.current is self.main
+            and not self.now()
+            and not (self.stopped or self._at_stop or self._timers.entries or self._inbox or self._unclaimed)
+        )
 
-    def now(self):
+    def now(self) -> float:
         """Seconds since the kernel was started."""
         return self.clock.now()
 
     @property
-    def epoch(self):
+    def epoch(self) -> float:
         """The moment at which its time began, in seconds since 1970."""
         return self.clock.epoch
 
-    def spawn(self, fn, *args, name=None, parent=None):
+    def spawn(
+        self, fn: Callable[[*Arguments], T], *args: *Arguments, name: Name | None = None, parent: Task[object] | None = None
+    ) -> Task[T]:
         """A new task that will run FN(*ARGS), at the end of the queue. PARENT: the current task if not given."""
         me = self.current
         carrier = me.carrier
@@ -129,13 +153,13 @@ class Kernel(Endings, Outside):
         self._streak = 0
         return task
 
-    def _new_task(self, fn, args, name, parent):
+    def _new_task(self, fn: Callable[..., T] | None, args: tuple[object, ...], name: Name, parent: Task[object] | None) -> Task[T]:
         number = self._born
         self._born = number + 1
         task = self._tasks[number] = Task(self, number, fn, args, name, parent)
         return task
 
-    def _enqueue(self, task):
+    def _enqueue(self, task: Task[object]) -> None:
         task.state = RUNNABLE
         task.preempted = False
         self._queue.append(task)
@@ -143,7 +167,7 @@ class Kernel(Endings, Outside):
 
     # ------------------------------------------------------------------ park points
 
-    def park(self, why="", until=None):
+    def park(self, why: Why = "", until: float | None = None) -> bool:
         """Give the baton away until `unpark` (True) or until the clock reaches UNTIL (False).
 
         WHY, text or a function of no arguments that gives one, stands in reports. Raises what the task is asked to
@@ -174,7 +198,7 @@ class Kernel(Endings, Outside):
             me.deliver()
         return me.woken
 
-    def unpark(self, task):
+    def unpark(self, task: Task[object]) -> bool:
         """Make a parked task runnable; returns True if it was parked, else nothing happens and the result is False."""
         carrier = self.current.carrier
         if carrier is not None and carrier.ident != get_ident():
@@ -184,7 +208,7 @@ class Kernel(Endings, Outside):
         self._wake(task, True)
         return True
 
-    def _wake(self, task, woken):
+    def _wake(self, task: Task[object], woken: bool) -> None:
         task.ticket += 1
         task.woken = woken
         if task.timed:
@@ -196,7 +220,7 @@ class Kernel(Endings, Outside):
         self._queue.append(task)
         self._streak = 0
 
-    def rouse(self, task):
+    def rouse(self, task: Task[object]) -> None:
         """Wake TASK, wherever it waits inside of the kernel, because something is to be raised in it."""
         if task.state is PARKED:
             self._wake(task, True)
@@ -204,7 +228,7 @@ class Kernel(Endings, Outside):
             self._settlers.remove(task)
             self._enqueue(task)
 
-    def sleep(self, seconds):
+    def sleep(self, seconds: float) -> None:
         """Park for SECONDS of the kernel's clock; zero and less yields. Wake-ups do not cut it short."""
         if not seconds > 0:
             if seconds != seconds:
@@ -215,7 +239,7 @@ class Kernel(Endings, Outside):
         while self.park(lambda: f"the time {until:g} s (sleep {seconds:g})", until):
             pass
 
-    def yield_(self):
+    def yield_(self) -> None:
         """Go to the end of the queue. Counts as a checkpoint: who only yields uses up a slice too."""
         left = budget.left - 1
         if left < 0:
@@ -233,7 +257,7 @@ class Kernel(Endings, Outside):
         if me.attention:
             me.deliver()
 
-    def end_slice(self):
+    def end_slice(self) -> None:
         """What a checkpoint does when the slice is over: others get a turn, and requests to end are delivered."""
         me = self.current
         if me is self._scheduler:
@@ -248,6 +272,8 @@ class Kernel(Endings, Outside):
             budget.renew()  # the slice was ended for this, and not because the task is busy: no time passes
             return
         need_headroom()
+        if images.waiting:
+            images.breathe()
         me.state = RUNNABLE
         me.preempted = True
         self._queue.append(me)
@@ -256,7 +282,7 @@ class Kernel(Endings, Outside):
         if me.attention:
             me.deliver()
 
-    def settle(self):
+    def settle(self) -> None:
         """Let the others run until none is runnable at this instant. The clock does not move.
 
         Tasks that are busy all the time count as done for this instant once each has used up a slice. The REPL calls
@@ -277,16 +303,16 @@ class Kernel(Endings, Outside):
         self.interrupt_over()
         self._report_unclaimed()
 
-    def shield(self):
+    def shield(self) -> shield:
         """A context manager: requests to end the current task wait until the block is left."""
         return shield(self.current)
 
-    def _refuse(self, what):
+    def _refuse(self, what: str) -> NoReturn:
         raise KernelError(f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only.")
 
     # ------------------------------------------------------------------ the baton
 
-    def rest(self, me):
+    def rest(self, me: Task[object]) -> None:
         """Give the baton away; returns when ME has it again. ME is queued or parked already."""
         dynamic = me.dynamic
         if dynamic is not None:
@@ -295,7 +321,7 @@ class Kernel(Endings, Outside):
         if dynamic is not None:
             dynamic.enter()
 
-    def hand_over(self, me):
+    def hand_over(self, me: Task[object]) -> None:
         """The same for a task whose dynamic state is put away."""
         task = self._next()
         while task.carrier is None:
@@ -314,7 +340,7 @@ class Kernel(Endings, Outside):
         me.state = RUNNING
         budget.left = SLICE
 
-    def carry(self, carrier):
+    def carry(self, carrier: Carrier) -> Carrier:
         """The job of every carrier: live the life of the current task, and of new tasks that come next.
 
         Returns the carrier that gets the baton. A carrier that was taken as a spare, to hold the baton while a task is
@@ -337,7 +363,7 @@ class Kernel(Endings, Outside):
                 return task.carrier
             task.carrier = carrier
 
-    def _bury(self, task):
+    def _bury(self, task: Task[object]) -> None:
         """TASK has ended: tell those who wait for it."""
         self.current = self._scheduler
         task.state = DEAD
@@ -362,7 +388,7 @@ class Kernel(Endings, Outside):
         if self._stopping:
             self.unpark(self.main)
 
-    def _next(self):
+    def _next(self) -> Task[object]:
         """Find the task that gets the baton. The heart of the matter; see the top of this file."""
         self.current = self._scheduler
         queue, entries, clock = self._queue, self._timers.entries, self.clock
@@ -395,10 +421,10 @@ class Kernel(Endings, Outside):
             if not self._inbox:
                 self._end_of_instant()
 
-    def _all_busy(self):
+    def _all_busy(self) -> bool:
         return self._choose is None or all(task.preempted for task in self._queue)
 
-    def _chosen(self):
+    def _chosen(self) -> Task[object]:
         # A task that has not begun never overtakes one spawned before it: branches begin in the order in which they stand.
         queue = self._queue
         number = self._choose(queue)
@@ -408,7 +434,7 @@ class Kernel(Endings, Outside):
         del queue[number]
         return task
 
-    def _time_passes(self):
+    def _time_passes(self) -> None:
         """Busy tasks have used up this instant, and the others' timers shall not wait for ever."""
         self._streak = self._steps = 0
         if self._watchers:
@@ -424,7 +450,7 @@ class Kernel(Endings, Outside):
         if self._limit is not None and self.clock.now() > self._limit:
             self._reach_limit()
 
-    def _end_of_instant(self):
+    def _end_of_instant(self) -> None:
         """Nothing is runnable: go to the next timer, or wait for a message, or tell the main task that it is over."""
         if self._unclaimed:
             self._report_unclaimed()
@@ -447,28 +473,35 @@ class Kernel(Endings, Outside):
                 when = INFINITY
             self._wait(when if limit is None or when < limit else limit)
 
-    def _wait(self, when):
+    def _wait(self, when: float | None) -> None:
         try:
-            if when is None:
-                self._bell.wait()
-            else:
-                self.clock.go_to(when, self._bell)
+            clock = self.clock
+            if when is not None and clock.virtual and (clock.pace is None or not clock.pace.waits):
+                if images.waiting:
+                    images.breathe()
+                clock.go_to(when, self._bell)
+                return
+            with images.outside():
+                if when is None:
+                    self._bell.wait()
+                else:
+                    clock.go_to(when, self._bell)
         except KeyboardInterrupt:  # without a handler of ours Python raises it right here, in the main thread
             self.interrupt()
 
-    def _time_is_wanted(self):
+    def _time_is_wanted(self) -> bool:
         """Whether time passes though a task is outside: only the main task is, at the prompt, and somebody else wants it to pass."""
         if self._blocking != 1 or self.main.state is not BLOCKED:
             return False
         clock = self.clock
         return clock.wanted > 0 if clock.pace is None else clock.pace.time_is_wanted
 
-    def wait_for_message(self, seconds):
+    def wait_for_message(self, seconds: float) -> None:
         """Wait until something comes into the inbox, SECONDS at most; may come back early. Holds up all tasks."""
         if not self._inbox:
             self._bell.wait(seconds)
 
-    def watch_instants(self, fn):
+    def watch_instants(self, fn: Callback) -> None:
         """Call FN in the scheduler whenever nothing is left to do at this instant, before time goes on. It must not park.
 
         Then every task is where it will be until something new happens: the moment to look at them. While nothing happens, as at
@@ -476,29 +509,29 @@ class Kernel(Endings, Outside):
         """
         self._watchers = (*self._watchers, fn)
 
-    def unwatch_instants(self, fn):
+    def unwatch_instants(self, fn: Callback) -> None:
         """Call FN no more."""
         self._watchers = tuple(watcher for watcher in self._watchers if watcher != fn)
 
-    def _tell_watchers(self):
+    def _tell_watchers(self) -> bool:
         """Returns whether there is something to do now."""
         for watcher in self._watchers:
             self._call(watcher)
         return bool(self._queue or self._inbox)
 
-    def _reach_limit(self):
+    def _reach_limit(self) -> None:
         self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
         self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
 
     # ------------------------------------------------------------------ timers
 
-    def call_at(self, time, fn):
+    def call_at(self, time: float, fn: Callback) -> Timer:
         """Call FN in the scheduler when the clock reaches TIME (s). FN must not park. Returns the Timer."""
         if not time < INFINITY:
             raise ValueError(f"A timer needs a finite time, not {time}.")
         return self._timers.add(time, fn)
 
-    def call_every(self, period, fn, first=None):
+    def call_every(self, period: float, fn: Callback, first: float | None = None) -> Timer:
         """Call FN every PERIOD seconds, from the time FIRST on (one period from now if not given), without drift."""
         if not 0 < period < INFINITY:
             raise ValueError(f"The period of a timer must be more than 0 s and finite, not {period}.")
@@ -506,7 +539,7 @@ class Kernel(Endings, Outside):
             first = self.clock.now() + period
         return self._timers.add(first, fn, period)
 
-    def _fire(self, now):
+    def _fire(self, now: float) -> None:
         """Fire what is due. What the callbacks add comes in the next turn, so that none can keep the baton for ever."""
         timers = self._timers
         entries, newest = timers.entries, timers.order
@@ -526,7 +559,7 @@ class Kernel(Endings, Outside):
                 timers.push(what)
             self._call(fn)
 
-    def _call(self, fn):
+    def _call(self, fn: Callback) -> None:
         try:
             fn()
         except (Interrupted, Terminated):

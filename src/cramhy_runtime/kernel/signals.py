@@ -23,7 +23,7 @@ import threading
 import time
 from contextlib import contextmanager
 
-from . import reports
+from . import images, reports, uncaught
 from .budget import budget
 from .errors import Interrupted, Terminated
 
@@ -36,7 +36,7 @@ FORCE = 2.0  # s that a process gets to end after its cleanup was given up
 LAST = 2.0  # s that what serves plans gets to be closed when the process is ended by force
 LOOK = 0.05  # s between two looks
 
-_kernels = []  # those that listen, the innermost last
+_kernels = []  # (image, kernel) of those that listen, the innermost last
 _before = {}  # the handlers that stood there before ours
 _held = 0  # how many programs keep our handlers between kernels
 _program = None  # the process of these programs
@@ -44,8 +44,8 @@ _program = None  # the process of these programs
 received = []
 """The numbers of the signals that have asked this process to end, the first first."""
 
-leaving = False
-"""Whether the main program is over, and Python starts no more threads."""
+leaving = threading.Event()
+"""It is set when the main program is over, and Python starts no more threads."""
 
 restore_terminal = []
 """Functions that bring the terminal back to what it was; called when a process is ended by force."""
@@ -54,15 +54,21 @@ restore_terminal = []
 def listen(kernel):
     """From now on KERNEL hears signals. Only Python's main thread does, so elsewhere nothing happens."""
     if threading.current_thread() is threading.main_thread():
-        _kernels.append(kernel)
+        _kernels.append((images.entered_by_main_thread(), kernel))
         _install()
 
 
 def forget(kernel):
     """KERNEL has stopped: signals are for the one before it, or for whoever had them before us."""
-    if kernel in _kernels:
-        _kernels.remove(kernel)
+    listening = len(_kernels)
+    _kernels[:] = [each for each in _kernels if each[1] is not kernel]
+    if len(_kernels) < listening:
         _restore()
+
+
+def listening_images():
+    """The images that have a kernel which hears signals, without those that another thread is in."""
+    return list(dict.fromkeys(image for image, _ in _kernels if image.may_be_entered()))
 
 
 def _forget_parent():
@@ -71,8 +77,7 @@ def _forget_parent():
     _restore()
 
 
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_parent)
+images.in_forked_child(_forget_parent)
 
 
 @contextmanager
@@ -92,13 +97,12 @@ def held():
 def answered():
     """The program is there until somebody ends it, and has done what the signals asked for: its exit status is its own."""
     received.clear()
-    for kernel in _kernels:
+    for _, kernel in _kernels:
         kernel.ended_by = None
 
 
 def _install():
-    if sys.excepthook is sys.__excepthook__:
-        sys.excepthook = _uncaught
+    uncaught.install()
     for number in _HEARD:
         if number not in _before:
             handler = _signal.getsignal(number)
@@ -116,19 +120,9 @@ def _restore():
     _before.clear()
 
 
-def _uncaught(kind, exception, traceback):
-    """The main program ends by an exception."""
-    if issubclass(kind, Interrupted) and not hasattr(sys, "ps1") and not sys.flags.interactive:
-        _uncaught_interrupts.append(exception)
-    sys.__excepthook__(kind, exception, traceback)
-
-
-_uncaught_interrupts = []
-
-
 def end_as_interrupted():
     """The last thing of a process whose main program did not catch Ctrl-C: it ends by the signal, as Python ends it. Else nothing."""
-    if _uncaught_interrupts:
+    if uncaught.ended_by_interrupt():
         end_by(signal.SIGINT)
 
 
@@ -140,8 +134,15 @@ def end_by(number):
         signal.raise_signal(number)
 
 
+def _listener():
+    """The kernel that signals are for: the innermost one of the image that the main thread is in. The kernel of an image that was left
+    does not run, and would never read a message."""
+    here = images.entered_by_main_thread()
+    return next((kernel for image, kernel in reversed(_kernels) if image is here), None)
+
+
 def _hear(number, frame):
-    kernel = _kernels[-1] if _kernels else None
+    kernel = _listener()
     if number != signal.SIGINT:
         received.append(number)
     if kernel is None or kernel.stopped:
@@ -205,6 +206,31 @@ def _watch(kernel, number):
         began = kernel.cleanup_began()  # what runs beside the plan cleans up after it, and has as long again
 
 
+@contextmanager
+def interrupted_after(seconds, kernel):
+    """Interrupt the main task of KERNEL if the block takes longer than SECONDS of the wall's clock. Yields an event that is set then.
+
+    A thread looks on, because SIGALRM is heard by the main thread only, and not at all on Windows. Where the system gives no more
+    threads the block may take as long as it likes.
+    """
+    late, over = threading.Event(), threading.Event()
+
+    def look_on():
+        if not over.wait(seconds):
+            late.set()
+            kernel.interrupt()
+
+    watcher = threading.Thread(target=look_on, name="cramhy limit", daemon=True)
+    try:
+        watcher.start()
+    except RuntimeError:
+        pass
+    try:
+        yield late
+    finally:
+        over.set()
+
+
 def _send_to_main_thread(number):
     if hasattr(signal, "pthread_kill"):
         signal.pthread_kill(threading.main_thread().ident, number)
@@ -220,9 +246,11 @@ def _end_by_force(kernel, number):
     name = "The program" if task.carrier is None else task.name
 
     def say():
-        reports.tell(f"{name} did not come to a point where it can be ended within {kernel.cleanup_limit + FORCE:g} s after "
-                     f"{signal.Signals(number).name}, so the process ends without its cleanup. A long computation in Python should call "
-                     "kernel.checkpoint() now and then, and a call that blocks belongs into kernel.run_blocking.")
+        reports.tell(
+            f"{name} did not come to a point where it can be ended within {kernel.cleanup_limit + FORCE:g} s after "
+            f"{signal.Signals(number).name}, so the process ends without its cleanup. A long computation in Python should call "
+            "kernel.checkpoint() now and then, and a call that blocks belongs into kernel.run_blocking."
+        )
 
     for last in (kernel.close_what_serves, say, _flush, *restore_terminal):  # each may be stuck, as on a pipe that nobody reads
         helper = threading.Thread(target=last, daemon=True)

@@ -15,17 +15,11 @@ import io
 import os
 import select
 import sys
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 
-from . import signals
 from .active import run_blocking, woken_by, yield_
+from .terminals import INTERRUPT, ctrl_c_as_a_key, readable, typed_ahead
 
-try:
-    import termios
-except ImportError:  # not a POSIX system
-    termios = None
-
-INTERRUPT = "\x03"
 CHUNK = 65536
 
 
@@ -101,7 +95,11 @@ class StandardInput(io.TextIOBase):
 
     def ready(self):
         """Whether something can be read without a wait."""
-        return bool(self._text) or self._ended or bool(select.select([self._fd], [], [], 0)[0])
+        return bool(self._text) or self._ended or bool(readable(self._fd, 0))
+
+    def holds_text(self):
+        """Whether something was read already that nobody has taken, so that others who read the same file would not see it."""
+        return bool(self._text)
 
     def _take_line(self, size):
         end = self._text.find("\n") + 1
@@ -159,7 +157,7 @@ class StandardInput(io.TextIOBase):
                 yield
         finally:
             self._interrupted = False  # it was for the line
-            while not self._ended and select.select([self._fd], [], [], 0)[0]:
+            while not self._ended and readable(self._fd, 0):
                 self._fill()
             self._keys = False
             if self._interrupted:
@@ -168,9 +166,9 @@ class StandardInput(io.TextIOBase):
 
     def forget_unfinished_line(self):
         """Throw away what was typed on the terminal and not entered: Ctrl-C was pressed meanwhile."""
-        if termios is not None and self.isatty():
+        if self.isatty():
             with typed_ahead(self._fd):
-                while not self._ended and select.select([self._fd], [], [], 0)[0]:
+                while not self._ended and readable(self._fd, 0):
                     self._fill()
             self._text = drop_unfinished(self._text, "\n".__eq__)
 
@@ -181,68 +179,6 @@ def drop_unfinished(typed, is_end):
     while end and not is_end(typed[end - 1]):
         end -= 1
     return typed[:end]
-
-
-def ctrl_c_as_a_key(fd, end_of_line=False):
-    """While the block runs, Ctrl-C on the terminal FD sends no signal. It is a character; END_OF_LINE: one that ends a line."""
-    if termios is None:
-        return nullcontext()
-    keys = {termios.VINTR: os.fpathconf(fd, "PC_VDISABLE").to_bytes(1, "little")}
-    return terminal_modes(fd, keys={**keys, termios.VEOL: INTERRUPT.encode()} if end_of_line else keys)
-
-
-def typed_ahead(fd):
-    """While the block runs, a read gets what was typed on the terminal FD so far: the system gives out a line without its end, too."""
-    return nullcontext() if termios is None else terminal_modes(fd, off=termios.ICANON | termios.ECHO)
-
-
-@contextmanager
-def terminal_modes(fd, on=0, off=0, keys=None):
-    """While the block runs the terminal FD has other local modes (ON, OFF: bits of termios) and special KEYS; then those it had."""
-    try:
-        before = termios.tcgetattr(fd)
-        changed = [*before[:6], list(before[6])]
-        changed[3] = before[3] & ~off | on
-        for key, value in (keys or {}).items():
-            changed[6][key] = value
-        termios.tcsetattr(fd, termios.TCSANOW, changed)
-    except termios.error:  # the terminal was closed
-        yield
-        return
-    try:
-        yield
-    finally:
-        _set_modes(fd, before)
-
-
-def _set_modes(fd, modes):
-    try:
-        termios.tcsetattr(fd, termios.TCSANOW, modes)
-    except termios.error:
-        pass  # the terminal was closed
-
-
-@contextmanager
-def terminal_of_a_session():
-    """While the block runs, the keys that send signals do not throw away what was typed ahead. Afterwards, however the process
-    ends, the terminal is as it was."""
-    if termios is None or not _is_terminal(0):
-        yield
-        return
-    before = termios.tcgetattr(0)
-    signals.restore_terminal.append(lambda: _set_modes(0, before))
-    with terminal_modes(0, on=termios.NOFLSH):
-        try:
-            yield
-        finally:
-            signals.restore_terminal.pop()
-
-
-def _is_terminal(fd):
-    try:
-        return os.isatty(fd)
-    except OSError:
-        return False
 
 
 def install():

@@ -6,7 +6,17 @@ first; a periodic timer keeps the order it was born with. A task that is woken b
 behind: the ticket no longer fits, and the entry is skipped, or swept out with others when more than half are stale.
 """
 
+from __future__ import annotations
+
 from heapq import heapify, heappop, heappush
+
+from .typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .signatures import Callback
+    from .tasks import Task
+
+    Entry = tuple[float, int, Any, int]  # when, its order, a Timer or a Task, a ticket
 
 CALLBACK = -1  # the ticket of entries that are timers; tasks' tickets count from 0
 SWEEP_FROM = 64  # stale entries below this number are not worth a sweep
@@ -18,26 +28,26 @@ class Timer:
 
     __slots__ = ("fn", "time", "order", "first", "period", "count", "_heap")
 
-    def __init__(self, heap, time, order, fn, period=None):
+    def __init__(self, heap: TimerHeap, time: float, order: int, fn: Callback, period: float | None = None):
         self._heap = heap
-        self.fn = fn
+        self.fn: Callback | None = fn
         self.time = self.first = time
         self.order = order
         self.period = period
         self.count = 0
 
     @property
-    def active(self):
+    def active(self) -> bool:
         """True as long as it will fire (again)."""
         return self.fn is not None
 
-    def cancel(self):
+    def cancel(self) -> None:
         """It fires no more. May be called at any time, in the callback too."""
         if self.fn is not None:
             self.fn = None
             self._heap.went_stale()
 
-    def advance(self, now):
+    def advance(self, now: float) -> None:
         """Set `time` to that of the next firing: by multiplication, so that rounding does not add up to a drift."""
         self.count += 1
         self.time = self.first + self.count * self.period
@@ -45,7 +55,7 @@ class Timer:
             self.count = max(self.count, int((now - self.first) / self.period))
             self.time = self.first + self.count * self.period
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         every = f" every {self.period:g} s" if self.period else ""
         return f"<timer at {self.time:g} s{every}{'' if self.active else ', cancelled'}>"
 
@@ -55,47 +65,47 @@ class TimerHeap:
 
     __slots__ = ("entries", "order", "_stale")
 
-    def __init__(self):
-        self.entries = []
+    def __init__(self) -> None:
+        self.entries: list[Entry] = []
         self.order = 0
         self._stale = 0
 
-    def add(self, time, fn, period=None):
+    def add(self, time: float, fn: Callback, period: float | None = None) -> Timer:
         """A new timer that calls FN at TIME, and every PERIOD seconds from then on if there is one."""
         timer = Timer(self, time, self.order, fn, period)
         self.order += 1
         self.push(timer)
         return timer
 
-    def push(self, timer):
+    def push(self, timer: Timer) -> None:
         heappush(self.entries, (timer.time, timer.order, timer, CALLBACK))
 
-    def add_deadline(self, time, task):
+    def add_deadline(self, time: float, task: Task[object]) -> None:
         """Wake TASK at TIME, unless it was woken before."""
         heappush(self.entries, (time, self.order, task, task.ticket))
         self.order += 1
 
-    def pop(self):
+    def pop(self) -> Entry:
         """Take the first entry out, whether it counts or not."""
         entry = heappop(self.entries)
         if self._stale and not _counts(entry):
             self._stale -= 1
         return entry
 
-    def went_stale(self):
+    def went_stale(self) -> None:
         """Some entry no longer counts."""
         self._stale += 1
         if self._stale > SWEEP_FROM and self._stale * 2 > len(self.entries):
             self.sweep()
 
-    def sweep(self):
+    def sweep(self) -> None:
         """Take out the entries that no longer count; until then each holds its task."""
         # In place, because the scheduler holds this very list.
         self.entries[:] = [entry for entry in self.entries if _counts(entry)]
         heapify(self.entries)
         self._stale = 0
 
-    def next_time(self):
+    def next_time(self) -> float | None:
         """The time of the first entry that counts, or None."""
         entries = self.entries
         while entries:
@@ -105,6 +115,6 @@ class TimerHeap:
         return None
 
 
-def _counts(entry):
+def _counts(entry: Entry) -> bool:
     what, ticket = entry[2], entry[3]
     return what.fn is not None if ticket == CALLBACK else what.ticket == ticket

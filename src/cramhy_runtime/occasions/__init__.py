@@ -6,8 +6,8 @@
     occasions.holds(lisp_list(CUP_ON_TABLE))             # the binding lists under which an occasion holds, or None
 
 ``events`` events and the hooks that they reach · ``occasions`` what holds · ``time_terms`` points and stretches of time ·
-``fluent_predicates``, ``task_predicates`` what holds of fluents and tasks during an episode · ``asked_episode`` which one ·
-``symbols``, ``package`` the Lisp face. Reference: projection-and-events.md part B.
+``fluent_predicates``, ``task_predicates`` what holds of fluents and tasks during an episode · ``current_episode`` which one ·
+``symbols`` the Lisp package. Reference: projection-and-events.md part B.
 """
 
 from . import fluent_predicates as _fluent_predicates  # noqa: F401

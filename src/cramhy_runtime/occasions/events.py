@@ -6,8 +6,8 @@ that calls it; there is no queue. ``(clear-belief)`` is the hook by which all pi
 
 from __future__ import annotations
 
-from ..lisp.hooks import Hook
-from ..lisp.objects.generic import generic
+from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.ground.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 
@@ -25,6 +25,10 @@ class Event:
         self.timestamp = current_timestamp() if timestamp is None else timestamp
 
 
-event_timestamp = generic("CRAM-OCCASIONS-EVENTS::EVENT-TIMESTAMP", "(event)", documentation="""
-When ``event`` happened: seconds, a double-float.""")
+event_timestamp = generic(
+    "CRAM-OCCASIONS-EVENTS::EVENT-TIMESTAMP",
+    "(event)",
+    documentation="""
+When ``event`` happened: seconds, a double-float.""",
+)
 event_timestamp.method(Event)(lambda event: event.timestamp)

@@ -6,13 +6,13 @@ Source: projection-and-events.md B4.
 
 from __future__ import annotations
 
-from ..cpl.fluents import Fluent
+from cramhy_runtime.cpl.fluents.fluents import Fluent
 from ..episodes.queries import fluent_durations
-from ..lisp.data import Symbol, lisp_list
-from ..prolog.facts import define_fact_group
-from ..prolog.natives import deref, predicate, test
-from ..prolog.terms import Var
-from .asked_episode import asked_episode
+from cramhy_runtime.ground.data import Symbol, lisp_list
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
+from cramhy_runtime.prolog.builtins.native_predicates import deref, predicate, test
+from cramhy_runtime.prolog.terms.terms import Var
+from .current_episode import asked_episode
 from .occasions import HOLDS
 from .symbols import sym
 from .time_terms import included
@@ -20,9 +20,16 @@ from .time_terms import included
 GROUP = "CRAM-OCCASIONS-EVENTS::FLUENTS"
 _NAME, _VALUE, _TIME = sym("CRAM-OCCASIONS-EVENTS::?NAME"), sym("CRAM-OCCASIONS-EVENTS::?VALUE"), sym("CRAM-OCCASIONS-EVENTS::?TIME")
 
-define_fact_group(sym(GROUP), [HOLDS], [
-    lisp_list(lisp_list(HOLDS, lisp_list(sym("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE"), _NAME, _VALUE), _TIME),
-              lisp_list(sym("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE-AT"), _NAME, _VALUE, _TIME))])
+define_fact_group(
+    sym(GROUP),
+    [HOLDS],
+    [
+        lisp_list(
+            lisp_list(HOLDS, lisp_list(sym("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE"), _NAME, _VALUE), _TIME),
+            lisp_list(sym("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE-AT"), _NAME, _VALUE, _TIME),
+        )
+    ],
+)
 
 
 @predicate("CPL-IMPL::FLUENT", group=GROUP)

@@ -9,11 +9,12 @@ Repaired: with a time, the function asks the clauses of two arguments, too; the 
 
 from __future__ import annotations
 
-from ..lisp.data import lisp_list
-from ..lisp.objects.generic import generic
-from ..prolog.facts import define_fact_group
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
 from ..prolog.query import prolog
-from ..prolog.rete import clear_alpha_network, match_fact, rete_assert, rete_holds, rete_retract
+from cramhy_runtime.prolog.builtins.rete import clear_alpha_network, match_fact, rete_assert, rete_holds, rete_retract
 from ..utilities.lazy_lists import force_ll
 from ..utilities.patterns import ANONYMOUS
 from ..utilities.small_functions import deprecate
@@ -22,24 +23,30 @@ from .symbols import sym
 
 HOLDS, OCCASION = sym("CRAM-OCCASIONS-EVENTS::HOLDS"), sym("CRAM-OCCASIONS-EVENTS::?OCCASION")
 
-define_fact_group(sym("CRAM-OCCASIONS-EVENTS::OCCASIONS"), [HOLDS], [
-    lisp_list(lisp_list(HOLDS, OCCASION), lisp_list(sym("CRAM-PROLOG::CALL"), OCCASION))])
+define_fact_group(
+    sym("CRAM-OCCASIONS-EVENTS::OCCASIONS"), [HOLDS], [lisp_list(lisp_list(HOLDS, OCCASION), lisp_list(sym("CRAM-PROLOG::CALL"), OCCASION))]
+)
 
-holds = generic("CRAM-OCCASIONS-EVENTS::HOLDS", "(occasion &optional time-specification)", documentation="""
-The lazy list of the binding lists under which ``occasion`` holds: now, or at the time that is given as a term such as ``(at 5.0d0)``.""")
+holds = generic(
+    "CRAM-OCCASIONS-EVENTS::HOLDS",
+    "(occasion &optional time-specification)",
+    documentation="""
+The lazy list of the binding lists under which ``occasion`` holds: now, or at the time that is given as a term such as ``(at 5.0d0)``.""",
+)
 
 
 @holds.method(object)
 def _holds(occasion, time_specification=None):
     if time_specification is None:
         return prolog(lisp_list(HOLDS, occasion))
-    return prolog(lisp_list(sym("OR"), lisp_list(HOLDS, occasion, time_specification),
-                            lisp_list(HOLDS, ANONYMOUS, occasion, time_specification)))
+    return prolog(
+        lisp_list(sym("OR"), lisp_list(HOLDS, occasion, time_specification), lisp_list(HOLDS, ANONYMOUS, occasion, time_specification))
+    )
 
 
 # ------------------------------------------------------------------------------------------------------- deprecated functions
 
-_asserted = []  # the occasions that assert_occasion remembers
+_asserted = per_image([])  # the occasions that assert_occasion remembers
 
 
 def assert_occasion(occasion):
@@ -70,5 +77,4 @@ def _forget_occasions():
     clear_alpha_network()
 
 
-clear_belief.add(_forget_occasions, "OCCASIONS")
-
+clear_belief.add(_forget_occasions, "OCCASIONS", user=False)

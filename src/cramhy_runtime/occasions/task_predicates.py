@@ -10,19 +10,19 @@ tracing, too.
 
 from __future__ import annotations
 
-from ..cpl.failure_types import PlanFailure, opened
+from cramhy_runtime.cpl.failures.failure_types import PlanFailure, opened
 from ..cpl.statuses import CREATED, DEAD, FAILED, RUNNING
-from ..cpl.tree import TaskTreeNode, goal_task_tree_node_goal, goal_task_tree_node_p, task_tree_node_result
+from cramhy_runtime.cpl.tree.task_tree import TaskTreeNode, goal_task_tree_node_goal, goal_task_tree_node_p, task_tree_node_result
 from ..episodes.knowledge import stamp
 from ..episodes.queries import episode_knowledge_max_time, fluent_durations
 from ..episodes.trees import nodes_of
-from ..lisp.conditions import Condition, SimpleWarning, warn
-from ..lisp.data import MultipleValues, lisp_list, one
-from ..lisp.objects.classes import class_name
-from ..prolog.facts import define_fact_group
-from ..prolog.natives import deref, predicate, test
-from ..prolog.terms import Var
-from .asked_episode import asked_episode, asked_nodes
+from cramhy_runtime.ground.conditions import Condition, SimpleWarning, warn
+from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
+from cramhy_runtime.ground.classes import class_name
+from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
+from cramhy_runtime.prolog.builtins.native_predicates import deref, predicate, test
+from cramhy_runtime.prolog.terms.terms import Var
+from .current_episode import asked_episode, asked_nodes
 from .occasions import HOLDS
 from .symbols import sym
 from .time_terms import included
@@ -30,9 +30,16 @@ from .time_terms import included
 GROUP = "CRAM-OCCASIONS-EVENTS::TASKS"
 _TASK, _STATUS, _TIME = sym("CRAM-OCCASIONS-EVENTS::?TASK"), sym("CRAM-OCCASIONS-EVENTS::?STATUS"), sym("CRAM-OCCASIONS-EVENTS::?TIME")
 
-define_fact_group(sym(GROUP), [HOLDS], [
-    lisp_list(lisp_list(HOLDS, lisp_list(sym("CRAM-OCCASIONS-EVENTS::TASK-STATUS"), _TASK, _STATUS), _TIME),
-              lisp_list(sym("CRAM-OCCASIONS-EVENTS::TASK-STATUS-AT"), _TASK, _STATUS, _TIME))])
+define_fact_group(
+    sym(GROUP),
+    [HOLDS],
+    [
+        lisp_list(
+            lisp_list(HOLDS, lisp_list(sym("CRAM-OCCASIONS-EVENTS::TASK-STATUS"), _TASK, _STATUS), _TIME),
+            lisp_list(sym("CRAM-OCCASIONS-EVENTS::TASK-STATUS-AT"), _TASK, _STATUS, _TIME),
+        )
+    ],
+)
 
 
 def _nodes(term, functor):
@@ -83,13 +90,17 @@ def goal_task(m, node):
 
 
 _of_each_node("CPL-IMPL::TASK-PATH", lambda node: node.path)
-_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-RESULT",
-              lambda node: NOTHING if _task_of(node) is None else one(_plain(task_tree_node_result(node))))
-_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-STATUS-FLUENT",
-              lambda node: NOTHING if _task_of(node) is None else _task_of(node).status_fluent.name)
+_of_each_node(
+    "CRAM-OCCASIONS-EVENTS::TASK-RESULT", lambda node: NOTHING if _task_of(node) is None else one(_plain(task_tree_node_result(node)))
+)
+_of_each_node(
+    "CRAM-OCCASIONS-EVENTS::TASK-STATUS-FLUENT", lambda node: NOTHING if _task_of(node) is None else _task_of(node).status_fluent.name
+)
 _of_each_node("CRAM-OCCASIONS-EVENTS::TASK-GOAL", lambda node: goal_task_tree_node_goal(node) if goal_task_tree_node_p(node) else NOTHING)
-_of_each_node("CRAM-OCCASIONS-EVENTS::TASK-OUTCOME",
-              lambda node: _task_of(node).status if _task_of(node) and _task_of(node).status in DEAD else NOTHING)
+_of_each_node(
+    "CRAM-OCCASIONS-EVENTS::TASK-OUTCOME",
+    lambda node: _task_of(node).status if _task_of(node) and _task_of(node).status in DEAD else NOTHING,
+)
 _of_each_node("CRAM-OCCASIONS-EVENTS::TASK-ERROR", lambda node: _error(_task_of(node)))
 _of_each_node("CRAM-OCCASIONS-EVENTS::TASK-CREATED-AT", lambda node: _first_time(node, (CREATED,), None))
 _of_each_node("CRAM-OCCASIONS-EVENTS::TASK-STARTED-AT", lambda node: _first_time(node, (RUNNING,), "started_at"))

@@ -6,11 +6,11 @@ nothing, and a warning says so. Source: projection-and-events.md B3.
 
 from __future__ import annotations
 
-from ..lisp.conditions import SimpleWarning, warn
-from ..lisp.data import Cons, DoubleFloat, lisp_list
-from ..lisp.numbers.arithmetic import is_real
-from ..prolog.natives import deref, test
-from ..prolog.terms import Var, resolve
+from cramhy_runtime.ground.conditions import SimpleWarning, warn
+from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.prolog.builtins.native_predicates import deref, test
+from cramhy_runtime.prolog.terms.terms import Var, resolve
 from .symbols import sym
 
 AT, THROUGHOUT, DURING = sym("CRAM-OCCASIONS-EVENTS::AT"), sym("CRAM-EXECUTION-TRACE::THROUGHOUT"), sym("CRAM-OCCASIONS-EVENTS::DURING")
@@ -65,8 +65,14 @@ def times_of(m, term, kind, count):
             times.append(time)
         else:
             if is_real(time) and not isinstance(time, bool):
-                warn(SimpleWarning("[PROLOG WARNING] The time ~s in ~s is no double-float, so it fits nothing. Write ~s.", time,
-                                   resolve(term, m.names), DoubleFloat(time)))
+                warn(
+                    SimpleWarning(
+                        "[PROLOG WARNING] The time ~s in ~s is not a double-float, so it fits nothing. Write ~s.",
+                        time,
+                        resolve(term, m.names),
+                        DoubleFloat(time),
+                    )
+                )
             return None
         cell = deref(cell.cdr)
     return times if cell is None and len(times) == count else None

@@ -27,41 +27,41 @@ The page docs/reasoning-in-python.md tells the whole story.
 
 ``modules`` the module, its queue and main loop · ``executing`` a plan's requests · ``asynchronous`` modules that return at once ·
 ``registry`` names · ``running`` starting them around a body · ``matching`` the right one for a designator, ``hints`` why there is
-none · ``executive`` perform · ``package`` the Lisp faces · ``python_modules`` Python's face.
+none · ``executive`` perform · ``symbols`` the Lisp packages · ``python_modules`` Python's face.
 Reference: process-modules.md.
 """
 
 from .asynchronous import AsynchronousProcessModule, fail_process_module, finish_process_module
 from .executing import monitor_process_module, pm_cancel, pm_execute, pm_status
 from .executive import (
-                       DesignatorGoalParsingFailure as GoalParsingFailure,
-                       DesignatorReferenceFailure as ReferenceFailure,
-                       generic_perform,
-                       try_reference_designator,
+    DesignatorGoalParsingFailure as GoalParsingFailure,
+    DesignatorReferenceFailure as ReferenceFailure,
+    generic_perform,
+    try_reference_designator,
 )
 from .matching import matching_available_process_modules, matching_process_module_names, pm_execute_matching
 from .modules import ProcessModule, define_process_module, make_module, pm_run
 from .python_modules import (
-                       AsynchronousModule,
-                       Module,
-                       cancel,
-                       execute,
-                       monitor,
-                       perform,
-                       process_module,
-                       process_modules,
-                       running_module,
-                       status,
+    AsynchronousModule,
+    Module,
+    cancel,
+    execute,
+    monitor,
+    perform,
+    process_module,
+    process_modules,
+    running_module,
+    status,
 )
 from .registry import (
-                       ProcessModuleNotRunning,
-                       ProcessModuleRunning,
-                       UnknownProcessModule,
-                       get_running_process_module,
-                       process_module_alias,
-                       wait_for_process_module_running,
-                       with_process_module_aliases,
-                       with_process_module_registered_running,
+    ProcessModuleNotRunning,
+    ProcessModuleRunning,
+    UnknownProcessModule,
+    get_running_process_module,
+    process_module_alias,
+    wait_for_process_module_running,
+    with_process_module_aliases,
+    with_process_module_registered_running,
 )
 from .running import with_process_modules_running
 

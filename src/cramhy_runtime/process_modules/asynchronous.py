@@ -14,15 +14,16 @@ from __future__ import annotations
 from collections import deque
 
 from ..cpl.current import current_task
-from ..cpl.fluent_operators import fl_funcall, fl_or, fl_pulsed
-from ..cpl.fluents import Fluent
-from ..cpl.operators import pursue
-from ..cpl.pausing import pause
-from ..cpl.waiting import wait_for, whenever
-from ..lisp.conditions import error
-from ..lisp.data import Cons
-from ..lisp.evaluation.places_in_source import circumstance
-from ..lisp.objects.generic import generic
+from cramhy_runtime.cpl.fluents.operators import fl_funcall, fl_or, fl_pulsed
+from cramhy_runtime.cpl.fluents.fluents import Fluent
+from cramhy_runtime.cpl.forms.operators import pursue
+from cramhy_runtime.cpl.tasks.pausing import pause
+from cramhy_runtime.cpl.tasks.waiting import wait_for, whenever
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.locks import Lock
 from .executing import NEVER, await_online, finished_fluent, monitor_process_module, pm_cancel, pm_execute, running_fluent
 from .modules import (
@@ -38,22 +39,54 @@ from .modules import (
 )
 from .registry import in_one_line, not_running
 
-on_input = generic("CPM::ON-INPUT", "(process-module input-designator)", documentation="""
-What an asynchronous module does with an input; users write methods.""")
-on_cancel = generic("CPM::ON-CANCEL", "(process-module input-designator)", documentation="""
-What an asynchronous module does with an unfinished designator when it is cancelled; users write methods.""")
-on_run = generic("CPM::ON-RUN", "(process-module)", documentation="""
-What an asynchronous module does beside taking inputs, from its start to its end; users write methods.""")
-synchronization_fluent = generic("CPM::SYNCHRONIZATION-FLUENT", "(process-module designator)", documentation="""
-The fluent that is true when an asynchronous module may take the designator; users write methods.""")
-finish_process_module = generic("CPM::FINISH-PROCESS-MODULE", "(process-module &key designator)", documentation="""
-Say that the module has finished one designator, or all of them.""")
-fail_process_module = generic("CPM::FAIL-PROCESS-MODULE", "(process-module error &key designator)", documentation="""
-Say that one designator, or all unfinished ones, failed with the condition ``error``.""")
+if TYPE_CHECKING:
+    from cramhy_runtime.cpl.fluents.fluents import ValueFluent
+    from cramhy_runtime.ground.data import Symbol
+    from ..designators.classes import Designator
+    from .signatures import Fail, Finish
+
+on_input = generic(
+    "CPM::ON-INPUT",
+    "(process-module input-designator)",
+    documentation="""
+What an asynchronous module does with an input; users write methods.""",
+)
+on_cancel = generic(
+    "CPM::ON-CANCEL",
+    "(process-module input-designator)",
+    documentation="""
+What an asynchronous module does with an unfinished designator when it is cancelled; users write methods.""",
+)
+on_run = generic(
+    "CPM::ON-RUN",
+    "(process-module)",
+    documentation="""
+What an asynchronous module does beside taking inputs, from its start to its end; users write methods.""",
+)
+synchronization_fluent = generic(
+    "CPM::SYNCHRONIZATION-FLUENT",
+    "(process-module designator)",
+    documentation="""
+The fluent that is true when an asynchronous module may take the designator; users write methods.""",
+)
+finish_process_module: Finish = generic(
+    "CPM::FINISH-PROCESS-MODULE",
+    "(process-module &key designator)",
+    documentation="""
+Say that the module has finished one designator, or all of them.""",
+)
+fail_process_module: Fail = generic(
+    "CPM::FAIL-PROCESS-MODULE",
+    "(process-module error &key designator)",
+    documentation="""
+Say that one designator, or all unfinished ones, failed with the condition ``error``.""",
+)
 
 on_input.advice = "Say what the module does with an input: (defmethod cpm:on-input ((module ...) input) ...)."
-synchronization_fluent.advice = ("Say when the module takes an input: (defmethod cpm:synchronization-fluent ((module ...) designator) "
-                                 "fluent), where a fluent of value T means at any time.")
+synchronization_fluent.advice = (
+    "Say when the module takes an input: (defmethod cpm:synchronization-fluent ((module ...) designator) "
+    "fluent), where a fluent of value T means at any time."
+)
 pm_cancel.advice = "An asynchronous module is cancelled by (setf (cpl:value (cpm:cancel module)) t)."
 running_fluent.advice = finished_fluent.advice = "Of an asynchronous module, (cpm:pm-status module) is the fluent of its status."
 
@@ -64,25 +97,26 @@ class AsynchronousProcessModule(AbstractProcessModule):
     lisp_name = "CRAM-PROCESS-MODULES::ASYNCHRONOUS-PROCESS-MODULE"
     initargs = {"NOTIFICATION-FLUENT": "notification_fluent"}
 
-    def __init__(self, name=None):
+    def __init__(self, name: Symbol | None = None):
         super().__init__(name)
-        self.queue = deque()
-        self.unfinished = []
-        self.failures = []  # (condition, designator), the newest first
-        self.notification_fluent = self._fluent("NOTIFICATION")
+        self.queue: deque[Designator] = deque()
+        self.unfinished: list[Designator] = []
+        self.failures: list[tuple[BaseException, Designator]] = []  # the newest first
+        self.notification_fluent: ValueFluent[None] = self._fluent("NOTIFICATION")
         self.input_lock = Lock(f"for the input of {self.name.name}")
 
-    def run(self, name):
+    def run(self, name: Symbol) -> None:
         """Take inputs, under ``name``, until the task, or a branch of it, is evaporated or ``on-input`` or ``on-run`` fails."""
-        self.online(name, lambda: pursue(self._work_beside, self._take_inputs, self._process,
-                                         lambda: whenever(self.cancel, self._cancel_all)))
+        self.online(
+            name, lambda: pursue(self._work_beside, self._take_inputs, self._process, lambda: whenever(self.cancel, self._cancel_all))
+        )
 
     def _work_beside(self):
         on_run(self)
         while True:
             pause(lambda: f"the end of process module {self.name.name}")
 
-    def ended(self):
+    def ended(self) -> None:
         self.queue.clear()
         self.unfinished.clear()
         self.input.set(None)
@@ -118,17 +152,17 @@ class AsynchronousProcessModule(AbstractProcessModule):
         self.cancel.set(None)
 
     @property
-    def pending(self):
+    def pending(self) -> list[Designator]:
         """What was handed over and has not come to ``on-input`` yet."""
         return [*([self.input.stored] if self.input.stored is not None else ()), *self.queue]
 
-    def changed(self):
+    def changed(self) -> None:
         self.notification_fluent.pulse()
 
-    def await_change(self):
+    def await_change(self) -> None:
         wait_for(fl_pulsed(self.notification_fluent, handle_missed_pulses=NEVER))
 
-    def await_while_online(self, fluent):
+    def await_while_online(self, fluent: object) -> None:
         """Wait for ``fluent``; that the module ends meanwhile is an error."""
         over = fl_funcall(lambda status: True if status is OFFLINE else None, self.status_fluent)
         wait_for(fl_or(fluent, over) if isinstance(fluent, Fluent) else fluent)

@@ -8,30 +8,49 @@ that is suspended, which asks again after its wake-up. Source: process-modules.m
 from __future__ import annotations
 
 from ..cpl.current import current_task
-from ..cpl.failure_types import SimplePlanFailure
-from ..cpl.failures import signal_failure
-from ..cpl.fluent_operators import fl_funcall, fl_not, fl_pulsed
-from ..cpl.suspension import retry_after_suspension
-from ..cpl.task_readers import result, status
-from ..cpl.waiting import wait_for
-from ..lisp.condition_types import SimpleWarning
-from ..lisp.conditions import error, type_error, warn
-from ..lisp.data import Cons, Symbol, python_list, values
-from ..lisp.objects.generic import generic
-from ..lisp.packages import keyword
+from cramhy_runtime.cpl.failures.failure_types import SimplePlanFailure
+from cramhy_runtime.cpl.failures.handling import signal_failure
+from cramhy_runtime.cpl.fluents.operators import fl_funcall, fl_not, fl_pulsed
+from cramhy_runtime.cpl.tasks.suspension import retry_after_suspension
+from cramhy_runtime.cpl.tasks.task_readers import result, status
+from cramhy_runtime.cpl.tasks.waiting import wait_for
+from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime.ground.conditions import error, type_error, warn
+from cramhy_runtime.ground.data import Cons, Symbol, python_list, values
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.packages import keyword
 from .modules import OFFLINE, RUNNING, AbstractProcessModule, ProcessModule, Request
 from .registry import module_called, not_running
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cramhy_runtime.cpl.fluents.fluents import Fluent
+    from cramhy_runtime.ground.data import Keyword
+    from cramhy_runtime.ground.signatures import GenericOf
+    from .signatures import Execute, ModuleOrName, Monitor
 
 TASK, DESIGNATORS, NEVER = map(keyword, ("TASK", "DESIGNATORS", "NEVER"))
 
-pm_execute = generic("CPM::PM-EXECUTE", "(process-module input &key task)", documentation="""
-Send a designator to a process module and wait: the values of its body.""")
-pm_cancel = generic("CPM::PM-CANCEL", "(process-module)", documentation="Cancel what the module does now; nobody waits.")
-pm_status = generic("CPM::PM-STATUS", "(process-module)", documentation="The fluent of its status.")
+pm_execute: Execute = generic(
+    "CPM::PM-EXECUTE",
+    "(process-module input &key task)",
+    documentation="""
+Send a designator to a process module and wait: the values of its body.""",
+)
+pm_cancel: GenericOf[[ModuleOrName], object] = generic(
+    "CPM::PM-CANCEL", "(process-module)", documentation="Cancel what the module does now; nobody waits."
+)
+pm_status: GenericOf[[ModuleOrName], Fluent[Keyword]] = generic(
+    "CPM::PM-STATUS", "(process-module)", documentation="The fluent of its status."
+)
 running_fluent = generic("CPM::RUNNING-FLUENT", "(process-module)", documentation="A fluent: is its status :running?")
 finished_fluent = generic("CPM::FINISHED-FLUENT", "(process-module)", documentation="A fluent: is its status not :running?")
-monitor_process_module = generic("CPM::MONITOR-PROCESS-MODULE", "(process-module &key designators)", documentation="""
-Wait until the module has finished and return a stored result, that of a listed designator if there is a list.""")
+monitor_process_module: Monitor = generic(
+    "CPM::MONITOR-PROCESS-MODULE",
+    "(process-module &key designators)",
+    documentation="""
+Wait until the module has finished and return a stored result, that of a listed designator if there is a list.""",
+)
 
 status.method(AbstractProcessModule)(lambda module: module.status_fluent)
 result.method(ProcessModule)(lambda module: module.result_fluent)

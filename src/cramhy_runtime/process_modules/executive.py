@@ -6,25 +6,30 @@ A motion goes to a matching process module; an action is resolved to a plan func
 
 from __future__ import annotations
 
-from ..cpl.failure_types import SimplePlanFailure
-from ..cpl.failures import fail, fail_with_advice
-from ..cpl.plans import GOAL, bodies_of, call_goal, define_goal
-from ..cpl.tree import with_task_tree_node
+from cramhy_runtime.cpl.failures.failure_types import SimplePlanFailure
+from cramhy_runtime.cpl.failures.handling import fail, fail_with_advice
+from cramhy_runtime.cpl.forms.plans import GOAL, bodies_of, call_goal, define_goal
+from cramhy_runtime.cpl.tree.task_tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
 from ..designators.resolution import reference
-from ..lisp.condition_types import Condition, SimpleWarning
-from ..lisp.conditions import Error, HandlerExit, caught, enter_case, foreign_case, handler_case, warn
-from ..lisp.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
-from ..lisp.dynamic import unbind
-from ..lisp.evaluation.expansion_support import check_shape
-from ..lisp.evaluation.places_in_source import circumstance
-from ..lisp.objects.generic import generic
-from ..lisp.packages import keyword
+from cramhy_runtime.ground.condition_types import Condition, SimpleWarning
+from cramhy_runtime.ground.conditions import Error, HandlerExit, caught, enter_case, foreign_case, handler_case, warn
+from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
+from cramhy_runtime.ground.dynamic import unbind
+from cramhy_runtime.ground.list_shapes import check_shape
+from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.packages import keyword
 from ..occasions.occasions import holds
 from .hints import why_none_runs
 from .matching import execute_by, running_matches
 from .registry import in_one_line
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from .symbols import sym
+
+if TYPE_CHECKING:
+    from cramhy_runtime.ground.signatures import GenericOf
+    from ..designators.classes import Designator
 
 GOAL_KEY = keyword("GOAL")
 PERFORM = sym("EXE::PERFORM")
@@ -39,9 +44,9 @@ class DesignatorReferenceFailure(SimplePlanFailure, DesignatorError):
 
     lisp_name = "CRAM-EXECUTIVE::DESIGNATOR-REFERENCE-FAILURE"
     initargs = {**DesignatorError.initargs, "RESULT": "result"}
-    result = None
+    result: Any = None
 
-    def report(self):
+    def report(self) -> str:
         return "designator-failure" if self.format_control is UNBOUND else SimplePlanFailure.report(self)
 
 
@@ -50,31 +55,44 @@ class DesignatorGoalParsingFailure(SimplePlanFailure, DesignatorError):
 
     lisp_name = "CRAM-EXECUTIVE::DESIGNATOR-GOAL-PARSING-FAILURE"
     initargs = DesignatorReferenceFailure.initargs
-    result = None
+    result: Any = None
     hint = "A goal is a list (occasion parameter ...), given to the designator in a ?variable."
 
-    def report(self):
+    def report(self) -> str:
         return "designator-goal-parsing-failure" if self.format_control is UNBOUND else SimplePlanFailure.report(self)
 
 
-generic_perform = generic("EXE::GENERIC-PERFORM", "(designator)", documentation="""
-Perform a motion or action designator; called by perform in a task of its own.""")
+generic_perform: GenericOf[[Designator], Any] = generic(
+    "EXE::GENERIC-PERFORM",
+    "(designator)",
+    documentation="""
+Perform a motion or action designator; called by perform in a task of its own.""",
+)
 
 
-generic_perform.advice = ("What can be performed are motions and actions, (desig:a motion ...) and (desig:an action ...), and what a "
-                          "(defmethod exe:generic-perform ((designator ...)) ...) is for.")
+generic_perform.advice = (
+    "What can be performed are motions and actions, (desig:a motion ...) and (desig:an action ...), and what a "
+    "(defmethod exe:generic-perform ((designator ...)) ...) is for."
+)
 
 
-def perform(designator):
+def perform(designator: Designator) -> Any:
     """Perform ``designator`` as a goal: the values of the process module or plan function. Only inside of a plan."""
     if bodies_of(PERFORM)[0] is not _own_body:  # somebody has defined the goal anew
         return call_goal(PERFORM, lisp_list(designator))
     parameters = lisp_list(designator)
-    return with_task_tree_node(_PATH_PART, _perform, name=_goal_name, parameters=parameters, log_parameters=parameters,
-                               log_pattern=_PATTERN, called_with=parameters)
+    return with_task_tree_node(
+        _PATH_PART,
+        _perform,
+        name=_goal_name,
+        parameters=parameters,
+        log_parameters=parameters,
+        log_pattern=_PATTERN,
+        called_with=parameters,
+    )
 
 
-def _goal_name():
+def _goal_name() -> str:
     return "[GOAL-PERFORM]"
 
 
@@ -86,7 +104,7 @@ define_goal(PERFORM, _PATTERN, lambda bindings: generic_perform(bindings.car.cdr
 _own_body = bodies_of(PERFORM)[0]
 
 
-def try_reference_designator(designator, error_message=""):
+def try_reference_designator(designator: Designator, error_message: str = "") -> Any:
     """Resolve ``designator``; if that cannot be, fail with ``designator-reference-failure`` and ``error_message`` in the text."""
     case = enter_case(_REFUSED)
     try:
@@ -104,8 +122,9 @@ def try_reference_designator(designator, error_message=""):
 
 
 _REFUSED = lisp_list(DesignatorError)
-try_reference_designator.__lisp_lambda_list__ = lisp_list(sym("DESIG::DESIGNATOR"), sym("&OPTIONAL"),
-                                                          lisp_list(sym("EXE::ERROR-MESSAGE"), ""))
+try_reference_designator.__lisp_lambda_list__ = lisp_list(
+    sym("DESIG::DESIGNATOR"), sym("&OPTIONAL"), lisp_list(sym("EXE::ERROR-MESSAGE"), "")
+)
 
 
 @generic_perform.method(MotionDesignator)
@@ -122,8 +141,9 @@ def _perform_action(designator):
     solution = try_reference_designator(designator)
     command = _command(designator, solution)
     if not isinstance(command, Symbol) or (isinstance(command.function, UndefinedFunction) and command.macro is None):
-        return fail("Action designator `~a' resolved to cram function `~a', but it isn't defined. Cannot perform action.",
-                    designator, command)
+        return fail(
+            "Action designator `~a' resolved to cram function `~a', but it isn't defined. Cannot perform action.", designator, command
+        )
     goal = desig_prop_value(designator, GOAL_KEY)
     if goal is None:
         return _call_plan(designator, solution)
@@ -138,7 +158,8 @@ def _perform_action(designator):
 
 
 _told_with_the_grounding = circumstance(
-    lambda here: f"while {in_one_line(here['designator'])} was performed, whose grounding is {in_one_line(here['solution'])}")
+    lambda here: f"while {in_one_line(here['designator'])} was performed, whose grounding is {in_one_line(here['solution'])}"
+)
 
 
 @_told_with_the_grounding

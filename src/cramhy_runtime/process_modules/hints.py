@@ -7,12 +7,12 @@ nothing; see ``designators/hints.py``.
 
 from __future__ import annotations
 
-from ..lisp.data import Symbol, lisp_list
-from ..prolog import explaining, explanations
-from ..prolog.python_ground import reasoning
-from ..prolog.reasons import declare_harmless
-from ..prolog.showing import show
-from ..prolog.terms import resolve
+from cramhy_runtime.ground.data import Symbol, lisp_list
+from cramhy_runtime.prolog.explanations import explaining, explanations
+from cramhy_runtime.prolog.python.ground import reasoning
+from cramhy_runtime.prolog.explanations.failure_reasons import declare_harmless
+from cramhy_runtime.prolog.engine.goal_text import show
+from cramhy_runtime.prolog.terms.terms import resolve
 from .symbols import sym
 
 MATCHING, AVAILABLE = sym("CPM::MATCHING-PROCESS-MODULE"), sym("CPM::AVAILABLE-PROCESS-MODULE")
@@ -35,8 +35,10 @@ def _missing(designator):
     if not available:
         text = _explained(lisp_list(AVAILABLE, matching[0]))
         return f"{_names(matching)} would match, but there is no solution of {show(lisp_list(AVAILABLE, matching[0]))}.\n{text}"
-    return (f"{_names(available)} would do it, but {'does' if len(available) == 1 else 'do'} not run: write "
-            f"(with-process-modules-running ({show(available[0])}) ...) around the plan.")
+    return (
+        f"{_names(available)} would do it, but {'does' if len(available) == 1 else 'do'} not run: write "
+        f"(with-process-modules-running ({show(available[0])}) ...) around the plan."
+    )
 
 
 def _names(names):

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from ..cpl.failures import attempt, fail_with_advice, signal_failure
+from cramhy_runtime.cpl.failures.handling import attempt, fail_with_advice, signal_failure
 from ..designators.clause_index import index_by_properties
-from ..lisp.data import list_from, one, truth
-from ..lisp.hooks import Hook
-from ..prolog.facts import built_in_group
+from cramhy_runtime.ground.data import list_from, one, truth
+from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.prolog.engine.fact_groups import built_in_group
 from ..prolog.query import ask_all
-from ..prolog.terms import Var
+from cramhy_runtime.prolog.terms.terms import Var
 from .executing import pm_execute
 from .hints import AVAILABLE, MATCHING, why_none_runs
 from .registry import running
 from .symbols import sym
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cramhy_runtime.ground.data import Cons, Symbol
+    from ..designators.classes import Designator
 
 on_preparing_performing = Hook("CPL::ON-PREPARING-PERFORMING-ACTION-DESIGNATOR", "(designator matching-process-modules)")
 on_finishing_performing = Hook("CPL::ON-FINISHING-PERFORMING-ACTION-DESIGNATOR", "(id success)")
@@ -22,44 +27,46 @@ for _functor in (MATCHING, AVAILABLE, sym("CPM::PROJECTION-RUNNING")):
 index_by_properties(MATCHING)  # its clauses ask for properties of the designator
 
 
-def matching_names(designator):
+def matching_names(designator: Designator) -> list[Symbol]:
     """The names of modules that match ``designator`` and are available, in clause order, each once, as a Python list."""
     name = Var()
     return ask_all(name, (MATCHING, designator, name), (AVAILABLE, name))
 
 
-def matching_process_module_names(action_designator):
+def matching_process_module_names(action_designator: Designator) -> Cons | None:
     """`matching_names` as a Lisp list."""
     return list_from(matching_names(action_designator))
 
 
-def running_matches(designator):
+def running_matches(designator: Designator) -> list[Symbol]:
     modules = running().modules
     return [name for name in matching_names(designator) if name in modules]
 
 
-def matching_available_process_modules(action_designator, *, fail_if_none=None):
+def matching_available_process_modules(action_designator: Designator, *, fail_if_none: bool | None = None) -> Cons | None:
     """Those of them that are running; none is a plan failure with ``fail_if_none``."""
     names = running_matches(action_designator)
     if not names and truth(fail_if_none):
-        return fail_with_advice(lambda: why_none_runs(action_designator), "No process modules found for executing designator ~a",
-                                action_designator)
+        return fail_with_advice(
+            lambda: why_none_runs(action_designator), "No process modules found for executing designator ~a", action_designator
+        )
     return list_from(names)
 
 
-def pm_execute_matching(action_designator):
+def pm_execute_matching(action_designator: Designator) -> Any:
     """Have the matching modules execute ``designator``, one after the other until one succeeds: the first value.
 
     If all fail, with the failure of the first. Lisp errors end it at once.
     """
     names = running_matches(action_designator)
     if not names:
-        return fail_with_advice(lambda: why_none_runs(action_designator), "No process modules found for executing designator ~a",
-                                action_designator)
+        return fail_with_advice(
+            lambda: why_none_runs(action_designator), "No process modules found for executing designator ~a", action_designator
+        )
     return execute_by(names, action_designator)
 
 
-def execute_by(names, designator):
+def execute_by(names: list[Symbol], designator: Designator) -> Any:
     """Have the running modules ``names`` execute ``designator``, one after the other until one succeeds: the first value."""
     observed = on_preparing_performing.methods or on_finishing_performing.methods
     run_id = on_preparing_performing.first(designator, list_from(names)) if observed else None

@@ -15,41 +15,67 @@ import weakref
 from collections import deque
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..cpl.current import current_task, inside_plan
-from ..cpl.debugging import DEBUG_ON_LISP_ERRORS
-from ..cpl.ending import awaiting_death
-from ..cpl.errands import Errand
-from ..cpl.failure_types import PlanFailure, opened
-from ..cpl.fluents import make_fluent
+from cramhy_runtime.cpl.failures.debugging import DEBUG_ON_LISP_ERRORS
+from cramhy_runtime.cpl.tasks.ending import awaiting_death
+from cramhy_runtime.cpl.tasks.delegated_work import Errand
+from cramhy_runtime.cpl.failures.failure_types import PlanFailure, opened
+from cramhy_runtime.cpl.fluents.fluents import make_fluent
 from ..cpl.statuses import EVAPORATED
-from ..cpl.statuses import FAILED as TASK_FAILED
+from cramhy_runtime.cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.task_variables import inherit
 from ..designators.classes import Designator
 from ..designators.equating import current_desig
-from ..lisp.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, from_python, handler_bind, restart_case, type_error
-from ..lisp.data import Symbol, all_values, lisp_list, list_from, truth
-from ..lisp.dynamic import binding
-from ..lisp.evaluation.places_in_source import circumstance
-from ..lisp.hooks import Hook
-from ..lisp.objects.class_definition import define_class
-from ..lisp.objects.classes import class_name, find_class_or_error, make_instance
-from ..lisp.objects.generic import generic
-from ..lisp.packages import CURRENT, keyword
+from cramhy_runtime.ground.conditions import (
+    DEBUGGER_HOOK,
+    Error,
+    enter_debugger,
+    error,
+    from_python,
+    handler_bind,
+    restart_case,
+    type_error,
+)
+from cramhy_runtime.ground.data import Symbol, all_values, list_from, truth
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.ground.classes import make_instance
+from cramhy_runtime.ground.classes import class_name, find_class_or_error
+from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.packages import CURRENT, keyword
 from .registry import ended_because, in_one_line, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cramhy_runtime.cpl.fluents.fluents import ValueFluent
+    from cramhy_runtime.cpl.tasks.tasks import AbstractTask
+    from cramhy_runtime.ground.data import Cons, Keyword
+    from cramhy_runtime.ground.signatures import GenericOf
 
 OFFLINE, WAITING, RUNNING, FAILED = map(keyword, ("OFFLINE", "WAITING", "RUNNING", "FAILED"))
 NAME = keyword("NAME")
 PM_DEBUGGER_HOOK = inherit(sym("CPM::*PROCESS-MODULE-DEBUGGER-HOOK*"), None)
 CONTINUE_PM, TERMINATE_PM = sym("CPM::CONTINUE-PM"), sym("CPM::TERMINATE-PM")
 
+own_fluents = weakref.WeakSet()
+"""The fluents that process modules make for themselves, such as ``NAVIGATION-STATUS``."""
+
 on_process_module_started = Hook("CPM::ON-PROCESS-MODULE-STARTED", "(module input)")
 on_process_module_finished = Hook("CPM::ON-PROCESS-MODULE-FINISHED", "(module input result)")
 on_process_module_failed = Hook("CPM::ON-PROCESS-MODULE-FAILED", "(module input failure)")
 
-pm_run = generic("CPM::PM-RUN", "(process-module &optional name)", documentation="""
-Run a process module, an object or the name of its class, until the task is evaporated.""")
+pm_run: GenericOf[..., object] = generic(
+    "CPM::PM-RUN",
+    "(process-module &optional name)",
+    documentation="""
+Run a process module, an object or the name of its class, until the task is evaporated.""",
+)
 
 
 class Request:
@@ -57,19 +83,19 @@ class Request:
 
     __slots__ = ("input", "caller", "started", "finished", "values", "failure", "cancelled", "errand", "waiter")
 
-    def __init__(self, input_, caller):
+    def __init__(self, input_: Designator, caller: AbstractTask[object] | None):
         self.input, self.caller = input_, caller
         self.started = self.finished = self.cancelled = False
-        self.values = ()
-        self.failure = None
-        self.errand = None  # the run of the body, from its start
+        self.values: tuple[Any, ...] = ()
+        self.failure: BaseException | None = None
+        self.errand: Errand | None = None  # the run of the body, from its start
         self.waiter = kernel.current()
 
-    def finish(self):
+    def finish(self) -> None:
         self.finished = True
         self.waiter.kernel.unpark(self.waiter)
 
-    def cancel(self):
+    def cancel(self) -> None:
         self.cancelled = True
         if self.errand is not None:
             self.errand.end()
@@ -107,22 +133,24 @@ class AbstractProcessModule:
     lisp_name = "CRAM-PROCESS-MODULES::ABSTRACT-PROCESS-MODULE"
     initargs = {"NAME": "name", "INPUT": "input", "STATUS": "status_fluent", "CANCEL": "cancel", "CALLER": "caller"}
 
-    def __init__(self, name=None):
+    def __init__(self, name: Symbol | None = None):
         if name is None:
             error("Process modules need a name.")
         if not isinstance(name, Symbol):
             type_error(name, "SYMBOL", "\n(The name of a process module is a symbol.)")
         self.name = name
-        self.task = None  # of the plan, which runs it
-        self.input = self._fluent("INPUT")
-        self.status_fluent = self._fluent("STATUS", OFFLINE)
-        self.cancel = self._fluent("CANCEL")
-        self.caller = self._fluent("CALLER")
+        self.task: AbstractTask[object] | None = None  # of the plan, which runs it
+        self.input: ValueFluent[Designator | None] = self._fluent("INPUT")
+        self.status_fluent: ValueFluent[Keyword] = self._fluent("STATUS", OFFLINE)
+        self.cancel: ValueFluent[bool | None] = self._fluent("CANCEL")
+        self.caller: ValueFluent[AbstractTask[object] | None] = self._fluent("CALLER")
 
-    def _fluent(self, what, initial=None):
-        return make_fluent(name=CURRENT.value.intern(f"{self.name.name}-{what}"), value=initial)
+    def _fluent(self, what: str, initial: object = None) -> ValueFluent[Any]:
+        made: ValueFluent[Any] = make_fluent(name=CURRENT.value.intern(f"{self.name.name}-{what}"), value=initial)
+        own_fluents.add(made)
+        return made
 
-    def online(self, name, work):
+    def online(self, name: Symbol, work: Callable[[], object]) -> None:
         """Call ``work()``, the main loop, while the module is registered under ``name`` and its status is not ``:offline``."""
         inside_plan("PM-RUN")
         if self.status_fluent.stored is not OFFLINE:
@@ -148,7 +176,7 @@ class AbstractProcessModule:
             self.status_fluent.set(OFFLINE)
             self.ended()
 
-    def ended(self):
+    def ended(self) -> None:
         """The main loop is over: tell those who wait for the module."""
 
 
@@ -158,22 +186,22 @@ class ProcessModule(AbstractProcessModule):
     lisp_name = "CRAM-PROCESS-MODULES::PROCESS-MODULE"
     initargs = {"RESULT": "result_fluent"}
 
-    def __init__(self, name=None):
+    def __init__(self, name: Symbol | None = None):
         super().__init__(name)
-        self.result_fluent = self._fluent("RESULT")
-        self.queue = deque()
-        self.request = None  # the one in progress
-        self.sleeper = None  # the kernel task of the main loop, while it waits for requests
+        self.result_fluent: ValueFluent[Any] = self._fluent("RESULT")
+        self.queue: deque[Request] = deque()
+        self.request: Request | None = None  # the one in progress
+        self.sleeper: kernel.Task[object] | None = None  # the kernel task of the main loop, while it waits for requests
         self.terminating = False
         self.results = Results()
 
-    def submit(self, request):
+    def submit(self, request: Request) -> None:
         """Put ``request`` into the queue."""
         self.queue.append(request)
         if self.sleeper is not None:
             self.sleeper.kernel.unpark(self.sleeper)
 
-    def withdraw(self, request):
+    def withdraw(self, request: Request) -> None:
         """Its caller gives up: take it out of the queue, or cancel its run and wait until that is over."""
         if request in self.queue:
             self.queue.remove(request)
@@ -186,11 +214,11 @@ class ProcessModule(AbstractProcessModule):
 
     # ---------------------------------------------------------------------------------------------------------- main loop
 
-    def run(self, body, name):
+    def run(self, body: Callable[[], object], name: Symbol) -> None:
         """Serve requests, under ``name``, until the task is evaporated or the module is told to terminate."""
         self.online(name, lambda: self._serve_all(body))
 
-    def _serve_all(self, body):
+    def _serve_all(self, body: Callable[[], object]) -> None:
         self.terminating = False
         self.cancel.callbacks = {"cancel": self._cancel_request}
         try:
@@ -244,6 +272,7 @@ class ProcessModule(AbstractProcessModule):
 
     def _ask_what_to_do(self, problem):
         """The debugger, or the hook in its place, for an error of the body; both restarts make the body fail with it."""
+
         def terminate():
             self.terminating = True
 
@@ -255,8 +284,13 @@ class ProcessModule(AbstractProcessModule):
             with binding(DEBUGGER_HOOK, hook):
                 enter_debugger(problem)
 
-        restart_case([(CONTINUE_PM, lambda: None, "Ignore error and restart process module main loop."),
-                      (TERMINATE_PM, terminate, "Terminate process module")], ask)
+        restart_case(
+            [
+                (CONTINUE_PM, lambda: None, "Ignore error and restart process module main loop."),
+                (TERMINATE_PM, terminate, "Terminate process module"),
+            ],
+            ask,
+        )
         raise problem
 
     def _conclude(self, request, status, outcome):
@@ -285,24 +319,24 @@ class ProcessModule(AbstractProcessModule):
                 self.result_fluent.set(list_from(request.values))
                 self.results.note(request.input, request.values)
 
-    def ended(self):
+    def ended(self) -> None:
         while self.queue:
             request = self.queue.popleft()
             request.failure = not_running(self.name)
             request.finish()
 
 
-def define_process_module(name, body):
+def define_process_module(name: Symbol, body: Callable[[Any], object]) -> Cons | None:
     """``(def-process-module name (designator) ...)``: define the class ``name`` of modules whose body is ``body(designator)``.
 
     The body gets the youngest equated designator of the input. Returns the names of all modules.
     """
-    cls = define_class(name, lisp_list(sym("CPM::PROCESS-MODULE")), None)
+    cls = PORTS.classes.define(name, ProcessModule)
     pm_run.method(cls)(lambda module, module_name=None: body(current_desig(module.input.stored)))
     return register_process_module(name)
 
 
-def make_module(name, class_name=None):
+def make_module(name: Symbol, class_name: Symbol | None = None) -> AbstractProcessModule:
     """A new module called ``name`` of the class ``class_name`` (default: ``name``)."""
     return make_instance(find_class_or_error(class_name or name), NAME, name)
 

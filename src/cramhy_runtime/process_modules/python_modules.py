@@ -21,54 +21,62 @@ process-modules.md 2 to 8.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, overload
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, TypeVar, overload, subscripted
 
 from .. import kernel
-from ..cpl.border import for_python, raise_in_python
+from cramhy_runtime.cpl.failures.python_exceptions import for_python, raise_in_python
 from ..cpl.current import inside_plan
-from ..cpl.fluents import Fluent
+from cramhy_runtime.cpl.fluents.fluents import Fluent
 from ..designators.classes import Designator
 from ..designators.python_grounding import kind_goals
 from ..designators.python_kinds import Kind
-from ..lisp.condition_types import Condition
-from ..lisp.conditions import from_python
-from ..lisp.data import MultipleValues, Symbol, list_from
-from ..lisp.objects.classes import register_class
-from ..lisp.packages import sym
-from ..prolog.python_ground import reasoning
-from ..prolog.python_rules import fact_group
-from ..prolog.python_terms import USER, Goal, Name, P, V, claim, import_predicates, lisp_name, to_lisp, to_python
+from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from
+from cramhy_runtime.ground.classes import register_class
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.prolog.python.ground import reasoning
+from cramhy_runtime.prolog.python.rules import fact_group
+from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, claim, import_predicates, lisp_name, to_lisp, to_python
 from . import asynchronous, executing, executive, modules
-from . import package as _package  # noqa: F401  the predicates and conditions have names of its packages
 from .matching import AVAILABLE, MATCHING
 from .registry import UnknownProcessModule, module_called, register_process_module
 from .running import modules_running
 
-Body = Callable[[Any], Any]
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from cramhy_runtime.ground.data import Keyword
+    from .signatures import Defines
+
+    Body = Callable[[Any], object]
+
+D = TypeVar("D", bound=Designator, default=Any)
+T = TypeVar("T", default=Any)
+M = TypeVar("M", bound="AsynchronousModule")
 PROJECTION_RUNNING = sym("CPM::PROJECTION-RUNNING")
 import_predicates(MATCHING, AVAILABLE, PROJECTION_RUNNING)
 
 
-class Module(Name):
+class Module(Name, Generic[D, T]):
     """A process module that is a function in Python; it is equal to its name. Called, it is the function: nothing is queued then."""
 
     __slots__ = ("body",)
+    __class_getitem__ = subscripted
 
-    def __init__(self, symbol: Symbol, body: Body):
+    def __init__(self, symbol: Symbol, body: Callable[[D], T]):
         super().__init__(symbol)
         self.body = body
 
-    def __call__(self, designator: Any) -> Any:
+    def __call__(self, designator: D) -> T:  # type: ignore[override]  # other names make goals
         return self.body(designator)
 
 
 @overload
-def process_module(body: Body, /) -> Module: ...
+def process_module(body: Callable[[D], T], /) -> Module[D, T]: ...
 @overload
-def process_module(*kinds: type[Designator], matches: Body | None = None,
-                   name: Name | Symbol | None = None) -> Callable[[Body], Module]: ...
+def process_module(*kinds: type[D], matches: Body | None = None, name: Name | Symbol | None = None) -> Defines[D]: ...
 def process_module(*given: Any, matches: Body | None = None, name: Any = None) -> Any:
     """Decorator: the function is a process module, ``body(designator)``; what it returns is what `execute` and `perform` return.
 
@@ -77,7 +85,7 @@ def process_module(*given: Any, matches: Body | None = None, name: Any = None) -
     """
     plain = len(given) == 1 and not isinstance(given[0], type)
 
-    def define(body: Body) -> Module:
+    def define(body: Callable[[D], T]) -> Module[D, T]:
         module = Module(to_lisp(name) if name is not None else _symbol(body.__name__), body)
         claim(module.symbol, body, "process module")
         with reasoning():
@@ -99,11 +107,14 @@ def _no_name(name: str) -> Symbol:
 def _say_what_it_is_for(name: Symbol, kinds: Any, matches: Any) -> None:
     for kind in kinds:
         if not isinstance(kind, Kind):
-            raise TypeError(f"{kind!r} is no declared type of designators. Declare one, class Driving(Motion): ..., or give a function: "
-                            "matches=lambda designator: ...")
+            raise TypeError(
+                f"{kind!r} is no declared type of designators. Declare one, class Driving(Motion): ..., or give a function: "
+                "matches=lambda designator: ..."
+            )
         if kind.type_ is None:
-            raise TypeError(f"{kind.__name__} describes all {kind.__name__.lower()}s. Say so by a function: "
-                            "matches=lambda designator: True.")
+            raise TypeError(
+                f"{kind.__name__} describes all {kind.__name__.lower()}s. Say so by a function: matches=lambda designator: True."
+            )
     with fact_group(Name(USER.intern(f"{name.name} IN PYTHON")), extends=[Name(MATCHING), Name(AVAILABLE)]) as group:
         head = Goal(to_lisp([Name(MATCHING), V.designator, Name(name)]))
         for kind in kinds:
@@ -128,34 +139,36 @@ class AsynchronousModule(asynchronous.AsynchronousProcessModule):
 
     module_name: Symbol
 
-    def __init_subclass__(cls, kinds: Any = (), matches: Body | None = None, name: Any = None) -> None:
+    def __init_subclass__(
+        cls, kinds: Iterable[type[Designator]] = (), matches: Body | None = None, name: Name | Symbol | None = None
+    ) -> None:
         super().__init_subclass__()
         cls.module_name = to_lisp(name) if name is not None else _symbol(cls.__name__)
         register_class(cls.module_name, cls)
         register_process_module(cls.module_name)
         _say_what_it_is_for(cls.module_name, kinds, matches)
 
-    def on_input(self, designator: Any) -> Any:
+    def on_input(self, designator: Any) -> object:
         """Begin with a designator."""
         raise NotImplementedError(f"{type(self).__name__} does not say what it does with a designator: def on_input(self, designator): ...")
 
-    def on_cancel(self, designator: Any) -> Any:
+    def on_cancel(self, designator: Any) -> object:
         """The module was cancelled, and this designator is not finished. By default nothing is done."""
 
-    def on_run(self) -> Any:
+    def on_run(self) -> object:
         """What runs beside; by default nothing."""
 
-    def ready(self, designator: Any) -> Any:
+    def ready(self, designator: Any) -> object:
         """A fluent that is true when the designator may be taken. By default they are taken at any time."""
         return True
 
     @for_python
-    def finish(self, designator: Any = None) -> None:
+    def finish(self, designator: Designator | None = None) -> None:
         """Say that a designator, or all that were begun, is finished."""
         asynchronous.finish_process_module(self, designator=designator)
 
     @for_python
-    def fail(self, failure: BaseException, designator: Any = None) -> None:
+    def fail(self, failure: BaseException, designator: Designator | None = None) -> None:
         """Say that a designator, or all that were begun, failed; `monitor` raises ``failure``."""
         asynchronous.fail_process_module(self, from_python(failure), designator=designator)
 
@@ -191,6 +204,10 @@ def process_modules(*running: Designation, **aliases: Designation) -> Iterator[N
     raise_in_python(problem)
 
 
+@overload
+def execute(module: Module[D, T], designator: D) -> T: ...
+@overload
+def execute(module: type[AsynchronousModule] | Symbol | str, designator: Designator) -> Any: ...
 @for_python
 def execute(module: Designation, designator: Designator) -> Any:
     """Have ``module`` execute a designator, and wait: what its function returns; what it fails with is raised.
@@ -228,13 +245,17 @@ def cancel(module: Designation) -> None:
 
 
 @for_python
-def status(module: Designation) -> Fluent:
+def status(module: Designation) -> Fluent[Keyword]:
     """The fluent of its status: ``kw.waiting``, ``kw.running``, ``kw.failed``, and ``kw.offline`` when it has ended."""
     inside_plan("STATUS")
-    found: Fluent = _running(module).status_fluent
+    found: Fluent[Keyword] = _running(module).status_fluent
     return found
 
 
+@overload
+def running_module(module: type[M]) -> M: ...
+@overload
+def running_module(module: Name | Symbol | str) -> modules.AbstractProcessModule: ...
 @for_python
 def running_module(module: Designation) -> Any:
     """The object of a running module: that of an `AsynchronousModule` has its `finish` and `fail`."""
@@ -277,4 +298,3 @@ def _checked(designator: Any) -> Designator:
 def in_python(value: Any) -> Any:
     """What a form of Lisp returns as Python sees it: several values are a tuple."""
     return tuple(map(to_python, value)) if value.__class__ is MultipleValues else to_python(value)
-

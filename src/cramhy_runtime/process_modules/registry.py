@@ -8,17 +8,27 @@ that is, and why the module ended if it did.
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
-from ..cpl.failure_types import opened
-from ..cpl.pausing import pause
+from cramhy_runtime.cpl.failures.failure_types import opened
+from cramhy_runtime.cpl.tasks.pausing import pause
 from ..cpl.task_variables import inherit
-from ..lisp.conditions import SimpleError, error, from_python
-from ..lisp.data import Symbol, list_from
-from ..lisp.evaluation.places_in_source import describe, locate
-from ..lisp.packages import near_names
-from ..lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground.conditions import SimpleError, error, from_python
+from cramhy_runtime.ground.data import Symbol, list_from
+from cramhy_runtime.ground.source_places import describe, locate
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 from .symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from cramhy_runtime.ground.data import Cons
+    from .modules import AbstractProcessModule
+
+T = TypeVar("T")
 
 
 class UnknownProcessModule(SimpleError):
@@ -36,52 +46,56 @@ class ProcessModuleNotRunning(SimpleError):
 class Registry:
     """The running modules by name, in order of registration, the tasks that wait for one, and why modules that failed have ended."""
 
-    def __init__(self):
-        self.modules = {}
-        self.waiters = []
-        self.reasons = {}  # name -> text
+    def __init__(self) -> None:
+        self.modules: dict[Symbol, AbstractProcessModule] = {}
+        self.waiters: list[kernel.Task[object]] = []
+        self.reasons: dict[Symbol, str] = {}  # name -> text
 
-    def add(self, name, module):
+    def copy(self) -> Registry:
+        """One of another image: nothing runs there yet."""
+        return Registry()
+
+    def add(self, name: Symbol, module: AbstractProcessModule) -> None:
         self.modules[name] = module
         self.reasons.pop(name, None)
         for task in self.waiters:
             task.kernel.unpark(task)
 
-    def remove(self, module, reason=None):
+    def remove(self, module: AbstractProcessModule, reason: str | None = None) -> None:
         for name in self.names(module):
             del self.modules[name]
             if reason is not None:
                 self.reasons[name] = reason
 
-    def names(self, module):
+    def names(self, module: AbstractProcessModule) -> list[Symbol]:
         return [name for name, running in self.modules.items() if running is module]
 
 
 RUNNING_MODULES = inherit(sym("CPM::*RUNNING-PROCESS-MODULES*"), Registry())
-_defined = {}
+_defined: dict[Symbol, bool] = per_image({})
 
 
-def running():
+def running() -> Registry:
     """The `Registry` in force."""
     return RUNNING_MODULES.value
 
 
-def register_process_module(name):
+def register_process_module(name: Symbol) -> Cons | None:
     """Note that ``name`` is the class of a process module; returns the list of such names, the newest first."""
     _defined.pop(name, None)
     _defined[name] = True
     return get_process_module_names()
 
 
-def is_defined(name):
+def is_defined(name: object) -> bool:
     return name in _defined
 
 
-def get_process_module_names():
+def get_process_module_names() -> Cons | None:
     return list_from(list(reversed(_defined)))
 
 
-def get_running_process_module(name):
+def get_running_process_module(name: Symbol) -> AbstractProcessModule | None:
     """The running module called ``name``, or nil."""
     return running().modules.get(name)
 
@@ -97,18 +111,18 @@ def get_running_process_module_names(module):
     return list_from(list(reversed(running().names(module))))
 
 
-def module_called(name):
+def module_called(name: Any) -> Any:
     """The running module that ``name`` stands for; an unknown name is an error."""
     if not isinstance(name, Symbol) and name is not None:
         return name
     return running().modules.get(name) or unknown(name)
 
 
-def unknown(name):
-    return error(_with_hint(UnknownProcessModule("Unknown process module: ~a ", name), name))
+def unknown(name: object) -> NoReturn:
+    error(_with_hint(UnknownProcessModule("Unknown process module: ~a ", name), name))
 
 
-def not_running(name):
+def not_running(name: object) -> ProcessModuleNotRunning:
     """The condition for a module that has ended, or was never started."""
     return _with_hint(ProcessModuleNotRunning("Process module `~a' not running.", name), name)
 
@@ -121,7 +135,7 @@ def ended_because(problem):
     return f"{in_one_line(problem)}{f', at {place}' if place else ''}"
 
 
-def in_one_line(thing):
+def in_one_line(thing: object) -> str:
     """``thing`` as ``princ`` shows it, on one line."""
     return " ".join(princ_to_string(thing).split())
 
@@ -166,21 +180,23 @@ def start_under(name, module=None):
         running().add(name, module)
 
 
-def process_module_alias(alias, name):
+def process_module_alias(alias: Symbol, name: Symbol) -> Symbol:
     """Let ``alias`` be another name of the running module ``name``, until that ends."""
     module = get_running_process_module(name)
     if module is None:
-        return error(_with_hint(UnknownProcessModule("Could not find process module with name `~s'", name), name))
+        error(_with_hint(UnknownProcessModule("Could not find process module with name `~s'", name), name))
     other = get_running_process_module(alias)
     if other is None:
         running().add(alias, module)
     elif other is not module:
-        return error(ProcessModuleRunning("Process module `~a' already running", alias),
-                     hint=f"{_typed(alias)} cannot be another name of {_typed(name)}: a module of that name runs. Take another alias.")
+        return error(
+            ProcessModuleRunning("Process module `~a' already running", alias),
+            hint=f"{_typed(alias)} cannot be another name of {_typed(name)}: a module of that name runs. Take another alias.",
+        )
     return alias
 
 
-def with_process_module_aliases(aliases, body):
+def with_process_module_aliases(aliases: Iterable[tuple[Symbol, Symbol]], body: Callable[[], T]) -> T:
     """Values of ``body()`` while the aliases, pairs (alias, name), are in force."""
     made = []
     try:
@@ -193,7 +209,7 @@ def with_process_module_aliases(aliases, body):
         _forget(made)
 
 
-def with_process_module_registered_running(name, module, body):
+def with_process_module_registered_running(name: Symbol, module: AbstractProcessModule, body: Callable[[], T]) -> T:
     """Values of ``body()`` while ``module`` is registered under ``name``; no main loop is started for it.
 
     Nothing happens to a module that runs under that name already.
@@ -215,7 +231,7 @@ def _forget(pairs):
             modules.pop(name, None)
 
 
-def wait_for_process_module_running(process_module, *, timeout=None):
+def wait_for_process_module_running(process_module: Symbol | AbstractProcessModule, *, timeout: float | None = None) -> bool | None:
     """Wait until the module (a name or an object) is registered: true; nil if that takes longer than ``timeout`` seconds."""
     registry, me = running(), kernel.current()
     until = None if timeout is None else kernel.now() + timeout

@@ -11,23 +11,32 @@ from contextlib import contextmanager
 
 from cramhy_runtime import kernel
 
-from ..cpl import past_plans
-from ..cpl.branches import Branches, nobody_lives
-from ..cpl.ending import end_tasks
-from ..cpl.failure_types import opened
-from ..cpl.pausing import pause
+from cramhy_runtime.cpl.tree import finished_plans
+from cramhy_runtime.cpl.tasks.branches import Branches, nobody_lives
+from cramhy_runtime.cpl.tasks.ending import end_tasks
+from cramhy_runtime.cpl.failures.failure_types import opened
+from cramhy_runtime.cpl.tasks.pausing import pause
 from ..cpl.statuses import DEAD, FAILED
-from ..cpl.tasks import Task, ToplevelTask
-from ..cpl.tree import TaskTreeNode
-from ..lisp.condition_types import Condition
-from ..lisp.conditions import error
-from ..lisp.data import Cons
+from cramhy_runtime.cpl.tasks.tasks import Task, ToplevelTask
+from cramhy_runtime.cpl.tree.task_tree import TaskTreeNode
+from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import Cons
 from .modules import pm_run
 from .registry import ProcessModuleNotRunning, UnknownProcessModule, not_running, running
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from .signatures import RunningAs
+
+T = TypeVar("T")
 
 
-def with_process_modules_running(modules, body):
-    """Values of ``body()`` while ``modules`` run: class names, or pairs (alias, class name). The caller may be outside of plans."""
+def with_process_modules_running(modules: Iterable[RunningAs], body: Callable[[], T]) -> T:
+    """Values of ``body()`` while ``modules`` run, an iterable of class names or of pairs (alias, class name). The caller may be outside of
+    plans."""
     if not modules:
         return body()
     with modules_running(modules):
@@ -35,7 +44,7 @@ def with_process_modules_running(modules, body):
 
 
 @contextmanager
-def modules_running(modules):
+def modules_running(modules: Iterable[RunningAs]) -> Iterator[None]:
     """``with modules_running([...]):`` the same for the block."""
     group = _Group([_names(module) for module in modules])
     group.start()
@@ -52,7 +61,7 @@ def modules_running(modules):
         error(failure)
 
 
-def _names(module):
+def _names(module: Any) -> tuple[Any, Any]:
     if isinstance(module, (Cons, tuple, list)):
         alias, cls = module
         return alias, cls
@@ -72,7 +81,7 @@ class _Group:
         self.root.ended = lambda task: self._wake()
 
     def start(self):
-        past_plans.beside(self.root)
+        finished_plans.beside(self.root)
         self.root.execute()
 
     def _run(self):
@@ -140,8 +149,9 @@ class _Group:
 
 def _add_beside(problem, failures):
     known = list(getattr(problem, "beside", ()))
-    problem.beside = known + [("A process module failed, too", failure) for failure in failures
-                              if all(other is not failure for _, other in known)]
+    problem.beside = known + [
+        ("A process module failed, too", failure) for failure in failures if all(other is not failure for _, other in known)
+    ]
 
 
 class _Modules(Branches):

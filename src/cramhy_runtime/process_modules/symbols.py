@@ -1,7 +1,10 @@
-"""The Lisp packages of this room, made before anything interns a symbol in them; their contents are in ``package.py``."""
+"""The Lisp packages of this room, made before anything interns a symbol in them.
 
-from ..designators import symbols as _designators  # noqa: F401  its packages come first
-from ..lisp.packages import ensure_package, sym
+What they contain is declared in ``languages/commonlisp/faces/process_modules/package.py``.
+"""
+
+from cramhy_runtime.designators import symbols as _designators  # noqa: F401  its packages come first
+from cramhy_runtime.ground.packages import ensure_package, sym
 
 CPM = ensure_package("CRAM-PROCESS-MODULES", "CPM")
 EXE = ensure_package("CRAM-EXECUTIVE", "EXE")

@@ -6,7 +6,7 @@
     proj.with_projection_environment(KITCHEN, lambda: cpl.top_level(plan)).result     # the list of the plan's values
 
 ``environments`` what an imagined world is made of, and a body in it · ``clocks`` its time · ``own_modules`` which process modules it sees
-· ``macro_support``, ``package`` the Lisp face. Reference: projection-and-events.md part A.
+· ``symbols`` the Lisp package. Reference: projection-and-events.md part A.
 """
 
 from .clocks import LinearClock, PartiallyOrderedClock, clock_time, clock_wait, with_partially_ordered_clock_disabled

@@ -16,20 +16,29 @@ from bisect import insort
 
 from cramhy_runtime import kernel
 
-from ..cpl.pausing import pause
-from ..cpl.waiting import sleep
-from ..lisp.conditions import type_error
-from ..lisp.data import lisp_list
-from ..lisp.numbers.arithmetic import add2, is_real
-from ..lisp.objects.generic import generic
+from cramhy_runtime.cpl.tasks.pausing import pause
+from cramhy_runtime.cpl.tasks.waiting import sleep
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.numbers import need_real
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.ground.generic_functions import generic
 from . import symbols  # noqa: F401  the package must exist
 from .symbols import sym
 
 clock_time = generic("CRAM-PROJECTION::CLOCK-TIME", "(clock)", documentation="The time that ``clock`` shows.")
-clock_wait = generic("CRAM-PROJECTION::CLOCK-WAIT", "(clock duration)", documentation="""
-Let ``duration`` pass on ``clock``: it shows at least its old time plus the duration when this returns.""")
-partially_ordered_clock_enabled = generic("CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK-ENABLED", "(clock)", documentation="""
-True if nobody disables ``clock`` at the moment.""")
+clock_wait = generic(
+    "CRAM-PROJECTION::CLOCK-WAIT",
+    "(clock duration)",
+    documentation="""
+Let ``duration`` pass on ``clock``: it shows at least its old time plus the duration when this returns.""",
+)
+partially_ordered_clock_enabled = generic(
+    "CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK-ENABLED",
+    "(clock)",
+    documentation="""
+True if nobody disables ``clock`` at the moment.""",
+)
 
 _DURATION = lisp_list(sym("REAL"), 0)
 
@@ -92,14 +101,14 @@ def _time(clock):
 @clock_wait.method(LinearClock, None)
 def _wait_linear(clock, duration):
     _check(duration)
-    clock.time = add2(clock.time, duration)
+    clock.time = need_real(clock.time) + need_real(duration)
     return clock.time
 
 
 @clock_wait.method(PartiallyOrderedClock, None)
 def _wait_partially_ordered(clock, duration):
     _check(duration)
-    end = add2(clock.time, duration)
+    end = need_real(clock.time) + need_real(duration)
     insort(clock.ends, end)
     try:
         while clock.time < end:

@@ -14,26 +14,27 @@ Repaired: the result tells the values that special projection variables had insi
 
 from __future__ import annotations
 
+
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import define_task_variable, inherit
-from ..lisp.conditions import SimpleError, error
-from ..lisp.data import UNBOUND, Cons, all_values, list_from, one
-from ..lisp.dynamic import binding
-from ..lisp.objects.structures import define_structure, structure_named, structure_slot
-from ..lisp.packages import near_names
-from ..lisp.printer.print_controls import PACKAGE
-from ..lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground.conditions import SimpleError, error
+from cramhy_runtime.ground.data import UNBOUND, Cons, all_values, list_from, one
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.classes import find_class_or_error, register_class
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.printing import prin1_to_string
 from ..process_modules.registry import RUNNING_MODULES, running
 from ..process_modules.running import with_process_modules_running
 from .own_modules import ProjectedRegistry
-from .symbols import PROJ, sym
+from .symbols import sym
 
 PROJECTION_ENVIRONMENT = inherit(sym("CRAM-PROJECTION::*PROJECTION-ENVIRONMENT*"), None)
 """The name of the environment that the current task runs in; nil in the real world."""
 
-_environments = {}
-_special_variables = {}  # symbol → initialiser, in order of definition
+_environments = per_image({})
+_special_variables = per_image({})  # symbol → initialiser, in order of definition
 
 
 class ProjectionEnvironment:
@@ -48,8 +49,10 @@ class ProjectionEnvironment:
 
     def own_names(self):
         """The names of its process modules."""
-        return [one_module.car if isinstance(one_module, Cons) else one_module[0] if isinstance(one_module, tuple) else one_module
-                for one_module in self.modules]
+        return [
+            one_module.car if isinstance(one_module, Cons) else one_module[0] if isinstance(one_module, tuple) else one_module
+            for one_module in self.modules
+        ]
 
     def run(self, body):
         """``startup``, the body in the special projection variables, ``shutdown``: the values, and the variables at the body's end."""
@@ -58,8 +61,9 @@ class ProjectionEnvironment:
                 self.startup()
             with binding(*_initial_values(list(_special_variables.items()))):
                 values = all_values(body())
-                return values, [Cons(symbol, symbol.value) for symbol in (*dict(self.variables), *_special_variables)
-                                if symbol.value is not UNBOUND]
+                return values, [
+                    Cons(symbol, symbol.value) for symbol in (*dict(self.variables), *_special_variables) if symbol.value is not UNBOUND
+                ]
         finally:
             if self.shutdown is not None:
                 with kernel.cleanup():
@@ -100,8 +104,13 @@ def find_environment(name):
         return found
     known = [prin1_to_string(key) for key in _environments]
     near = near_names(prin1_to_string(name), known, 1)
-    hint = (f"Did you mean {near[0]}?" if near else f"Defined are {', '.join(known)}." if known else
-            "None is defined: write (define-projection-environment NAME ...).")
+    hint = (
+        f"Did you mean {near[0]}?"
+        if near
+        else f"Defined are {', '.join(known)}."
+        if known
+        else "None is defined: write (define-projection-environment NAME ...)."
+    )
     return error(SimpleError("Cannot find projection environment `~a'.", name), hint=hint)
 
 
@@ -112,22 +121,23 @@ def with_projection_environment(name, body):
     failure of the body goes on when ``shutdown`` has run and the process modules are dead. Errors: an unknown name.
     """
     environment = find_environment(name)
-    with binding(PROJECTION_ENVIRONMENT, name, RUNNING_MODULES, ProjectedRegistry(running(), environment.own_names()),
-                 *_initial_values(environment.variables)):
+    with binding(
+        PROJECTION_ENVIRONMENT,
+        name,
+        RUNNING_MODULES,
+        ProjectedRegistry(running(), environment.own_names()),
+        *_initial_values(environment.variables),
+    ):
         values, variables = with_process_modules_running(environment.modules, lambda: environment.run(body))
-    return structure_named(RESULT).cls(name=name, result=list_from(list(values)), environment=list_from(variables))
+    return find_class_or_error(RESULT)(name=name, result=list_from(list(values)), environment=list_from(variables))
+
+
+class EnvironmentResult:
+    """What `with_projection_environment` returns where no language defines a structure of that name."""
+
+    def __init__(self, name, result, environment):
+        self.name, self.result, self.environment = name, result, environment
 
 
 RESULT = sym("CRAM-PROJECTION::PROJECTION-ENVIRONMENT-RESULT")
-
-
-def define_result():
-    """Define the structure that `with_projection_environment` returns; its functions are not exported, as in the original."""
-    outer, PACKAGE.value = PACKAGE.value, PROJ
-    try:
-        define_structure(RESULT, [structure_slot(PROJ.intern(slot)) for slot in ("NAME", "RESULT", "ENVIRONMENT")])
-    finally:
-        PACKAGE.value = outer
-
-
-define_result()
+register_class(RESULT, EnvironmentResult)

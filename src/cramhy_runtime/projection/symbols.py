@@ -1,6 +1,9 @@
-"""The Lisp package of this room, made before anything interns a symbol in it; its contents are in ``package.py``."""
+"""The Lisp package of this room, made before anything interns a symbol in it.
 
-from ..lisp.packages import COMMON_LISP, ensure_package, sym
+What it contains is declared in ``languages/commonlisp/faces/projection/package.py``.
+"""
+
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
 
 PROJ = ensure_package("CRAM-PROJECTION", "PROJ", use=[COMMON_LISP])
 PROJ.lends_nicknames = True

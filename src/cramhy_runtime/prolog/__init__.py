@@ -10,14 +10,14 @@ lists and patterns of the room ``utilities``. Source: reference page ``prolog.md
     for answer in solve(P.grandparent(V.who, "ann")):
         print(answer.who)
 
-The page docs/reasoning-in-python.md tells the whole story: ``python_terms`` how terms are written, ``python_rules`` facts, rules and
-queries, ``python_predicates`` predicates written in Python. For other rooms the interface is `cramhy_runtime.prolog.query` (ask) and
-`cramhy_runtime.prolog.natives` (define predicates).
+The page docs/reasoning-in-python.md tells the whole story: ``python/terms.py`` how terms are written, ``python/rules.py`` facts, rules
+and queries, ``python/predicates.py`` predicates written in Python. For other rooms the interface is `cramhy_runtime.prolog.query` (ask) and
+`cramhy_runtime.prolog.builtins.native_predicates` (define predicates).
 """
 
-from .python_predicates import Predicate, UnboundVariable, function, predicate, test
-from .python_rules import Answer, FactGroup, UnknownPredicate, explain, fact_group, findall, first, holds, remove_fact_group, solve
-from .python_terms import Goal, Name, Names, P, Tail, V, Variable, kw, names
+from .python.predicates import Predicate, UnboundVariable, function, predicate, test
+from .python.rules import Answer, FactGroup, UnknownPredicate, explain, fact_group, findall, first, holds, remove_fact_group, solve
+from .python.terms import Goal, Name, Names, P, Tail, V, Variable, kw, names
 
 __all__ = [
     "Answer", "explain", "fact_group", "FactGroup", "findall", "first", "function", "Goal", "holds", "kw", "Name", "names", "Names", "P",

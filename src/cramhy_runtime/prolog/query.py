@@ -13,25 +13,21 @@ Everything is computed on demand; a query that is dropped costs nothing more.
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import type_error
-from cramhy_runtime.lisp.data import Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
 
-from cramhy_runtime.lisp.evaluation.functions import function_of
-from cramhy_runtime.lisp.hooks import Hook
+from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.hooks import Hook
 
-from . import (
-    builtins,  # noqa: F401  the predicates that every query may use
-    compiler,  # noqa: F401  the clauses that they find
-    control,
-    depth,  # noqa: F401  the error of a proof without end
-    undefined,  # noqa: F401  which warns of those that nobody has defined
-)
-from .database import find_predicate
+from .builtins import builtins, control  # noqa: F401  the predicates that every query may use
+from .compiler import compiler  # noqa: F401  the clauses that they find
+from .explanations import undefined  # noqa: F401  which warns of those that nobody has defined
+from .engine.database import find_predicate
 from cramhy_runtime.utilities.lazy_lists import tail
-from .joins import find_join
-from .machine import SOLVED, Machine
+from .engine.joins import find_join
+from .engine.machine import SOLVED, Machine
 from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, var_value, variables_of
-from .terms import UNSET, Var, import_term, resolve
+from .terms.terms import UNSET, Var, import_term, resolve
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 
@@ -186,5 +182,3 @@ def filter_bindings(form, bdgs, initial_bdgs=None):
         if value is not symbol and entry(symbol, initial_bdgs) is None:
             result = Cons(Cons(symbol, value), result)
     return result
-
-

@@ -1,6 +1,9 @@
-"""The Lisp package of this room, made before anything interns a symbol in it; its contents are in ``package.py``."""
+"""The Lisp package of this room, made before anything interns a symbol in it.
 
-from ..lisp.packages import COMMON_LISP, ensure_package, sym
+What it contains is declared in ``languages/commonlisp/faces/prolog/package.py``.
+"""
+
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
 from ..utilities.symbols import CUT
 
 PROLOG = ensure_package("CRAM-PROLOG", "PROLOG", use=[COMMON_LISP, CUT])

@@ -10,26 +10,29 @@ tasks each but the main one is named. Nothing costs anything while nothing is tr
 and code that calls it is made anew when the trace begins and ends.
 
 A name that is traced may be any functor: a predicate of facts and rules, a built-in, a construct of control, or one that nobody has
-defined yet. The layout is that of ``trace``, see ``lisp/tools/tracing.py``.
+defined yet. The layout is that of ``trace``, see ``languages/commonlisp/tools/tracing.py``.
 """
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.conditions import Condition, HandlerExit, error, warn
-from cramhy_runtime.lisp.data import Cons, Keyword, list_from
-from cramhy_runtime.lisp.streams.streams import TRACE_OUTPUT, output_stream
+from cramhy_runtime.ground.conditions import Condition, HandlerExit, error, warn
+from cramhy_runtime.ground.data import Cons, Keyword, list_from
+from cramhy_runtime.ground.output import trace_output
 
-from . import control, database, ports, reasons
-from .compiler import clause_functions
-from .database import arguments_of, functors, handled, traced, valid_functor
-from .explaining import LISP_CALLS
-from .machine import Machine, call_again, fail
-from .showing import Names, clause_name, line, readable
+from .engine import database, four_ports as ports
+from .explanations import failure_reasons as reasons
+from .compiler.compiler import clause_functions
+from .engine.database import arguments_of, functors, handled, traced, valid_functor
+from .explanations.explaining import LISP_CALLS
+from .engine.machine import Machine, call_again, fail
+from .engine.goal_text import Names, clause_name, line, readable
+from .engine.services import SERVICES
 from .symbols import sym
-from .terms import import_term, undo, unify
+from .terms.terms import import_term, undo, unify
 
 
 class TracedGoal(ports.Box):
@@ -85,7 +88,7 @@ class TracedGoal(ports.Box):
             text = line(readable(Cons(self.functor, list_from(self.terms)), Names()))
             task = kernel.current()
             name = "" if task is kernel.active().main else f"{task.name}: "
-            stream = output_stream(TRACE_OUTPUT.value)
+            stream = trace_output()
             stream.fresh_line()
             stream.write(f"{name}{'  ' * (self.depth % 20)}  {self.depth}: {port} {text}{f'   {more}' if more else ''}\n")
         finally:
@@ -105,7 +108,7 @@ class _Proof:
         self.printing = False
 
 
-_proofs_of_tasks: dict = {}
+_proofs_of_tasks: dict = per_image({})
 
 
 def _proofs():
@@ -117,10 +120,7 @@ def _proofs():
     return found
 
 
-_next_solution = Machine.next_solution
-
-
-def _watched_next_solution(m):
+def _watched_next_solution(m, next_solution):
     """`Machine.next_solution` while something is traced: notes what the proof is made for, and tells which goals an exception leaves."""
     task = kernel.current()
     proofs = _proofs_of_tasks.setdefault(task, [])
@@ -128,7 +128,7 @@ def _watched_next_solution(m):
     proof.printing = bool(proofs) and proofs[-1].printing
     proofs.append(proof)
     try:
-        return _next_solution(m)
+        return next_solution(m)
     except BaseException as exception:
         goal = proof.goal
         while goal is not None and goal is not proof.outer:
@@ -160,7 +160,7 @@ def _watch_predicate(predicate, entry):
 def _watched_body(predicate, entry):
     """``body(m, k, goal)``: the step that proves a goal, as the code of `Functor.code` does, noting the clause."""
     if entry is None:
-        return lambda m, k, goal: database.undefined_step(m, Cons(goal.functor, list_from(goal.terms)))
+        return lambda m, k, goal: database.undefined_step(m, Cons(goal.functor, list_from(goal.terms)), k)
     clauses = clause_functions(predicate, entry.clauses)
     built_in = entry.handler or entry.native and (entry.native.get(predicate.arity) or entry.native.get(None))
     if not built_in:
@@ -218,6 +218,7 @@ def _next_match(m, goal, clauses, i):
 
 def _watch_construct(functor, construct):
     """The control function of a construct that is traced."""
+
     def call(m, terms, k, b):
         goal = TracedGoal(functor, arguments_of(Cons(functor, terms)), _proofs()[-1].goal)
         goal.called()
@@ -226,7 +227,7 @@ def _watch_construct(functor, construct):
     return call
 
 
-database.watch, control.watch = _watch_predicate, _watch_construct
+SERVICES.install(watch_predicate=_watch_predicate, watch_construct=_watch_construct)
 
 
 # -------------------------------------------------------------------------------------------------------------- on and off
@@ -277,9 +278,9 @@ def _is_all(name):
 
 def _changed():
     if traced:
-        Machine.next_solution = _watched_next_solution  # so that it costs nothing while nothing is traced
+        Machine.watch(_watched_next_solution)
     else:
-        Machine.next_solution = _next_solution
+        Machine.watch(None)
         _proofs_of_tasks.clear()
     database.forget_all()
 

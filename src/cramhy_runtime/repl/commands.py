@@ -5,8 +5,8 @@ from __future__ import annotations
 import shlex
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.condition_types import SimpleError
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
 
 PATIENCE = 5.0
 """Seconds of virtual time after which a command ends that would go on for ever, and so fill the screen at once."""
@@ -24,7 +24,7 @@ def is_command(line):
 def run_line(line, write):
     """Carry out a command that was typed at the prompt, until Ctrl-C. write: a function of a text, which gets what it prints and complains
     of."""
-    from cramhy_runtime.ros_tools import here, running
+    from cramhy_runtime.ros_tools import local_graph, running
 
     try:
         words = shlex.split(line)
@@ -34,6 +34,7 @@ def run_line(line, write):
     try:
         conditions.handler_case(
             [(SimpleError, lambda problem: write(f"ERROR: {problem.report()}\n"))],
-            lambda: running.run(words, running.Terminal(write, write, lambda: here.HereGraph(patience))))
-    except (here.OutOfTime, kernel.Interrupted, kernel.Abandoned):
+            lambda: running.run(words, running.Terminal(write, write, lambda: local_graph.HereGraph(patience))),
+        )
+    except (local_graph.OutOfTime, kernel.Interrupted, kernel.Abandoned):
         pass  # Ctrl-C is the ordinary end of a command that goes on for ever

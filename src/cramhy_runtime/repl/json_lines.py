@@ -14,15 +14,16 @@ from contextlib import nullcontext
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import standard_input
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.evaluation import compilation_unit
-from cramhy_runtime.lisp.streams import streams
-from cramhy_runtime.lisp.tools.advice import hint_for, report_text
-from cramhy_runtime.lisp.objects.classes import class_name
-from cramhy_runtime.lisp.packages import COMMON_LISP, symbol_name, symbol_package
-from cramhy_runtime.lisp.evaluation.places_in_source import describe
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
+from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.tools import backtrace
+from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
+from cramhy_runtime.ground.classes import class_name
+from cramhy_runtime.ground.packages import COMMON_LISP, symbol_name, symbol_package
+from cramhy_runtime.ground.source_places import describe
 
-from . import backtrace
+
 from .session import Interruption, condition_of, signalled_here
 
 
@@ -125,7 +126,7 @@ def _evaluate(session, text):
         completed, values = session.with_abort(lambda: session.evaluate_text(text))
         if not completed:
             return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
-        from cramhy_runtime.lisp.printer.printer import prin1_to_string
+        from cramhy_runtime.ground.printing import prin1_to_string
 
         printed = [prin1_to_string(value) for value in values]
     except Interruption:
@@ -147,13 +148,24 @@ def _type(condition):
 
 def _condition(output, condition):
     restarts = [symbol_name(restart.name) for restart in condition.restarts or ()]
-    return _failure(output, _type(condition), report_text(condition), restarts or ["ABORT"], describe(condition.position)
-                    if getattr(condition, "position", None) else None, hint_for(condition), backtrace.lines(condition))
+    return _failure(
+        output,
+        _type(condition),
+        report_text(condition),
+        restarts or ["ABORT"],
+        describe(condition.position) if getattr(condition, "position", None) else None,
+        hint_for(condition),
+        backtrace.lines(condition),
+    )
 
 
 def _warning(condition):
-    shown = {"type": _type(condition), "message": report_text(condition), "where": describe(condition.position),
-             "hint": hint_for(condition)}
+    shown = {
+        "type": _type(condition),
+        "message": report_text(condition),
+        "where": describe(condition.position),
+        "hint": hint_for(condition),
+    }
     return {key: value for key, value in shown.items() if value}
 
 

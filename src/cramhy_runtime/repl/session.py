@@ -12,20 +12,29 @@ import gc
 import os
 from pathlib import Path
 
-from cramhy_runtime import image, kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.evaluation import evaluator
-from cramhy_runtime.lisp.systems import asdf, systems, unit_tests
-from cramhy_runtime.lisp.evaluation.compilation_unit import signalling_position
-from cramhy_runtime.lisp.conditions import Condition, from_python
-from cramhy_runtime.lisp.data import all_values, list_from
-from cramhy_runtime.lisp.faces import define_face
-from cramhy_runtime.lisp.files.namestrings import parse_native
-from cramhy_runtime.lisp.packages import COMMON_LISP_USER, find_package_or_error, sym
-from cramhy_runtime.lisp.files.pathnames import DEFAULTS
-from cramhy_runtime.lisp.evaluation.places_in_source import circumstance, locate
+from cramhy_runtime import kernel
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.systems import asdf, systems, unit_tests
+from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of  # noqa: F401  for those who have a session
+from cramhy_runtime.languages.commonlisp.compiler.compilation_unit import signalling_position
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import all_values, list_from
+from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
+from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
+from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package_or_error, on_demand, registered, sym
+from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
+from cramhy_runtime.ground.source_places import circumstance, locate
+from cramhy_runtime.session import fresh_start
+from cramhy_runtime.turtlesim.node import start_with_first_node
 
 from . import typed_texts
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cramhy_runtime.kernel.signatures import BackendName, ClockName
+
 
 HISTORY = [sym(name) for name in ("*", "**", "***")]
 LAST_VALUES = [sym(name) for name in ("/", "//", "///")]
@@ -38,11 +47,23 @@ def leave(*, code=0, unix_status=0, abort=None, timeout=None, recklessly_p=None)
     raise SystemExit(code or unix_status)
 
 
+@functools.cache
+def leaving():
+    """The package SB-EXT with ``exit`` and ``quit`` in it."""
+    return define_face("SB-EXT", functions={"exit": leave, "quit": leave})
+
+
 def define_leaving():
     """``exit`` and ``quit`` of SB-EXT, present in CL-USER as in SBCL."""
-    package = define_face("SB-EXT", functions={"exit": leave, "quit": leave})
+    package = leaving()
     for name in ("EXIT", "QUIT"):
         COMMON_LISP_USER.import_symbol(package.intern(name))
+
+
+def _define_testing():
+    from cramhy_runtime.testing import package  # a session that tests nothing starts without it
+
+    package.define_faces()
 
 
 class Interruption(Exception):
@@ -64,17 +85,45 @@ class Session:
     first node. cleanup_limit: seconds that plans get for their cleanup when the session ends, or ``None``.
     """
 
-    def __init__(self, time="wall", seed=None, backend="threads", time_limit=None, turtlesim=True, cleanup_limit=kernel.CLEANUP_LIMIT):
-        image.fresh_start(time, backend, seed, time_limit, turtlesim, cleanup_limit=cleanup_limit)
+    def __init__(
+        self,
+        time: ClockName = "wall",
+        seed: int | None = None,
+        backend: BackendName = "threads",
+        time_limit: float | None = None,
+        turtlesim: bool = True,
+        cleanup_limit: float | None = kernel.CLEANUP_LIMIT,
+    ):
+        fresh_start(time, backend, seed, time_limit, turtlesim, cleanup_limit=cleanup_limit)
+        self._begin()
+
+    @classmethod
+    def at_hand(cls, time):
+        """A session in the kernel that is active, with all that goes on there. If nothing has happened yet, a new one in ``time``."""
+        active = kernel.active()
+        if active is None or active.untouched:
+            return cls(time)
+        joined = cls.__new__(cls)
+        start_with_first_node()
+        joined._begin()
+        return joined
+
+    def _begin(self):
         evaluator.PACKAGE.value = COMMON_LISP_USER
         define_leaving()
+        if registered("TESTING-USER") is None:
+            on_demand.update(dict.fromkeys(("CRAMHY-TESTING", "TESTING-USER"), _define_testing))
         for variables in (HISTORY, LAST_VALUES, LAST_FORMS, [THIS_FORM]):
             for variable in variables:
                 variable.value = None
         DEFAULTS.value = parse_native(os.getcwd() + "/")
-        self.virtual = time == "virtual"
         self.texts = 0
         quiet_collector()
+
+    @property
+    def virtual(self) -> bool:
+        """Whether time is virtual: then it stands still at the prompt."""
+        return kernel.active().clock.virtual
 
     @property
     def package(self):
@@ -84,11 +133,11 @@ class Session:
     def package(self, designator):
         evaluator.PACKAGE.value = find_package_or_error(designator)
 
-    def prompt(self):
+    def prompt(self) -> str:
         """``TUT> ``: the shortest name of the current package."""
         return f"{min(self.package.names, key=len)}> "
 
-    def load(self, system):
+    def load(self, system: str) -> None:
         """Load a system by name, or a file by its path."""
         try:
             self._load(system)
@@ -100,7 +149,7 @@ class Session:
             kernel.interrupt_over()
 
     def _load(self, system):
-        from cramhy_runtime.lisp.systems import loader
+        from cramhy_runtime.languages.commonlisp.systems import loader
 
         if system.endswith((".lisp", ".hy")):
             loader.load_file(system)
@@ -108,15 +157,21 @@ class Session:
             systems.load_asd(system)
             systems.load_system(Path(system).stem)
         elif Path(system).is_file():
-            conditions.error(conditions.types.FileError(system, "Cannot load ~A: what is loaded is a .lisp, .hy or .asd file, or a system "
-                                                        "by its name.", system))
+            conditions.error(
+                conditions.types.FileError(
+                    system, "Cannot load ~A: what is loaded is a .lisp, .hy or .asd file, or a system by its name.", system
+                )
+            )
         else:
             systems.load_system(system)
 
-    def test(self, path):
-        """Run the tests of a system by name, a file, or the test files below a folder; whether there were some and all passed."""
+    def test(self, path: str, junit: str | None = None) -> bool:
+        """Run the tests of a system by name, a file, or the test files below a folder; whether there were some and all passed.
+
+        junit: a file for the results, too, in JUnit's XML, or ``None``.
+        """
         try:
-            return self._test(path)
+            return self._test(path, junit)
         except kernel.Terminated:
             raise
         except (kernel.Interrupted, kernel.Abandoned):
@@ -124,14 +179,30 @@ class Session:
         finally:
             kernel.interrupt_over()
 
-    def _test(self, path):
-        tests = self._tests(path)
-        if tests:
-            return unit_tests.report(tests)
-        system = None if Path(path).suffix in (".lisp", ".hy") or Path(path).is_dir() else systems.find_system(Path(path).stem)
-        if system is not None and system.methods:  # it says itself what its tests are
-            return asdf.test_system(system)
-        return conditions.error(f"There are no tests of lisp-unit or FiveAM in {path}.".replace("~", "~~"))
+    def _test(self, path, junit):
+        from cramhy_runtime.languages.commonlisp.systems import test_reports
+        from cramhy_runtime.languages.commonlisp.tools.advice import explanation
+
+        try:
+            results = [test_reports.Result(*result) for result in unit_tests.run_all(self._tests(path))]
+            system = (
+                None if results or Path(path).suffix in (".lisp", ".hy") or Path(path).is_dir() else systems.find_system(Path(path).stem)
+            )
+            if system is not None and system.methods:  # it says itself what its tests are
+                good = asdf.test_system(system)
+                if junit is not None:
+                    test_reports.write_junit_of_one(junit, path)
+                return good
+            if not results:
+                conditions.error(f"There are no tests of lisp-unit or FiveAM in {path}.".replace("~", "~~"))
+        except (Exception, Condition) as problem:
+            if junit is not None:
+                test_reports.write_junit_of_one(junit, path, error=explanation(condition_of(problem)))
+            raise
+        streams.STANDARD_OUTPUT.value.write(test_reports.summary(results))
+        if junit is not None:
+            test_reports.write_junit(junit, results)
+        return not any(result.kind == "failed" for result in results)
 
     def _tests(self, path):
         if Path(path).is_dir():
@@ -143,19 +214,23 @@ class Session:
             return unit_tests.load_asd_tests(path)
         return unit_tests.load_system_tests(path)
 
-    def forms(self, text, name=None):
-        """The forms of a text typed at the prompt, each with the reader that knows its places."""
-        from cramhy_runtime.lisp.reader.reader import Reader
+    def reader(self, text, name=None):
+        """A reader of a text typed at the prompt. It knows the places of its forms."""
+        from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
         self.texts += 1
         name = name or f"<repl {self.texts}>"
         typed_texts.keep(name, text)
-        reader = Reader(text, filename=name)
+        return Reader(text, filename=name)
+
+    @staticmethod
+    def forms(reader):
+        """The forms that ``reader`` reads."""
         end = object()
         while (form := reader.read(eof_error=False, eof_value=end)) is not end:
-            yield form, reader
+            yield form
 
-    def evaluate(self, form, reader=None):
+    def evaluate(self, form: object, reader: Any = None) -> list[Any]:
         """The values of ``form`` as a list. Conditions that nobody handles are raised, with their place if it is known."""
         THIS_FORM.value = form
         try:
@@ -180,10 +255,10 @@ class Session:
         LAST_VALUES[0].value, LAST_VALUES[1].value, LAST_VALUES[2].value = list_from(values), LAST_VALUES[0].value, LAST_VALUES[1].value
         return list(values)
 
-    def evaluate_text(self, text, name=None):
+    def evaluate_text(self, text: str, name: str | None = None) -> list[Any]:
         """The values of the last form of ``text``."""
-        values = []
-        for form, reader in self.forms(text, name):
+        values, reader = [], self.reader(text, name)
+        for form in self.forms(reader):
             values = self.evaluate(form, reader)
         return values
 
@@ -197,10 +272,3 @@ def signalled_here(condition):
     if getattr(condition, "position", None) is None:
         condition.position = signalling_position()
     circumstance.note(condition)
-
-
-def condition_of(exception):
-    """The condition for any exception that left a form."""
-    condition = from_python(exception)
-    locate(condition, exception)
-    return condition

@@ -10,6 +10,8 @@ from __future__ import annotations
 import linecache
 from collections import deque
 
+from cramhy_runtime.ground.source_places import keep_text
+
 MOST = 200
 """Texts that are kept."""
 MOST_DEFINITIONS = 2000
@@ -20,7 +22,7 @@ _plain, _definitions = deque(), deque()
 
 def keep(name, text):
     """Let ``linecache`` have the lines of ``text`` under ``name``, and forget the oldest when there are too many."""
-    linecache.cache[name] = (len(text), None, text.splitlines(True), name)
+    keep_text(name, text)
     kept, most = (_definitions, MOST_DEFINITIONS) if "(def" in text.lower() else (_plain, MOST)
     kept.append(name)
     while len(kept) > most:

@@ -11,14 +11,20 @@ import os
 import re
 from pathlib import Path
 
-from ..lisp.systems.search_folders import SKIPPED, entries, is_folder, search_folders
+from .search_folders import SKIPPED, entries, is_folder, search_folders
 from . import definition_text
 from .definition_text import ACTION_PARTS, DefinitionError, action_messages
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from .definition_text import Definition
+
 
 OURS = Path(__file__).parent / "definitions"
 KINDS = ("msg", "srv", "action")
 
-_directories = []
+_directories: list[Path] = []
 _TYPE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_-]*$")
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
@@ -26,19 +32,19 @@ _DEPTH = 3
 """How deep below a folder of the search packages are looked for: ``src/a_stack/a_package``."""
 
 
-def add_package_directory(directory):
+def add_package_directory(directory: str | Path) -> None:
     """Look for ROS packages in the sub-folders of ``directory`` too."""
     directory = Path(directory)
     if directory not in _directories:
         _directories.append(directory)
 
 
-def forget_package_directory(directory):
+def forget_package_directory(directory: str | Path) -> None:
     """Look there no more."""
     _directories.remove(Path(directory))
 
 
-def package_folder(package):
+def package_folder(package: str) -> Path | None:
     """The folder of the ROS package that has definitions and is called ``package``, or ``None``."""
     if not _LEGAL.match(package):
         return None
@@ -48,18 +54,18 @@ def package_folder(package):
     return next((folder for name, folder in _packages_on_path() if name == package), None)
 
 
-def known_packages():
+def known_packages() -> list[str]:
     """The names of all packages with definitions."""
     named = [entry.name for folder in [OURS, *_directories] for entry in entries(folder) if _has_definitions(Path(entry.path))]
     return sorted({*named, *(name for name, _ in _packages_on_path())})
 
 
-def definition_files(folder, kind):
+def definition_files(folder: Path, kind: str) -> dict[str, Path]:
     """The files of the package in ``folder``, of kind ``"msg"``, ``"srv"`` or ``"action"``, by the name of what they define."""
     return {path.stem: path for path in sorted((folder / kind).glob("*." + kind))}
 
 
-def message_names(folder):
+def message_names(folder: Path) -> list[str]:
     """The names of all messages of the package in ``folder``, those of its actions included."""
     names = list(definition_files(folder, "msg"))
     for action in definition_files(folder, "action"):
@@ -67,17 +73,17 @@ def message_names(folder):
     return list(dict.fromkeys(names))
 
 
-def has_kind(folder, kind):
+def has_kind(folder: Path | None, kind: str) -> bool:
     """Whether the package in ``folder`` has messages (``"msg"``) or services (``"srv"``); an action is messages. A package that was there
     a moment ago may have no ``folder``, ``None``."""
     return folder is not None and (os.path.isdir(folder / kind) or kind == "msg" and os.path.isdir(folder / "action"))
 
 
-def _has_definitions(folder):
+def _has_definitions(folder: Path) -> bool:
     return any(os.path.isdir(folder / kind) for kind in KINDS)
 
 
-def _packages_on_path():
+def _packages_on_path() -> Iterator[tuple[str, Path]]:
     """Name and folder of each package with definitions, in the order of the search."""
     for root in search_folders():
         yield from _packages_below(root, _DEPTH)
@@ -94,9 +100,25 @@ def _packages_below(folder, depth):
                 yield from _packages_below(entry.path, depth - 1)
 
 
+def packages() -> Iterator[tuple[str, Path]]:
+    """Name and folder of each package that a ``package.xml`` in a folder of the search describes, with definitions or without."""
+    for root in search_folders():
+        yield from _manifests_below(root, _DEPTH)
+
+
+def _manifests_below(folder, depth):
+    found = {entry.name: entry for entry in entries(folder) if not entry.name.startswith((".", "__"))}
+    if "package.xml" in found:
+        yield _name_of(Path(folder), found["package.xml"]), Path(folder)
+    elif depth:
+        for name, entry in found.items():
+            if is_folder(entry) and name not in SKIPPED:
+                yield from _manifests_below(entry.path, depth - 1)
+
+
 def _name_of(folder, manifest):
     try:
-        found = _PACKAGE_NAME.search(Path(manifest.path).read_text(errors="replace")) if manifest is not None else None
+        found = _PACKAGE_NAME.search(Path(manifest.path).read_text(encoding="utf-8", errors="replace")) if manifest is not None else None
     except OSError:  # the manifest is somebody else's, and the folder's name is what is left
         found = None
     return found[1] if found else folder.name
@@ -111,17 +133,19 @@ class PackageDefinitions:
 
     __slots__ = ("messages", "services", "actions")
 
-    def __init__(self):
-        self.messages, self.services, self.actions = {}, {}, []
+    def __init__(self) -> None:
+        self.messages: dict[str, Definition] = {}
+        self.services: dict[str, tuple[Definition, ...]] = {}
+        self.actions: list[str] = []
 
 
-def read(package):
+def read(package: str) -> PackageDefinitions | None:
     """The `PackageDefinitions` of the package of that name, or ``None``; a `DefinitionError` when something is wrong with them."""
     folder = package_folder(package)
     return read_package(package, folder) if folder is not None else None
 
 
-def read_package(package, folder):
+def read_package(package: str, folder: Path) -> PackageDefinitions:
     """The `PackageDefinitions` of the package in ``folder``. Anything wrong with them is a `DefinitionError`."""
     found = PackageDefinitions()
     for name, path in definition_files(folder, "msg").items():
@@ -139,7 +163,7 @@ def read_package(package, folder):
     return found
 
 
-def _text_of(path):
+def _text_of(path: Path) -> str:
     if not _TYPE_NAME.match(path.stem):
         raise DefinitionError(
             f"{path}: {path.stem} is not a name for a type.", "Rename the file: letters, digits and underscores, the first one a letter."
@@ -150,7 +174,7 @@ def _text_of(path):
         raise DefinitionError(f"{path} cannot be read: {problem.strerror}.", "Make it readable for this user, or remove it.") from None
 
 
-def _check_types(package, folder, found):
+def _check_types(package: str, folder: Path, found: PackageDefinitions) -> None:
     names = {package: found.messages}
     for definition in [*found.messages.values(), *(half for service in found.services.values() for half in service)]:
         for field in definition.fields:
@@ -165,13 +189,13 @@ def _check_types(package, folder, found):
         _check_circles(package, found.messages, [name])
 
 
-def _check_circles(package, messages, way):
+def _check_circles(package: str, messages: dict[str, Definition], way: list[str]) -> None:
     definition = messages[way[-1]]
     for field in definition.fields:
         home, _, name = field.base.partition("/")
         if home == package and name in messages:
             if name in way:
-                circle = " -> ".join([*way[way.index(name):], name])
+                circle = " -> ".join([*way[way.index(name) :], name])
                 line, column = field.place
                 raise DefinitionError(f"{definition.where}, line {line}, column {column}: A message cannot contain itself: {circle}.",
                                       "Refer to the other one by a number or a name.")  # fmt: skip

@@ -10,7 +10,12 @@ from __future__ import annotations
 import keyword
 import re
 
-from ..lisp.packages import near_names
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 
 INTEGERS = {
     "int8": (8, True),
@@ -41,7 +46,7 @@ _TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)?)(
 class DefinitionError(ValueError):
     """Something in a definition that cannot be. Its ``problem`` names file, line and column, its ``hint`` what to try."""
 
-    def __init__(self, problem, hint=None):
+    def __init__(self, problem: str, hint: str | None = None):
         super().__init__(problem if hint is None else f"{problem} {hint}")
         self.problem, self.hint = problem, hint
 
@@ -52,24 +57,24 @@ class Field:
 
     __slots__ = ("name", "base", "length", "attribute", "place")
 
-    def __init__(self, name, base, length=None, place=(1, 1)):
+    def __init__(self, name: str, base: str, length: int | None = None, place: tuple[int, int] = (1, 1)):
         self.name, self.base, self.length, self.place = name, base, length, place
         self.attribute = name + "_" if keyword.iskeyword(name) or name in RESERVED else name
 
     @property
-    def is_array(self):
+    def is_array(self) -> bool:
         return self.length is not None
 
     @property
-    def primitive(self):
+    def primitive(self) -> bool:
         return self.base in PRIMITIVES
 
     @property
-    def type(self):
+    def type(self) -> str:
         """As in the file, with the package of another message: ``float64[36]``, ``geometry_msgs/Point[]``."""
         return self.base + ("" if self.length is None else "[]" if self.length == 0 else f"[{self.length}]")
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"{self.type} {self.name}"
 
 
@@ -79,16 +84,19 @@ class Definition:
 
     __slots__ = ("fields", "constants", "constant_lines", "text", "where")
 
-    def __init__(self, where=""):
-        self.fields, self.constants, self.constant_lines, self.text, self.where = [], {}, [], "", where
+    def __init__(self, where: str = ""):
+        self.fields: list[Field] = []
+        self.constants: dict[str, str | int | float | bool | None] = {}
+        self.constant_lines: list[str] = []
+        self.text, self.where = "", where
 
     @property
-    def lines(self):
+    def lines(self) -> list[str]:
         """What ``rosmsg show`` prints of it: the constants, then the fields."""
         return [*self.constant_lines, *map(repr, self.fields)]
 
 
-def parse_message(text, package, where="message definition", first=1):
+def parse_message(text: str, package: str, where: str = "message definition", first: int = 1) -> Definition:
     """The `Definition` in ``text``; names of other messages are completed with ``package``. first: the number of its first line."""
     definition, kept = Definition(where), []
     for number, line in enumerate(text.splitlines(), first):
@@ -98,18 +106,33 @@ def parse_message(text, package, where="message definition", first=1):
         column = len(bare) - len(bare.lstrip()) + 1
         match = _LINE.match(bare.lstrip())
         if match is None or not match["name"] or match["constant"] and not match["value"]:
-            _fail(where, number, column, f'"{bare.strip()}" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).',
-                  "Write for instance  float64 x  or  uint8 RED=1  ; a comment begins with #.")
+            _fail(
+                where,
+                number,
+                column,
+                f'"{bare.strip()}" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).',
+                "Write for instance  float64 x  or  uint8 RED=1  ; a comment begins with #.",
+            )
         type_name, name = match["type"], match["name"].strip()
         name_column = column + match.start("name")
         if not _NAME.match(name):
-            _fail(where, number, name_column, f'"{name}" is not a name for a {"constant" if match["constant"] else "field"}.',
-                  "A name begins with a letter; letters, digits and underscores follow.")
+            _fail(
+                where,
+                number,
+                name_column,
+                f'"{name}" is not a name for a {"constant" if match["constant"] else "field"}.',
+                "A name begins with a letter; letters, digits and underscores follow.",
+            )
         base, length = _type(type_name, package, where, number, column)
         if match["constant"]:
             if type_name not in PRIMITIVES or type_name in ("time", "duration"):
-                _fail(where, number, column, f"A constant cannot be of type {type_name}.",
-                      "Constants are integers, floats, bools and strings.")
+                _fail(
+                    where,
+                    number,
+                    column,
+                    f"A constant cannot be of type {type_name}.",
+                    "Constants are integers, floats, bools and strings.",
+                )
             value = match["value"].strip()
             if base == "string":  # a text constant goes to the end of the line, number signs included
                 value = line.partition("=")[2].strip()
@@ -125,12 +148,12 @@ def parse_message(text, package, where="message definition", first=1):
     return definition
 
 
-def parse_service(text, package, where="service definition"):
+def parse_service(text: str, package: str, where: str = "service definition") -> tuple[Definition, ...]:
     """The two `Definition` objects, of the request and of the response."""
     return _parts(text, package, where, ("request", "response"))
 
 
-def parse_action(text, package, where="action definition"):
+def parse_action(text: str, package: str, where: str = "action definition") -> tuple[Definition, ...]:
     """The three `Definition` objects: goal, result and feedback."""
     return _parts(text, package, where, ("goal", "result", "feedback"))
 
@@ -138,7 +161,7 @@ def parse_action(text, package, where="action definition"):
 ACTION_PARTS = ("Goal", "Result", "Feedback")
 
 
-def action_messages(name):
+def action_messages(name: str) -> dict[str, str]:
     """The texts of the four messages that carry the parts of the action ``name``, by their names."""
     return {
         f"{name}ActionGoal": f"Header header\nactionlib_msgs/GoalID goal_id\n{name}Goal goal",
@@ -148,32 +171,39 @@ def action_messages(name):
     }
 
 
-def _parts(text, package, where, names):
+def _parts(text: str, package: str, where: str, names: tuple[str, ...]) -> tuple[Definition, ...]:
     parts, first = [], 1
     for part in re.split(r"^[ \t]*---[^\n]*$", text, flags=re.MULTILINE):
         parts.append((part, first))
         first += part.count("\n")
     if len(parts) != len(names):
         line = parts[len(names)][1] if len(parts) > len(names) else first
-        _fail(where, line, 1, f"Lines of three dashes separate {', '.join(names[:-1])} and {names[-1]}: there must be {len(names) - 1}, "
-              f"not {len(parts) - 1}.", f"Write --- on a line of its own after the fields of the {names[0]}, also when a part is empty.")
+        _fail(
+            where,
+            line,
+            1,
+            f"Lines of three dashes separate {', '.join(names[:-1])} and {names[-1]}: there must be {len(names) - 1}, "
+            f"not {len(parts) - 1}.",
+            f"Write --- on a line of its own after the fields of the {names[0]}, also when a part is empty.",
+        )
     return tuple(parse_message(part, package, where, first) for part, first in parts)
 
 
-def _fail(where, line, column, problem, hint=None):
+def _fail(where: str, line: int, column: int, problem: str, hint: str | None = None) -> NoReturn:
     raise DefinitionError(f"{where}, line {line}, column {column}: {problem}", hint)
 
 
-def _no_second(definition, name, where, number, column):
+def _no_second(definition: Definition, name: str, where: str, number: int, column: int) -> None:
     if name in definition.constants or any(field.name == name for field in definition.fields):
         _fail(where, number, column, f"There already is a field or constant called {name}.", "Each name can be used once in a message.")
 
 
-def _type(type_name, package, where, number, column):
+def _type(type_name: str, package: str, where: str, number: int, column: int) -> tuple[str, int | None]:
     match = _TYPE.match(type_name)
     if match is None or match["length"] and int(match["length"]) == 0:
-        _fail(where, number, column, f'"{type_name}" is not a type.',
-              "Types are written T, T[] or T[3], those of other packages package/T.")
+        _fail(
+            where, number, column, f'"{type_name}" is not a type.', "Types are written T, T[] or T[3], those of other packages package/T."
+        )
     base = match["base"]
     if base == "Header":
         base = "std_msgs/Header"
@@ -182,7 +212,7 @@ def _type(type_name, package, where, number, column):
     return base, int(match["length"] or 0) if match["array"] else None
 
 
-def _constant(type_name, value, where, number, column):
+def _constant(type_name: str, value: str, where: str, number: int, column: int) -> str | int | float | bool | None:
     if type_name == "string":
         return value
     if type_name == "bool":
@@ -192,7 +222,7 @@ def _constant(type_name, value, where, number, column):
     try:
         constant = int(value, 0) if type_name in INTEGERS else float(value)
     except ValueError:
-        return _fail(where, number, column, f"{value} is not a {type_name}.")
+        _fail(where, number, column, f"{value} is not a {type_name}.")
     if type_name in INTEGERS:
         bits, signed = INTEGERS[type_name]
         least, most = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if signed else (0, (1 << bits) - 1)
@@ -201,7 +231,7 @@ def _constant(type_name, value, where, number, column):
     return constant
 
 
-def unknown_type(field, package, where, candidates):
+def unknown_type(field: Field, package: str, where: str, candidates: Iterable[str]) -> NoReturn:
     """Signal that the type of ``field`` in the file ``where`` of ``package`` does not exist; ``candidates``: names of those that do."""
     name = field.base.rpartition("/")[2]
     written = name if name in OTHER_NAMES or field.base.startswith(package + "/") else field.base

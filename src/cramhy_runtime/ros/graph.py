@@ -25,44 +25,52 @@ from __future__ import annotations
 
 from collections import deque
 
+from cramhy_runtime.kernel.images import Cell
 from .. import kernel
 from . import rosout
 from .names import Naming
 from .parameter_tree import ParameterTree
 from .services import Service
 from .topics import NativeSubscription, Publication
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
-_active = None
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from .messages import RosMessage, ServiceType
+    from .signatures import Connection, Handler, MessageType, Observer
+
+M = TypeVar("M", bound="RosMessage")
+_active: Cell[Graph | None] = Cell(None, fresh=True)
 
 
 class Graph:
     """All nodes, topics, services and parameters of one kernel."""
 
-    def __init__(self, owner):
+    def __init__(self, owner: kernel.Kernel):
         self.kernel = owner
-        self.nodes = {}
-        self.topics = {}
-        self.services = {}
+        self.nodes: dict[str, Node] = {}
+        self.topics: dict[str, Topic] = {}
+        self.services: dict[str, Service] = {}
         self.parameters = ParameterTree(owner.clock.epoch)
-        self.log = deque(maxlen=1000)
-        self.on_change = []
-        self.lisp_node = None
-        self.debug_levels = {}
-        self.before_first_node = []
-        self.type_elsewhere = None
-        self.cut_off = None
+        self.log: deque[tuple[int, str | None, str]] = deque(maxlen=1000)  # level, node, text
+        self.on_change: list[Observer] = []
+        self.lisp_node: Node | None = None
+        self.debug_levels: dict[tuple[str, ...], int] = {}
+        self.before_first_node: list[Callable[[], object]] = []
+        self.type_elsewhere: Callable[[str, MessageType], tuple[str, str] | None] | None = None
+        self.cut_off: str | None = None
         self._ports = 0
 
-    def now(self):
+    def now(self) -> float:
         """Seconds since 1970, by the kernel's clock."""
         clock = self.kernel.clock
         return clock.epoch + clock.now()
 
-    def node(self, name, namespace="/", spins=False, hidden=False):
+    def node(self, name: str, namespace: str = "/", spins: bool = False, hidden: bool = False) -> Node:
         """A new node called ``name``, relative to ``namespace``; one of the same name is shut down first, as ROS does."""
         return self.add_node(Naming(name, namespace), spins, hidden)
 
-    def add_node(self, naming, spins=False, hidden=False):
+    def add_node(self, naming: Naming, spins: bool = False, hidden: bool = False) -> Node:
         """As `node`, with a `Naming` that is made already."""
         old = self.nodes.get(naming.node_name)
         if old is not None:
@@ -72,32 +80,32 @@ class Graph:
             self.changed("node", node.name, True)
         return node
 
-    def topic(self, name, message_type):
+    def topic(self, name: str, message_type: MessageType) -> Topic:
         """The topic ``name``; made with that type when nobody has used it yet."""
         topic = self.topics.get(name)
         if topic is None:
             topic = self.topics[name] = Topic(name, message_type)
         return topic
 
-    def next_address(self):
+    def next_address(self) -> str:
         self._ports += 1
         return f"127.0.0.1:{40000 + self._ports}"
 
     # ------------------------------------------------------------------------------------------- what users are shown
 
-    def visible_nodes(self):
+    def visible_nodes(self) -> dict[str, Node]:
         """The nodes that are not hidden, by name, sorted."""
         return {name: node for name, node in sorted(self.nodes.items()) if not node.hidden}
 
-    def visible_topics(self):
+    def visible_topics(self) -> dict[str, Topic]:
         """The topics on which some node that is not hidden publishes or listens, by name, sorted."""
         return {name: topic for name, topic in sorted(self.topics.items()) if topic.visible}
 
-    def visible_services(self):
+    def visible_services(self) -> dict[str, Service]:
         """The services of nodes that are not hidden, by name, sorted."""
         return {name: service for name, service in sorted(self.services.items()) if not service.node.hidden}
 
-    def changed(self, kind, name, there):
+    def changed(self, kind: str, name: str, there: bool) -> None:
         """Tell the observers that something visible has come (``there``) or gone."""
         for function in list(self.on_change):
             try:
@@ -111,21 +119,22 @@ class Topic:
 
     __slots__ = ("name", "type", "publications", "subscriptions")
 
-    def __init__(self, name, message_type):
+    def __init__(self, name: str, message_type: MessageType):
         self.name, self.type = name, message_type
-        self.publications, self.subscriptions = [], []
+        self.publications: list[Publication] = []
+        self.subscriptions: list[Connection] = []
 
     @property
-    def visible(self):
+    def visible(self) -> bool:
         """Whether a node that is not hidden publishes on it or listens to it."""
         return bool(self.visible_publications or self.visible_subscriptions)
 
     @property
-    def visible_publications(self):
+    def visible_publications(self) -> list[Publication]:
         return [publication for publication in self.publications if not publication.node.hidden]
 
     @property
-    def visible_subscriptions(self):
+    def visible_subscriptions(self) -> list[Connection]:
         return [subscription for subscription in self.subscriptions if not subscription.node.hidden]
 
 
@@ -136,32 +145,32 @@ class Node:
     to a topic with several callbacks.
     """
 
-    def __init__(self, graph, naming, spins=False, hidden=False):
+    def __init__(self, graph: Graph, naming: Naming, spins: bool = False, hidden: bool = False):
         self.graph, self.naming, self.spins, self.hidden = graph, naming, spins, hidden
         self.name = naming.node_name
         self.address = graph.next_address()
-        self.publications = {}
-        self.subscriptions = {}
-        self.services = {}
+        self.publications: dict[str, Publication] = {}
+        self.subscriptions: dict[str, list[Connection]] = {}
+        self.services: dict[str, Service] = {}
         self.alive = True
-        self.inbox = deque()
-        self._accepted = []
-        self.on_shutdown = []
+        self.inbox: deque[Callable[[], object]] = deque()
+        self._accepted: list[list[Any]] = []
+        self.on_shutdown: list[Callable[[], object]] = []
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<node {self.name}>"
 
-    def resolve(self, name):
+    def resolve(self, name: str) -> str:
         """The global name that ``name`` means to this node."""
         return self.naming.resolve(name)
 
-    def complain(self, text):
+    def complain(self, text: str) -> None:
         """An error between this node and another one: it logs it."""
         rosout.report(self, rosout.ERROR, text)
 
     # ---------------------------------------------------------------------------------------------------- topics
 
-    def advertise(self, name, message_type, latch=False):
+    def advertise(self, name: str, message_type: MessageType, latch: bool = False) -> Publication:
         """Publish on ``name`` from now on; returns the `Publication`. Subscribers that are there are connected at once."""
         name = self.resolve(name)
         publication = self.publications.get(name)
@@ -173,7 +182,7 @@ class Node:
                 publication.connect(subscription)
         return publication
 
-    def unadvertise(self, name):
+    def unadvertise(self, name: str) -> bool:
         """Stop publishing on the global name ``name``; true when it was advertised."""
         publication = self.publications.pop(name, None)
         if publication is None:
@@ -184,7 +193,7 @@ class Node:
         self._leave(topic, topic.publications, publication)
         return True
 
-    def subscribe(self, name, message_type, callback, queue=None):
+    def subscribe(self, name: str, message_type: type[M], callback: Callable[[M], object], queue: int | None = None) -> NativeSubscription:
         """Have ``callback(message)`` called for every message on ``name``: in `spin_once` of a spinning node, else at once.
 
         It must not wait. ``queue``: how many messages may wait for the spin; older ones are dropped. Returns the subscription.
@@ -193,7 +202,7 @@ class Node:
         self.add_subscription(subscription)
         return subscription
 
-    def add_subscription(self, subscription):
+    def add_subscription(self, subscription: Connection) -> list[Node]:
         """Register ``subscription`` and connect it; returns the spinning publishers that must accept it first."""
         self.subscriptions.setdefault(subscription.name, []).append(subscription)
         topic = self.graph.topic(subscription.name, subscription.type)
@@ -207,7 +216,7 @@ class Node:
                 publication.connect(subscription)
         return waiting
 
-    def unsubscribe(self, name):
+    def unsubscribe(self, name: str | Connection) -> None:
         """Drop the subscriptions to the global name ``name``, or one of them: a subscription instead of its name."""
         if isinstance(name, str):
             gone = self.subscriptions.pop(name, ())
@@ -226,13 +235,13 @@ class Node:
                 publication.disconnect(subscription)
             self._leave(topic, topic.subscriptions, subscription)
 
-    def _join(self, topic, ends, end):
+    def _join(self, topic: Topic, ends: list[Any], end: object) -> None:
         news = not (self.hidden or topic.visible)
         ends.append(end)
         if news:
             self.graph.changed("topic", topic.name, True)
 
-    def _leave(self, topic, ends, end):
+    def _leave(self, topic: Topic, ends: list[Any], end: object) -> None:
         ends.remove(end)
         if not topic.publications and not topic.subscriptions:
             del self.graph.topics[topic.name]
@@ -241,11 +250,11 @@ class Node:
 
     # -------------------------------------------------------------------------------------------------- services
 
-    def serve(self, name, service_type, handler):
+    def serve(self, name: str, service_type: ServiceType, handler: Handler) -> Service:
         """Offer the service ``name``; ``handler(request)`` returns the response or raises `services.Refusal`."""
         return self.add_service(Service(self, self.resolve(name), service_type, handler))
 
-    def add_service(self, service):
+    def add_service(self, service: Service) -> Service:
         """Offer ``service``, in the place of one that has the same name; returns it."""
         self.withdraw(service.name)
         self.services[service.name] = self.graph.services[service.name] = service
@@ -253,7 +262,7 @@ class Node:
             self.graph.changed("service", service.name, True)
         return service
 
-    def withdraw(self, name):
+    def withdraw(self, name: str) -> None:
         """Stop offering the service with the global name ``name``. Callers that wait are told."""
         service = self.services.pop(name, None)
         if service is not None:
@@ -265,7 +274,7 @@ class Node:
 
     # -------------------------------------------------------------------------------------------- spinning, ending
 
-    def spin_once(self):
+    def spin_once(self) -> None:
         """Handle everything that arrived since the last time, in order of arrival; what arrives meanwhile waits for the next."""
         inbox = self.inbox
         for _ in range(len(inbox)):
@@ -273,7 +282,7 @@ class Node:
                 return
             inbox.popleft()()
 
-    def wait_for_spin(self, why):
+    def wait_for_spin(self, why: str) -> None:
         """Park the current task until this spinning node has finished its next tick."""
         task = kernel.current()
         entry = [task, False]
@@ -281,7 +290,7 @@ class Node:
         while self.alive and not entry[1]:
             kernel.park(why)
 
-    def tick_done(self):
+    def tick_done(self) -> None:
         """A spinning node calls this at the end of each tick: who waited for a connection goes on."""
         if self._accepted:
             waiting, self._accepted = self._accepted, []
@@ -289,7 +298,7 @@ class Node:
                 entry[1] = True
                 kernel.unpark(entry[0])
 
-    def shutdown(self):
+    def shutdown(self) -> None:
         """Leave the graph: topics, services and subscriptions go, and nobody is left waiting."""
         if not self.alive:
             return
@@ -312,12 +321,11 @@ class Node:
             function()
 
 
-def active():
+def active() -> Graph:
     """The graph of the active kernel; a fresh one when the kernel is new."""
-    global _active
     owner = kernel.active()
-    if _active is None or _active.kernel is not owner:
+    if _active.value is None or _active.value.kernel is not owner:
         if owner is None:
             raise kernel.KernelError("There is no ROS graph without a kernel. Call kernel.start() first.")
-        _active = Graph(owner)
-    return _active
+        _active.value = Graph(owner)
+    return _active.value

@@ -8,6 +8,12 @@ from __future__ import annotations
 
 from .messages import message_class_exact, service_type_exact
 from .services import Refusal
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .graph import Node
+    from .messages import RosMessage
+
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
 LEVEL_NAMES = {DEBUG: "DEBUG", INFO: "INFO", WARN: "WARN", ERROR: "ERROR", FATAL: "FATAL"}
@@ -20,19 +26,17 @@ class Loggers:
     ``talkative``: whether it prints what is for debugging, asked for in every tick.
     """
 
-    def __init__(self, node, package):
+    def __init__(self, node: Node, package: str):
         self.own = f"ros.{package}"
-        self.levels = {"ros": INFO, "ros.roscpp": INFO, "ros.roscpp.roscpp_internal": INFO,
-                       "ros.roscpp.superdebug": WARN, self.own: INFO}
+        self.levels = {"ros": INFO, "ros.roscpp": INFO, "ros.roscpp.roscpp_internal": INFO, "ros.roscpp.superdebug": WARN, self.own: INFO}
         self.talkative = False
         get, change = service_type_exact("roscpp/GetLoggers"), service_type_exact("roscpp/SetLoggerLevel")
         entry = message_class_exact("roscpp/Logger")
 
-        def tell(_):
-            return get.response(loggers=[entry(name=name, level=LEVEL_NAMES[self.levels[name]].lower())
-                                         for name in sorted(self.levels)])
+        def tell(_: RosMessage) -> RosMessage:
+            return get.response(loggers=[entry(name=name, level=LEVEL_NAMES[self.levels[name]].lower()) for name in sorted(self.levels)])
 
-        def set_level(request):
+        def set_level(request: RosMessage) -> RosMessage:
             code = LEVEL_CODES.get(request.level.upper())
             if code is None:
                 raise Refusal("")
@@ -43,6 +47,6 @@ class Loggers:
         node.serve("~get_loggers", get, tell)
         node.serve("~set_logger_level", change, set_level)
 
-    def enabled(self, level):
+    def enabled(self, level: int) -> bool:
         """Whether the node prints what it logs at ``level``, a code of ``rosgraph_msgs/Log``."""
         return level >= self.levels[self.own]

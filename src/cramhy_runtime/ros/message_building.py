@@ -1,45 +1,52 @@
 """Making, changing and taking apart messages, as roslisp's macros do it.
 
 A *field path* is a tuple of names read inside-out: ``("X", "LINEAR")`` is the field x of the field linear. The macros of
-``roslisp.hy`` turn their unevaluated field specs into such tuples and call the functions here. Specs are applied from the
+``hy_src/cramhy/roslisp.hy`` turn their unevaluated field specs into such tuples and call the functions here. Specs are applied from the
 last to the first, so of two values for one field the first one counts (roslisp.md 5.3).
 """
 
 from __future__ import annotations
 
-from ..lisp import conditions
-from ..lisp.condition_types import Error, SimpleError, TypeError_
-from ..lisp.data import Cons, Symbol, list_from, python_list
-from ..lisp.objects.classes import make_instance
-from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.objects.slots import MissingSlot
-from ..lisp.packages import COMMON_LISP, is_symbol, sym, symbol_name
-from ..lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Error, SimpleError, TypeError_
+from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
+from cramhy_runtime.ground.classes import make_instance
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.condition_types import MissingSlot
+from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name
+from cramhy_runtime.ground.printing import princ_to_string
 from . import messages, type_texts
 from .messages import RosMessage, lisp_attribute
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from .signatures import FieldPath, FieldSpecs, MessageType, ServiceName, TypeName
 
 
-NO_MESSAGE_YET = ("No message is there yet: a fluent is NIL until the first one comes. Has its topic been subscribed to, and does "
-                  "somebody publish on it?")
+NO_MESSAGE_YET = (
+    "No message is there yet: a fluent is NIL until the first one comes. Has its topic been subscribed to, and does somebody publish on it?"
+)
 
 
-def make_message(designator, specs=()):
+def make_message(designator: TypeName, specs: FieldSpecs = ()) -> RosMessage:
     """A new message (``make-message``, ``make-msg``). ``specs``: a sequence of (field path, value)."""
     message = messages.message_class(designator)()
     return set_fields(message, specs, fresh=True) if specs else message
 
 
-def make_request(designator, specs=()):
+def make_request(designator: ServiceName, specs: FieldSpecs = ()) -> RosMessage:
     """The request of the service ``designator`` (symbol, string, or `ServiceType`) with ``specs`` as for `make_message`."""
     return set_fields(messages.service_type(designator).request(), specs, fresh=True)
 
 
-def make_response(service, *initargs):
+def make_response(service: ServiceName, *initargs: object) -> RosMessage:
     """``roslisp:make-response``: a response object of the service, from keyword objects and values."""
     return instance(messages.service_type(service).response, initargs)
 
 
-def instance(cls, initargs):
+def instance(cls: MessageType, initargs: Sequence[Any]) -> RosMessage:
     """``make-instance`` of a message class: keywords only, no paths."""
     keywords = {}
     for index in range(0, len(initargs) - 1, 2):
@@ -52,7 +59,7 @@ def instance(cls, initargs):
     return cls(**keywords)
 
 
-def _bad_initargs(cls, initargs):
+def _bad_initargs(cls: MessageType, initargs: Sequence[Any]) -> Any:
     def advise(problem):
         problem.hint = _fields_hint(cls)
 
@@ -60,14 +67,14 @@ def _bad_initargs(cls, initargs):
     return conditions.handler_bind([(Error, advise)], lambda: make_instance(cls, *initargs))
 
 
-def modify_message_copy(message, specs):
+def modify_message_copy(message: RosMessage, specs: FieldSpecs) -> RosMessage:
     """A new message that differs in ``specs``; parts that are not touched are the same objects."""
     if not isinstance(message, RosMessage):
         return conditions.error(TypeError_(message, "ROSLISP:ROS-MESSAGE"), hint=NO_MESSAGE_YET if message is None else None)
     return set_fields(message.copy(), specs)
 
 
-def set_fields(message, specs, fresh=False):
+def set_fields(message: RosMessage, specs: FieldSpecs, fresh: bool = False) -> RosMessage:
     """Set the fields of ``message``, which belongs to the caller, and return it.
 
     Parts on the way of a path are copied first unless this call made them; with ``fresh`` all present ones are its own.
@@ -92,7 +99,7 @@ def set_fields(message, specs, fresh=False):
     return message
 
 
-def _attribute(target, name, whole):
+def _attribute(target: Any, name: str, whole: object) -> str:
     attribute = target.attributes.get(name) if isinstance(target, RosMessage) else None
     if attribute is None:
         attribute = lisp_attribute(type(target), name) if isinstance(target, RosMessage) else None
@@ -101,13 +108,13 @@ def _attribute(target, name, whole):
     return attribute
 
 
-def _no_field(name, target):
+def _no_field(name: object, target: object) -> NoReturn:
     dump = princ_to_string(_as_deep_list(target))
     hint = _fields_hint(type(target)) if isinstance(target, RosMessage) else None
-    return conditions.error(SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}"), hint=hint)
+    conditions.error(SimpleError("~a", f"Could not find field {str(name).upper()} in {dump}"), hint=hint)
 
 
-def _fields_hint(cls):
+def _fields_hint(cls: MessageType) -> str:
     """What to try when a field is not there: those that there are. A request is called by the name of its service, as the user does."""
     name = cls.ros_type
     for part, called in (("Request", "{}"), ("Response", "The response of {}")):
@@ -118,16 +125,13 @@ def _fields_hint(cls):
     return f"{name} has {'the fields ' + ' '.join(fields) if fields[1:] else 'the field ' + fields[0] if fields else 'no fields'}."
 
 
-def _as_deep_list(value):
+def _as_deep_list(value: Any) -> Any:
     if not isinstance(value, RosMessage):
         return value
-    return Cons(
-        value.lisp_symbol,
-        list_from([Cons(key, _as_deep_list(part)) for key, part in zip(value.keywords, value.values())]),
-    )
+    return Cons(value.lisp_symbol, list_from([Cons(key, _as_deep_list(part)) for key, part in zip(value.keywords, value.values())]))
 
 
-def get_field(message, path):
+def get_field(message: Any, path: FieldPath) -> Any:
     """The value at ``path`` (``with-fields``). A field that is not there is SBCL's missing-slot error."""
     for name in reversed(path):
         attribute = message.attributes.get(name) if isinstance(message, RosMessage) else None
@@ -138,7 +142,7 @@ def get_field(message, path):
     return message
 
 
-def msg_slot_value(message, slot):
+def msg_slot_value(message: RosMessage, slot: str | Symbol) -> Any:
     """``roslisp:msg-slot-value``: ``slot`` is a string in any case, a keyword or a symbol."""
     attribute = lisp_attribute(type(message), slot) if isinstance(message, RosMessage) else None
     if attribute is not None:
@@ -151,44 +155,41 @@ def msg_slot_value(message, slot):
 # ----------------------------------------------------------------------------------------------------- list form, constants
 
 
-def ros_message_to_list(message):
+def ros_message_to_list(message: RosMessage) -> Cons:
     """``(TURTLESIM-MSG:POSE (:X . 0.0) …)``; parts stay objects."""
     return Cons(message.lisp_symbol, list_from([Cons(key, value) for key, value in zip(message.keywords, message.values())]))
 
 
-def list_to_ros_message(form):
+def list_to_ros_message(form: object) -> Any:
     """The message that `ros_message_to_list` gives ``form`` for; parts may be lists themselves."""
     if not isinstance(form, Cons):
         return form
     return set_fields(messages.message_class(form.car)(), [_field_of(entry, form) for entry in python_list(form.cdr)])
 
 
-def _field_of(entry, form):
+def _field_of(entry: Any, form: object) -> tuple[FieldPath, Any]:
     if not isinstance(entry, Cons) or not is_symbol(entry.car):
-        return conditions.error(SimpleError("~s is no field of a message in list form, in ~s.", entry, form),
-                                hint="The list form is (CLASS (FIELD . value) ...), as ros-message-to-list gives it.")
+        return conditions.error(
+            SimpleError("~s is no field of a message in list form, in ~s.", entry, form),
+            hint="The list form is (CLASS (FIELD . value) ...), as ros-message-to-list gives it.",
+        )
     value = entry.cdr
     return (symbol_name(entry.car),), list_to_ros_message(value) if isinstance(value, Cons) and messages.named(value.car) else value
 
 
-def read_ros_message(stream):
-    """Read one list in list form from ``stream`` and make the message."""
-    return list_to_ros_message(sym("READ").function(stream))
-
-
-def _constants_class(designator):
+def _constants_class(designator: Any) -> MessageType:
     if isinstance(designator, RosMessage):
         return type(designator)
     return messages.message_class(designator)
 
 
-def symbol_codes(designator):
+def symbol_codes(designator: TypeName | RosMessage) -> Cons | None:
     """The constants of a message type as an association list."""
     cls = _constants_class(designator)
     return list_from([Cons(sym(":" + name.upper()), value) for name, value in cls.constants.items()])
 
 
-def symbol_code(designator, key):
+def symbol_code(designator: TypeName | RosMessage, key: Symbol) -> str | int | float | bool | None:
     """The value of the constant ``key``."""
     cls = _constants_class(designator)
     if not is_symbol(key):
@@ -201,12 +202,12 @@ def symbol_code(designator, key):
     )
 
 
-def code_symbols(designator, code):
+def code_symbols(designator: TypeName | RosMessage, code: object) -> Cons | None:
     """The constants with the value ``code``, as (keyword . value) pairs."""
     return list_from([pair for pair in symbol_codes(designator) or () if pair.cdr == code])
 
 
-def code_symbol(designator, code):
+def code_symbol(designator: TypeName | RosMessage, code: object) -> Symbol:
     """The first constant with the value ``code``, as a keyword."""
     found = code_symbols(designator, code)
     if found is not None:
@@ -214,28 +215,28 @@ def code_symbol(designator, code):
     return conditions.error(SimpleError("~a", f"Could not get code symbol for {code} in ROS message type {_shown_type(designator)}"))
 
 
-def _shown_type(designator):
+def _shown_type(designator: Any) -> str:
     return symbol_name(designator) if isinstance(designator, Symbol) else _constants_class(designator).lisp_symbol.name
 
 
-def ros_datatype(designator):
+def ros_datatype(designator: TypeName | RosMessage) -> str:
     """``"turtlesim/Pose"`` for a class symbol, instance, or service symbol."""
     found = _type_of(designator, "ROS-DATATYPE")
     return found.ros_type if isinstance(found, type) else found.name
 
 
-def _type_of(designator, function):
+def _type_of(designator: Any, function: str) -> Any:
     if isinstance(designator, RosMessage):
         return type(designator)
     found = messages.named(designator) if isinstance(designator, Symbol) else messages.message_class(designator)
     return found if found is not None else no_applicable_method(f"ROSLISP-MSG-PROTOCOL:{function}", 2, designator)
 
 
-def md5sum(designator):
+def md5sum(designator: TypeName | RosMessage) -> str:
     """The md5 sum of a class symbol, instance, or service symbol, as ROS has it."""
     return type_texts.md5_of(_type_of(designator, "MD5SUM"))
 
 
-def message_definition(designator):
+def message_definition(designator: TypeName | RosMessage) -> str:
     """The text of the definition without its comments, followed by those of all messages that it is made of."""
     return type_texts.definition_text(_type_of(designator, "MESSAGE-DEFINITION"))

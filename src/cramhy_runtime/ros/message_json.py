@@ -20,12 +20,23 @@ import binascii
 import math
 import reprlib
 
-from ..lisp.data import DoubleFloat, LispString
-from ..lisp.numbers.arithmetic import is_real, single
+from cramhy_runtime.ground.data import DoubleFloat, LispString
+from cramhy_runtime.ground.numbers import is_real, single
+from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
 from .definition_text import INTEGERS
 from .messages import RosMessage
 from .wire import NONFINITE, lisp_float, ros_text
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Self, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from .messages import ServiceType
+    from .signatures import MessageType
+
+M = TypeVar("M", bound="RosMessage")
+T = TypeVar("T")
 
 
 class MessageJsonError(ValueError):
@@ -35,25 +46,25 @@ class MessageJsonError(ValueError):
     the fields from the outermost inwards, elements of arrays by their index: ``["poses", "[2]", "position", "x"]``.
     """
 
-    def __init__(self, problem, path=()):
+    def __init__(self, problem: str | Callable[[str, str], str], path: Sequence[str] = ()):
         super().__init__(problem)
         self.problem, self.path, self.type = problem, list(path), ""
 
-    def below(self, field):
+    def below(self, field: str) -> Self:
         """This error, seen from the message that has it in its ``field``."""
         self.path.insert(0, field)
         return self
 
-    def of(self, ros_type):
+    def of(self, ros_type: str) -> Self:
         """This error, about a message of the type as a whole."""
         self.type = ros_type
         return self
 
-    def __str__(self):
+    def __str__(self) -> str:
         return self.problem(self.type, ".".join(self.path).replace(".[", "[")) if callable(self.problem) else self.problem
 
 
-def to_json(message):
+def to_json(message: RosMessage) -> dict[str, Any]:
     """``message``, as the graph delivers it or as it was made, as plain data for ``json.dumps``. Raises `MessageJsonError`."""
     encode = _encoders.get(message.__class__) or _encoder(message.__class__)
     try:
@@ -65,7 +76,7 @@ def to_json(message):
             raise problem.of(message.ros_type)
 
 
-def from_json(cls, data, now=None):
+def from_json(cls: type[M], data: object, now: float | None = None) -> M:
     """The message of class ``cls`` (or `MessageJsonError`) that ``data``, a dict as ``json.loads`` gives it, describes.
 
     Fields that are not given have their defaults. now: seconds since 1970, which the text ``"now"`` stands for; when it is
@@ -78,7 +89,7 @@ def from_json(cls, data, now=None):
         raise problem.of(cls.ros_type)
 
 
-def request_from_json(cls, data, now=None):
+def request_from_json(cls: type[M], data: object, now: float | None = None) -> M:
     """The request that the arguments of a service call describe: as `from_json`, or a list in the order of the fields, or None."""
     if data is None:
         data = {}
@@ -90,7 +101,7 @@ def request_from_json(cls, data, now=None):
     return from_json(cls, data, now)
 
 
-def type_named(name, find=messages.message_class_exact):
+def type_named(name: object, find: Callable[[str], Any] = messages.message_class_exact) -> MessageType:
     """The message class called ``"turtlesim/Pose"``, or in ROS 2's way ``"turtlesim/msg/Pose"``; with ``find`` a service.
 
     Raises `MessageJsonError` when there is none. To be called in the kernel: it may read a package's definitions.
@@ -106,7 +117,7 @@ def type_named(name, find=messages.message_class_exact):
     raise MessageJsonError(f'There is no type {_shown(name)}. A type is written "package/Name"; its package must be on ROS_PACKAGE_PATH.')
 
 
-def service_named(name):
+def service_named(name: object) -> ServiceType:
     """The `ServiceType` called ``"turtlesim/Spawn"`` or ``"turtlesim/srv/Spawn"``; errors as of `type_named`."""
     return type_named(name, messages.service_type_exact)
 
@@ -119,7 +130,7 @@ _brief.maxlevel = 2
 _brief.maxstring = _brief.maxother = 40
 
 
-def _shown(value):
+def _shown(value: object) -> str:
     """``value`` in an error text: short, however large or deep it is."""
     try:
         return _brief.repr(value)
@@ -130,22 +141,22 @@ def _shown(value):
 _JSON_NAMES = {dict: "an object", list: "a list", str: "a text", bool: "a truth value", int: "an integer", float: "a number"}
 
 
-def _wrong(type_name, value, why=""):
+def _wrong(type_name: str, value: object, why: str = "") -> MessageJsonError:
     kind = "null" if value is None else f"{_JSON_NAMES.get(value.__class__, type(value).__name__)}, {_shown(value)}"
     return _mismatch(type_name, kind + (why and ": " + why))
 
 
-def _mismatch(type_name, given):
+def _mismatch(type_name: str, given: str) -> MessageJsonError:
     return MessageJsonError(
         lambda ros_type, field: f"{ros_type} message requires a {type_name}{field and ' for field ' + field}, but got {given}."
     )
 
 
-def _counted(number, what):
+def _counted(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def _names(cls):
+def _names(cls: MessageType) -> str:
     return ", ".join(field.name for field in cls.fields) or "none"
 
 
@@ -254,10 +265,7 @@ def _write_bytes(octets):
 
 _readers = {name: _integer(name, *size) for name, size in INTEGERS.items()}
 _readers.update(
-    float64=_floating("float64", lambda value: value),
-    float32=_floating("float32", single),
-    bool=_read_bool,
-    string=_read_string,
+    float64=_floating("float64", lambda value: value), float32=_floating("float32", single), bool=_read_bool, string=_read_string
 )
 _moments = {"time": _moment("time", False), "duration": _moment("duration", True)}
 _DEFAULTS = {"bool": "None", "string": '""', "float32": "zero", "float64": "zero", **dict.fromkeys(INTEGERS, "0")}
@@ -270,7 +278,7 @@ def _is_binary(field):
 # --------------------------------------------------------------------------------------------------------------- encoders
 
 
-_encoders: dict[type, object] = {}
+_encoders: dict[type, Callable[[Any], dict[str, Any]]] = {}
 _ENCODED = {
     "float32": "float(value) if isfinite(value := {0}) else None",
     "float64": "float(value) if isfinite(value := {0}) else None",
@@ -303,9 +311,9 @@ def _encoder(cls):
         else:
             text = text.format(value)
         parts.append(f"{field.name!r}: {text}")
-    exec(f"def encode(message):\n    return {{{', '.join(parts)}}}", scope)
-    _encoders[cls] = scope["encode"]
-    return scope["encode"]
+    body = ["return {", *(f"    {part}," for part in parts), "}"]
+    encode = _encoders[cls] = generated_function(f"encoding {cls.ros_type}", "encode", ["message"], body, scope)
+    return encode
 
 
 def _write_floats(values):
@@ -319,8 +327,9 @@ def _part_class(field):
     found = messages.message_class_exact(field.base)
     if found is None:
         raise MessageJsonError(
-            lambda ros_type, name: f"{field.base}, the type of the field {name} of {ros_type}, is not known. "
-            "Is its package on ROS_PACKAGE_PATH?",
+            lambda ros_type, name: (
+                f"{field.base}, the type of the field {name} of {ros_type}, is not known. Is its package on ROS_PACKAGE_PATH?"
+            ),
             [field.name],
         )
     return found
@@ -393,26 +402,21 @@ def _decoder(cls):
         "elements": _elements,
         "inner": _inner,
     }
-    lines = [
-        "def decode(data, now):",
-        "    if data.__class__ is not dict: no_object(cls, data)",
-        "    message, given, get = new(cls), 0, data.get",
-    ]
+    lines = ["if data.__class__ is not dict: no_object(cls, data)", "message, given, get = new(cls), 0, data.get"]
     for field in cls.fields:
         target, name = f"message.{field.attribute}", field.name
         read, default = _reading(field, scope, cls)
         lines += [
-            f"    value = get({name!r}, missing)",
-            f"    if value is missing: {target} = {default}",
-            "    else:",
-            "        given += 1",
-            f"        try: {target} = {read}",
-            f"        except problems as problem: raise problem.below({name!r})",
+            f"value = get({name!r}, missing)",
+            f"if value is missing: {target} = {default}",
+            "else:",
+            "    given += 1",
+            f"    try: {target} = {read}",
+            f"    except problems as problem: raise problem.below({name!r})",
         ]
-    lines += ["    if given != len(data): unknown_field(cls, data)", "    return message"]
-    exec("\n".join(lines), scope)
-    _decoders[cls] = scope["decode"]
-    return scope["decode"]
+    lines += ["if given != len(data): unknown_field(cls, data)", "return message"]
+    decode = _decoders[cls] = generated_function(f"decoding {cls.ros_type}", "decode", ["data", "now"], lines, scope)
+    return decode
 
 
 def _reading(field, scope, cls):

@@ -9,17 +9,37 @@ Source: roslisp.md 5.
 from __future__ import annotations
 
 import functools
-from inspect import Parameter, Signature
 
-from ..lisp import conditions, packages
-from ..lisp.condition_types import CaseFailure, SimpleError
-from ..lisp.data import UNSUPPLIED, LispString, Symbol, lisp_list
-from ..lisp.objects.classes import find_class_or_error
-from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.packages import Package, delete_package, intern, near_names, register, registered, string_designator, sym
-from ..lisp.systems import systems
+from cramhy_runtime.ground import conditions, packages
+from cramhy_runtime.ground.condition_types import CaseFailure, SimpleError
+from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list
+from cramhy_runtime.ground.classes import find_class_or_error
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
+from cramhy_runtime.utilities.generated_functions import generated_function
 from . import definition_files
 from .definition_text import DefinitionError
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, Self, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+    from .definition_files import PackageDefinitions
+    from .definition_text import Definition, Field
+    from .signatures import MessageType, ServiceName, TypeName
+
+    Loaded = tuple[list["MessageType"], list["ServiceType"]]
+
+M = TypeVar("M", bound="RosMessage")
+
+
+class _SignatureOfFields:
+    """The signature of a message class: its fields. It is made when somebody asks; `inspect` takes 5 ms."""
+
+    def __get__(self, message, cls):
+        from inspect import Parameter, Signature
+
+        return Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in cls.field_names])
 
 
 class RosMessage:
@@ -30,26 +50,33 @@ class RosMessage:
     """
 
     __slots__ = ()
+    __signature__ = _SignatureOfFields()
     lisp_name = "ROSLISP-MSG-PROTOCOL::ROS-MESSAGE"
     ros_type = ""
-    fields = ()
-    field_names = ()
-    constants: dict = {}
-    attributes: dict = {}
-    initargs: dict = {}
-    keywords = ()
-    lisp_symbol = None
-    definition = None
+    fields: tuple[Field, ...] = ()
+    field_names: tuple[str, ...] = ()
+    constants: dict[str, str | int | float | bool | None] = {}
+    attributes: dict[str, str] = {}
+    initargs: dict[str, str] = {}
+    keywords: tuple[Symbol, ...] = ()
+    lisp_symbol: Symbol = None  # type: ignore[assignment]  # every type that is defined has both
+    definition: Definition = None  # type: ignore[assignment]
 
-    def __repr__(self):
+    if TYPE_CHECKING:  # the fields of each type stand in its definition
+
+        def __init__(self, *values: object, **fields: object): ...
+        def __getattr__(self, name: str) -> Any: ...
+        def __setattr__(self, name: str, value: Any) -> None: ...
+
+    def __repr__(self) -> str:
         inside = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.field_names)
         return f"{type(self).__name__}({inside})"
 
-    def copy(self):
+    def copy(self) -> Self:
         """A shallow copy: the parts are shared."""
         return type(self)(*[getattr(self, name) for name in self.field_names])
 
-    def values(self):
+    def values(self) -> list[Any]:
         """The values of the fields, in order."""
         return [getattr(self, name) for name in self.field_names]
 
@@ -59,25 +86,25 @@ class ServiceType:
 
     __slots__ = ("name", "request", "response", "lisp_symbol")
 
-    def __init__(self, name, request, response, lisp_symbol):
+    def __init__(self, name: str, request: MessageType, response: MessageType, lisp_symbol: Symbol):
         self.name, self.request, self.response, self.lisp_symbol = name, request, response, lisp_symbol
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<service type {self.name}>"
 
 
-_messages: dict[str, type] = {}
+_messages: dict[str, MessageType] = {}
 _services: dict[str, ServiceType] = {}
 _by_symbol: dict[object, object] = {}
-_loaded: dict[str, tuple] = {}
+_loaded: dict[str, Loaded] = {}
 _reading: list[str] = []
-_listeners = []
-_warned = set()
+_listeners: list[Callable[..., object]] = []
+_warned: set[Symbol] = set()
 
 DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
 
 
-def load_package(package):
+def load_package(package: str) -> Loaded | None:
     """Define all messages and services of the ROS package; returns their Python classes and `ServiceType` objects, or
     ``None`` when there is no such package. A broken definition is an error, after which nothing is defined."""
     found = _loaded.get(package)
@@ -93,7 +120,7 @@ def load_package(package):
     return found
 
 
-def _read(package, folder):
+def _read(package: str, folder: Path) -> PackageDefinitions:
     _reading.append(package)
     try:
         return definition_files.read_package(package, folder)
@@ -109,13 +136,13 @@ class BrokenDefinition(SimpleError):
     lisp_name = "ROSLISP::DEFINITION-ERROR"
 
 
-def _signal_broken(problem, package, folder):
+def _signal_broken(problem: DefinitionError, package: str, folder: Path) -> Any:
     broken = BrokenDefinition("~a", problem.problem)
     retry = (sym("RETRY"), lambda: _read(package, folder), f"Read the definitions of {package} again.")
     return conditions.restart_case([retry], lambda: conditions.error(broken, hint=problem.hint))
 
 
-def _define_package(package, definitions, classes, services):
+def _define_package(package: str, definitions: PackageDefinitions, classes: list[MessageType], services: list[ServiceType]) -> None:
     for name, definition in definitions.messages.items():
         classes.append(_define_message(package, name, definition, "MSG", f"{package}/{name}"))
     for name, parts in definitions.services.items():
@@ -128,7 +155,7 @@ def _define_package(package, definitions, classes, services):
         services.append(service)
 
 
-def on_load(listener):
+def on_load(listener: Callable[[str, list[MessageType], list[ServiceType]], object]) -> None:
     """Call ``listener(package, message classes, services)`` for every package loaded from now on, and those before."""
     _listeners.append(listener)
     for package, classes in list(_loaded.items()):
@@ -138,12 +165,12 @@ def on_load(listener):
 class MessagePackage(Package):
     """The Lisp package of a ROS package's messages or services. Its definitions are read when somebody looks into it."""
 
-    def __init__(self, ros_package, kind):
+    def __init__(self, ros_package: str, kind: str):
         self.ros_package = ros_package
         super().__init__(f"{ros_package.upper()}-{kind}")
 
     @property
-    def external(self):
+    def external(self) -> Any:
         if self.ros_package not in _loaded and self.ros_package not in _reading:
             try:
                 load_package(self.ros_package)
@@ -154,16 +181,16 @@ class MessagePackage(Package):
         return self._external
 
     @external.setter
-    def external(self, table):
+    def external(self, table: Any) -> None:
         self._external = table
 
 
-def lisp_package(package, kind):
+def lisp_package(package: str, kind: str) -> Package:
     """The Lisp package ``TURTLESIM-MSG`` or ``TURTLESIM-SRV`` of a ROS package; made when it is not there."""
-    return registered(f"{package.upper()}-{kind}") or register(MessagePackage(package, kind))
+    return registered(f"{package.upper()}-{kind}") or ours(f"{package.upper()}-{kind}", lambda: MessagePackage(package, kind))
 
 
-def _forget_lisp_packages(package):
+def _forget_lisp_packages(package: str) -> None:
     _reading.append(package)
     for kind in ("MSG", "SRV"):
         home = registered(f"{package.upper()}-{kind}")
@@ -174,7 +201,7 @@ def _forget_lisp_packages(package):
     _reading.remove(package)
 
 
-def find_lisp_package(name):
+def find_lisp_package(name: str) -> Package | None:
     """The Lisp package ``MY_MSGS-MSG`` when there is a ROS package that has such definitions, made now; else ``None``."""
     package, _, kind = name.rpartition("-")
     package = package.lower()
@@ -184,7 +211,7 @@ def find_lisp_package(name):
     return lisp_package(package, kind)
 
 
-def find_message_system(name):
+def find_message_system(name: str) -> bool:
     """Whether ``name`` is ``my_msgs-msg`` or ``my_msgs-srv``, of a ROS package that has such definitions; they are read now."""
     package, _, kind = name.rpartition("-")
     if kind not in ("msg", "srv") or not package:
@@ -196,7 +223,7 @@ def find_message_system(name):
     return True
 
 
-def message_systems():
+def message_systems() -> Iterator[str]:
     """The names of all systems of messages and services, as one would load them."""
     for package in definition_files.known_packages():
         folder = definition_files.package_folder(package)
@@ -204,17 +231,16 @@ def message_systems():
 
 
 @functools.cache
-def our_lisp_packages():
+def our_lisp_packages() -> list[str]:
     """The names of the Lisp packages of all messages and services that come with cramhy."""
     return [f"{folder.name.upper()}-{kind}" for folder in sorted(definition_files.OURS.iterdir()) for kind in ("MSG", "SRV")
             if definition_files.has_kind(folder, kind.lower())]  # fmt: skip
 
 
 packages.finders.append((find_lisp_package, our_lisp_packages))
-systems.provide_systems_on_demand(find_message_system, message_systems)
 
 
-def _define_message(package, name, definition, kind, ros_type):
+def _define_message(package: str, name: str, definition: Definition, kind: str, ros_type: str) -> MessageType:
     fields = definition.fields
     names = tuple(field.attribute for field in fields)
     home = lisp_package(package, kind)
@@ -244,48 +270,42 @@ def _define_message(package, name, definition, kind, ros_type):
     return cls
 
 
-def _deferred_initializer(cls, fields):
+def _deferred_initializer(cls: Any, fields: Sequence[Field]) -> Callable[..., None]:
     # Most types of a package are never used, and writing out their initializers is most of the work of loading it.
     def __init__(self, *arguments, **keywords):
         if cls.__init__ is __init__:
             cls.__init__ = _initializer(cls, fields)
         cls.__init__(self, *arguments, **keywords)
 
-    __init__.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("self", *cls.field_names)])
     return __init__
 
 
-def _initializer(cls, fields):
+def _initializer(cls: MessageType, fields: Sequence[Field]) -> Callable[..., None]:
     """An ``__init__`` with one parameter per field, in the order of the definition; parts are made when they are needed."""
     scope = {"_unsupplied": UNSUPPLIED, "_part": part_class}
-    parameters, body = ["self"], []
+    parameters, body = ["self"], []  # written out once per type, as dataclasses do: making messages is on the path of every command
     for field in fields:
         default = _default(field)
         if default is None:
             default = DEFAULTS.get(field.base, "0")
             parameters.append(f"{field.attribute}={default}")
-            body.append(f"    self.{field.attribute} = {field.attribute}")
+            body.append(f"self.{field.attribute} = {field.attribute}")
         else:
             parameters.append(f"{field.attribute}=_unsupplied")
-            body.append(f"    self.{field.attribute} = {default} if {field.attribute} is _unsupplied else {field.attribute}")
-    source = f"def __init__({', '.join(parameters)}):\n" + ("\n".join(body) or "    pass")
-    exec(source, scope)  # written out once per type, as dataclasses do: making messages is on the path of every command
-    initializer = scope["__init__"]
+            body.append(f"self.{field.attribute} = {default} if {field.attribute} is _unsupplied else {field.attribute}")
+    initializer = generated_function(f"__init__ of {cls.ros_type}", "__init__", parameters, body, scope)
     initializer.__qualname__ = f"{cls.__name__}.__init__"
     return initializer
 
 
-def part_class(ros_type):
+def part_class(ros_type: str) -> MessageType:
     """The class of the type of a field; an error when there is none."""
     return message_class_exact(ros_type) or conditions.error(
-        SimpleError(
-            "~a",
-            f"The message type {ros_type} is not known, but it is the type of a field. Is its package on ROS_PACKAGE_PATH?",
-        )
+        SimpleError("~a", f"The message type {ros_type} is not known, but it is the type of a field. Is its package on ROS_PACKAGE_PATH?")
     )
 
 
-def _default(field):
+def _default(field: Field) -> str | None:
     """The text of an expression for a default that must be fresh in each message; ``None`` for a constant one."""
     if field.is_array:
         if field.length == 0:
@@ -298,7 +318,7 @@ def _default(field):
 # ------------------------------------------------------------------------------------------------------------ finding types
 
 
-def message_class_exact(ros_type):
+def message_class_exact(ros_type: str) -> MessageType | None:
     """The class of ``"package/Name"``, or ``None``. No error, no folding of case."""
     found = _messages.get(ros_type)
     if found is None and "/" in ros_type:
@@ -307,7 +327,7 @@ def message_class_exact(ros_type):
     return found
 
 
-def service_type_exact(ros_type):
+def service_type_exact(ros_type: str) -> ServiceType | None:
     """The `ServiceType` ``"package/Name"``, or ``None``."""
     found = _services.get(ros_type)
     if found is None and "/" in ros_type:
@@ -316,7 +336,7 @@ def service_type_exact(ros_type):
     return found
 
 
-def _folded(table, exact, ros_type):
+def _folded(table: dict[str, Any], exact: Callable[[str], Any], ros_type: str) -> Any:
     package, _, name = ros_type.lower().partition("/")
     found = exact(f"{package}/{name}")
     if found is None:
@@ -326,7 +346,7 @@ def _folded(table, exact, ros_type):
     return found
 
 
-def named(symbol):
+def named(symbol: object) -> MessageType | ServiceType | None:
     """The message class or `ServiceType` that ``symbol`` names, or ``None``."""
     found = _by_symbol.get(symbol)
     if found is None and isinstance(symbol, Symbol) and symbol.package is not None:
@@ -337,7 +357,7 @@ def named(symbol):
     return found
 
 
-def message_class(designator):
+def message_class(designator: TypeName) -> MessageType:
     """The class for ``make-message``: a string ``"pkg/Name"`` in any case, a symbol, or the class itself."""
     if isinstance(designator, type):
         return designator
@@ -358,7 +378,7 @@ def message_class(designator):
     return conditions.error(CaseFailure(designator, "ETYPECASE", lisp_list(sym("STRING"), sym("SYMBOL"))))
 
 
-def _folded_or_error(text):
+def _folded_or_error(text: str) -> MessageType:
     package, slash, name = text.partition("/")
     if not slash or "/" in name:
         parts = " ".join(f'"{part.upper()}"' for part in text.split("/"))
@@ -375,11 +395,11 @@ def _folded_or_error(text):
     return _folded(_messages, message_class_exact, text) or _unknown(f"Can't find class for {text}", _types_hint("rosmsg", _messages, text))
 
 
-def _unknown(text, hint):
-    return conditions.error(SimpleError("~a", text), hint=hint)
+def _unknown(text: str, hint: str | None) -> NoReturn:
+    conditions.error(SimpleError("~a", text), hint=hint)
 
 
-def _packages_hint(package):
+def _packages_hint(package: str) -> str:
     """What to try when there is no ROS package ``package`` with definitions."""
     near = near_names(package.lower(), definition_files.known_packages(), 1)
     if near:
@@ -387,7 +407,7 @@ def _packages_hint(package):
     return f"No package {package} with messages or services is on ROS_PACKAGE_PATH, in the workspace's src or in the current folder."
 
 
-def topic_class(designator):
+def topic_class(designator: TypeName) -> MessageType:
     """The class for ``advertise`` and ``subscribe``: here the case of a string counts (roslisp.md 6.1)."""
     if isinstance(designator, type):
         return designator
@@ -411,7 +431,7 @@ def topic_class(designator):
     return found
 
 
-def _types_hint(tool, table, text):
+def _types_hint(tool: str, table: dict[str, Any], text: str) -> str:
     """What to try when ``table`` has no type ``text``, though it has others of that package, which ``tool`` lists."""
     package, _, wanted = text.lower().partition("/")
     names = {name.lower().partition("/")[2]: name for name in table if name.startswith(package + "/")}
@@ -421,7 +441,7 @@ def _types_hint(tool, table, text):
     return f"{tool} package {package}, typed at the prompt, lists those that there are."
 
 
-def service_type(designator):
+def service_type(designator: ServiceName) -> ServiceType:
     """The `ServiceType` of a symbol ``turtlesim-srv:Spawn``, a string in any case, or one itself."""
     if isinstance(designator, ServiceType):
         return designator
@@ -448,7 +468,7 @@ def service_type(designator):
     return found
 
 
-def lisp_attribute(cls, name):
+def lisp_attribute(cls: MessageType, name: object) -> str | None:
     """The Python attribute of ``cls`` that the Lisp field name stands for (any case, ``-val`` dropped), or ``None``."""
     name = string_designator(name) if not isinstance(name, LispString) else str(name)
     found = cls.attributes.get(name)

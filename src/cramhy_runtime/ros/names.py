@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import string
 
-from ..lisp import conditions
-from ..lisp.data import Symbol, one
-from ..lisp.dynamic import binding
-from ..lisp.packages import KEYWORD
-from ..lisp.printer.print_controls import PACKAGE
-from ..lisp.reader.dispatch_macros import READ_EVAL
-from ..lisp.reader.reader_functions import read_from_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
 
 _LETTERS = set(string.ascii_letters)
 _NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
@@ -24,20 +25,20 @@ _NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
 class Naming:
     """The names of one node: its namespace (with both slashes), its own global name, remappings, private parameters."""
 
-    def __init__(self, base_name, namespace="/"):
+    def __init__(self, base_name: str, namespace: str = "/"):
         self.base_name = base_name.strip("/")
         self.namespace = as_namespace(namespace)
         self.node_name = self.namespace + self.base_name
-        self.remappings = {}
-        self.private_parameters = []
-        self.log_file = None
+        self.remappings: dict[str, str] = {}
+        self.private_parameters: list[tuple[str, object, str]] = []  # name, value, the text of it
+        self.log_file: str | None = None
 
-    def resolve(self, name):
+    def resolve(self, name: str) -> str:
         """The global name that ``name`` means, after remapping."""
         full = qualify(name, self.namespace, self.node_name)
         return self.remappings.get(full, full) if self.remappings else full
 
-    def apply_arguments(self, arguments, read_value):
+    def apply_arguments(self, arguments: Iterable[str], read_value: Callable[[str], object]) -> None:
         """Process command-line arguments in order; ``read_value`` reads the text of a private parameter.
 
         A remapping is qualified with the names known when its turn comes (roslisp.md 3.3).
@@ -58,17 +59,17 @@ class Naming:
             else:
                 self.remappings[self._qualify(left)] = self._qualify(right)
 
-    def _qualify(self, name):
+    def _qualify(self, name: str) -> str:
         return qualify(name, self.namespace, self.node_name)
 
 
-def as_namespace(text):
+def as_namespace(text: str | None) -> str:
     """``text`` with a slash at both ends."""
     text = (text or "").strip("/")
     return f"/{text}/" if text else "/"
 
 
-def qualify(name, namespace, node_name):
+def qualify(name: str, namespace: str, node_name: str | None) -> str:
     """The global form of ``name``, without remapping. The empty name is an index error, as in roslisp."""
     if not name:
         return conditions.error("Invalid index 0 for (SIMPLE-ARRAY CHARACTER (0)): the empty string is not a name in ROS.")
@@ -80,12 +81,12 @@ def qualify(name, namespace, node_name):
     return namespace + name
 
 
-def is_base_name(name):
+def is_base_name(name: str) -> bool:
     """Whether ``name`` is a letter followed by letters, digits and underscores."""
     return bool(name) and name[0] in _LETTERS and all(character in _NAME_CHARACTERS and character != "/" for character in name)
 
 
-def check_graph_name(name):
+def check_graph_name(name: str) -> str | None:
     """The text of roscpp's complaint about an illegal name, or ``None`` when it is legal."""
     if not name:
         return None
@@ -103,7 +104,7 @@ def check_graph_name(name):
     return None
 
 
-def split_arguments(arguments):
+def split_arguments(arguments: str | Iterable[object] | None) -> list[str]:
     """Command-line arguments as a list: a list of strings is taken as it is, one string is split at white space."""
     if arguments is None:
         return []
@@ -112,7 +113,7 @@ def split_arguments(arguments):
     return [str(argument) for argument in arguments]
 
 
-def plain_value(text):
+def plain_value(text: str) -> str | int | float | bool:
     """What the tools of ROS and roscpp take ``text`` for when nobody says its type: an integer, a number, true or false, else a text."""
     for kind in (int, float):
         try:
@@ -122,14 +123,13 @@ def plain_value(text):
     return {"true": True, "false": False}.get(text.lower(), text)
 
 
-def read_private_value(text):
+def read_private_value(text: str) -> object:
     """The value of ``_p:=text``, read by the Lisp reader: a number or another object as it is, a symbol and what cannot be read as text.
 
     Nothing is evaluated, and no symbol is made that a program would see. Source: roslisp.md 3.3.
     """
     try:
-        with binding(READ_EVAL, None), binding(PACKAGE, KEYWORD):
-            value = one(read_from_string(text))
+        value = PORTS.user.read(text)
     except Exception:  # not the text of a Lisp object: an address, a path, a word with a colon
         return text
     return text if value is None or value is True or isinstance(value, Symbol) else value

@@ -6,6 +6,12 @@ How Lisp's values get in and out stands in ``roslisp/parameter_values.py``. Sour
 """
 
 from __future__ import annotations
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from .signatures import Parameter, ParameterValue
+
 
 DISTRIBUTION, VERSION = "noetic", "1.15.15"
 
@@ -13,27 +19,29 @@ DISTRIBUTION, VERSION = "noetic", "1.15.15"
 class ParameterTree:
     """Values by global name; a dictionary stands for the names below it."""
 
-    def __init__(self, run=None):
+    def __init__(self, run: float | None = None):
         """run: when the run began, in seconds since 1970, which its id is made of; without it the tree is empty."""
-        self.root = {} if run is None else {"rosdistro": f"{DISTRIBUTION}\n", "rosversion": f"{VERSION}\n", "run_id": _run_id(run)}
+        self.root: dict[str, Any] = (
+            {} if run is None else {"rosdistro": f"{DISTRIBUTION}\n", "rosversion": f"{VERSION}\n", "run_id": _run_id(run)}
+        )
 
-    def get(self, name):
+    def get(self, name: str) -> Parameter:
         """The value, or `KeyError`."""
-        value = self.root
+        value: Any = self.root
         for part in _parts(name):
             if not isinstance(value, dict):
                 raise KeyError(name)
             value = value[part]
         return value
 
-    def has(self, name):
+    def has(self, name: str) -> bool:
         try:
             self.get(name)
         except KeyError:
             return False
         return True
 
-    def set(self, name, value):
+    def set(self, name: str, value: ParameterValue) -> None:
         parts = _parts(name)
         if not parts:
             if not isinstance(value, dict):
@@ -48,7 +56,7 @@ class ParameterTree:
             space = below
         space[parts[-1]] = value
 
-    def delete(self, name):
+    def delete(self, name: str) -> None:
         """Remove the value, or `KeyError`. The root cannot go, but it can be emptied."""
         parts = _parts(name)
         if not parts:
@@ -59,22 +67,22 @@ class ParameterTree:
             raise KeyError(name)
         del space[parts[-1]]
 
-    def names(self):
+    def names(self) -> list[str]:
         """The names of all values that are no dictionaries, sorted."""
         return sorted(_leaves(self.root, ""))
 
 
-def _run_id(run):
+def _run_id(run: float) -> str:
     """A UUID of the time ``run`` (RFC 4122, version 1): the same for the same start, so that runs in virtual time do not differ."""
     ticks = int(run * 10**7) + 0x01B2_1DD2_1381_4000  # tenths of microseconds, counted from 1582
     return f"{ticks & 0xFFFFFFFF:08x}-{ticks >> 32 & 0xFFFF:04x}-{ticks >> 48 | 0x1000:04x}-8000-010000000000"
 
 
-def _parts(name):
+def _parts(name: str) -> list[str]:
     return [part for part in name.split("/") if part]
 
 
-def _leaves(space, prefix):
+def _leaves(space: dict[str, Any], prefix: str) -> Iterator[str]:
     for key, value in space.items():
         if isinstance(value, dict) and value:
             yield from _leaves(value, f"{prefix}/{key}")

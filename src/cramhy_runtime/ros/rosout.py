@@ -10,22 +10,25 @@ from __future__ import annotations
 from .loggers import DEBUG, ERROR, FATAL, INFO, LEVEL_CODES, LEVEL_NAMES, WARN, Loggers
 from .messages import message_class_exact
 from .wire import ros_text
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .graph import Node
+
 
 __all__ = ["DEBUG", "ERROR", "FATAL", "INFO", "LEVEL_CODES", "LEVEL_NAMES", "WARN", "join", "report"]
 
 
-def report(node, level, text):
+def report(node: Node, level: int, text: str) -> int:
     """Publish a log entry of ``node`` on ``/rosout``, and keep it in the graph's log; the number of subscribers."""
     node.graph.log.append((level, node.name, text))
     publication = node.publications.get("/rosout")
     if publication is None or not publication.connections:
         return 0
-    return publication.send(
-        message_class_exact("rosgraph_msgs/Log")(name=node.name, level=level, msg=ros_text(text))
-    )
+    return publication.send(message_class_exact("rosgraph_msgs/Log")(name=node.name, level=level, msg=ros_text(text)))
 
 
-def join(node, delay=0.0):
+def join(node: Node, delay: float = 0.0) -> None:
     """Let ``node`` publish its log. The node ``/rosout`` collects it, after ``delay`` seconds, for ``/rosout_agg``."""
     graph, log_type = node.graph, message_class_exact("rosgraph_msgs/Log")
     if "/rosout" not in graph.nodes:

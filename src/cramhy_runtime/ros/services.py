@@ -15,9 +15,16 @@ Source: roslisp.md 7, wiki.ros.org/Services.
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp import conditions
-from ..lisp.condition_types import Error
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Error
 from . import wire
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from .graph import Node
+    from .messages import RosMessage, ServiceType
+    from .signatures import Handler
 
 
 class Refusal(Exception):
@@ -29,22 +36,22 @@ class Service:
 
     lisp_name = "ROSLISP::SERVICE"
 
-    def __init__(self, node, name, service_type, handler):
+    def __init__(self, node: Node, name: str, service_type: ServiceType, handler: Handler):
         self.node, self.name, self.type, self.handler = node, name, service_type, handler
-        self.pending = set()
+        self.pending: set[Call] = set()
         self.closed = False
 
-    def respond(self, call):
+    def respond(self, call: Call) -> RosMessage:
         """The response to ``call``; what is raised is the failure."""
         return self.handler(call.request)
 
-    def close(self):
+    def close(self) -> None:
         """The server goes away: whoever waits for an answer gets none."""
         self.closed = True
         for call in list(self.pending):
             call.finish(lost=True)
 
-    def submit(self, call):
+    def submit(self, call: Call) -> None:
         """Take ``call``; it is answered now, or later in a spin of the node."""
         if self.closed:
             call.finish(lost=True)
@@ -59,7 +66,7 @@ class Service:
 class OfCaller(Service):
     """A service whose handler gets the ``caller`` of `start_call` as its second argument."""
 
-    def respond(self, call):
+    def respond(self, call: Call) -> RosMessage:
         return self.handler(call.request, call.caller)
 
 
@@ -69,12 +76,13 @@ class Call:
 
     __slots__ = ("service", "request", "when_done", "caller", "done", "response", "failure", "lost")
 
-    def __init__(self, service, request, when_done, caller=None):
+    def __init__(self, service: Service, request: RosMessage, when_done: Callable[[Call], object], caller: object = None):
         self.service, self.request, self.when_done, self.caller = service, request, when_done, caller
         self.done = self.lost = False
-        self.response = self.failure = None
+        self.response: RosMessage | None = None
+        self.failure: str | None = None
 
-    def serve(self):
+    def serve(self) -> None:
         """Have the handler answer."""
         if self.done:
             return
@@ -88,7 +96,7 @@ class Call:
         else:
             self.finish(response)
 
-    def finish(self, response=None, failure=None, lost=False):
+    def finish(self, response: RosMessage | None = None, failure: str | None = None, lost: bool = False) -> None:
         """End the call; the first end counts."""
         if not self.done:
             self.service.pending.discard(self)
@@ -96,7 +104,7 @@ class Call:
             self.when_done(self)
 
 
-def exchange(service, request):
+def exchange(service: Service, request: RosMessage) -> Call:
     """Send ``request`` to the `Service` and park until it is answered; the finished `Call`."""
     task = kernel.current()
     call = Call(service, wire.transmit(request), lambda _: kernel.unpark(task))
@@ -106,7 +114,7 @@ def exchange(service, request):
     return call
 
 
-def start_call(service, request, when_done, caller=None):
+def start_call(service: Service, request: RosMessage, when_done: Callable[[Call], object], caller: object = None) -> Call:
     """Send ``request`` to the `Service` and return the `Call`, without waiting. To be called with the baton, in a task or not.
 
     when_done: a function of the finished call; it is called in whatever task serves the request, or in none, and must not wait.
@@ -116,7 +124,7 @@ def start_call(service, request, when_done, caller=None):
     """
     call = Call(service, request, when_done, caller)
 
-    def submit():
+    def submit() -> None:
         call.request = wire.transmit(request)
         service.submit(call)
 

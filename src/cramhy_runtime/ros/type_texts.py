@@ -9,12 +9,18 @@ from __future__ import annotations
 
 from . import messages
 from .messages import ServiceType
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .definition_text import Definition
+    from .signatures import MessageType
+
 
 _RULE = "=" * 80
-_sums: dict = {}
+_sums: dict[MessageType | ServiceType, str] = {}
 
 
-def md5_of(message_type):
+def md5_of(message_type: MessageType | ServiceType) -> str:
     """The md5 sum of a message class or a `ServiceType`, in hexadecimal."""
     found = _sums.get(message_type)
     if found is None:
@@ -26,34 +32,34 @@ def md5_of(message_type):
     return found
 
 
-def same_on_the_wire(first, second):
+def same_on_the_wire(first: MessageType, second: MessageType) -> bool:
     """Whether who expects messages of one class can read those of the other: ``tf/tfMessage`` and ``tf2_msgs/TFMessage``."""
     return first is second or md5_of(first) == md5_of(second)
 
 
-def _md5_text(definition):
+def _md5_text(definition: Definition) -> str:
     lines = list(definition.constant_lines)
     for field in definition.fields:
         lines.append(repr(field) if field.primitive else f"{md5_of(messages.part_class(field.base))} {field.name}")
     return "\n".join(lines)
 
 
-def complete_text(message_class):
+def complete_text(message_class: MessageType) -> str:
     """The definition of a message, followed by those of all messages that are part of it, each under its name."""
-    parts = {}
+    parts: dict[str, MessageType] = {}
     _collect(message_class, parts)
     sections = [message_class.definition.text, *(f"MSG: {name}\n{part.definition.text}" for name, part in parts.items())]
     return f"\n{_RULE}\n".join(section.rstrip("\n") for section in sections) + "\n"
 
 
-def _collect(message_class, parts):
+def _collect(message_class: MessageType, parts: dict[str, MessageType]) -> None:
     for field in message_class.fields:
         if not field.primitive and field.base not in parts:
             part = parts[field.base] = messages.part_class(field.base)
             _collect(part, parts)
 
 
-def definition_text(message_type):
+def definition_text(message_type: MessageType | ServiceType) -> str:
     """The complete text of a message class; of a `ServiceType` both halves, with a line of dashes between them."""
     if isinstance(message_type, ServiceType):
         return f"{complete_text(message_type.request)}---\n{complete_text(message_type.response)}"

@@ -10,17 +10,24 @@ from __future__ import annotations
 
 import math
 
-from ..lisp import conditions
-from ..lisp.condition_types import FloatingPointOverflow, SimpleError, TypeError_
-from ..lisp.data import Character, Cons, DoubleFloat, LispString, Symbol
-from ..lisp.numbers.arithmetic import is_real, single
-from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.packages import intern
-from ..lisp.printer.printer import prin1_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleError, TypeError_
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol
+from cramhy_runtime.ground.numbers import is_real, single
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.packages import intern
+from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
 from .definition_text import INTEGERS, Field
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-on_misfit = []
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from .messages import RosMessage
+
+M = TypeVar("M", bound="RosMessage")
+on_misfit: list[Callable[[str], object]] = []
 """Called with the text that roslisp logs before it signals that something is no message; its log, further up, is in this list."""
 
 POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
@@ -31,7 +38,7 @@ POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
 class Misfit(Exception):
     """A value cannot be sent. ``signal``: a function of the hint that signals the error of roslisp for it."""
 
-    def __init__(self, signal):
+    def __init__(self, signal: Callable[[str | None], NoReturn]):
         super().__init__()
         self.signal = signal
 
@@ -49,7 +56,7 @@ def _overflow(hint):
     return conditions.error(FloatingPointOverflow(), hint=hint)
 
 
-def as_float(value):
+def as_float(value: float | Symbol) -> float:
     """A received real as a Python float: undoes the symbols for infinity and not-a-number."""
     if value.__class__ is DoubleFloat:
         return float(value)
@@ -58,7 +65,7 @@ def as_float(value):
     return float(value)
 
 
-def ros_text(text):
+def ros_text(text: str) -> str:
     """``text`` as a message holds it: ROS has one byte for a character, so one with others than Latin-1 goes in as its bytes in UTF-8.
 
     `message_json` lets it out as it was.
@@ -66,7 +73,7 @@ def ros_text(text):
     return text if text.isascii() or max(text) <= "\xff" else text.encode("utf-8", "replace").decode("latin-1")
 
 
-def lisp_float(value):
+def lisp_float(value: float) -> DoubleFloat | Symbol:
     """A float as a receiver gets it: a double-float, or a symbol when it is not finite."""
     if math.isfinite(value):
         return DoubleFloat(value)
@@ -128,14 +135,7 @@ def _time(value):
     return DoubleFloat(seconds + round((value - seconds) * 1e9) / 1e9)
 
 
-_primitives = {
-    "float64": _float64,
-    "float32": _float32,
-    "bool": _bool,
-    "string": _string,
-    "time": _time,
-    "duration": _time,
-}
+_primitives = {"float64": _float64, "float32": _float32, "bool": _bool, "string": _string, "time": _time, "duration": _time}
 _primitives.update({name: _integer(*size) for name, size in INTEGERS.items()})
 
 
@@ -150,8 +150,10 @@ def _part(base):
 
     def no_message(value, hint):
         for complain in on_misfit:
-            complain(f"Hmm... unexpectedly asked for serialization length of {prin1_to_string(value)}.  Most likely "
-                     "because the aforementioned object was found some place where a (nonprimitive) ros message was expected.")
+            complain(
+                f"Hmm... unexpectedly asked for serialization length of {prin1_to_string(value)}.  Most likely "
+                "because the aforementioned object was found some place where a (nonprimitive) ros message was expected."
+            )
         return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, value, advice=hint)
 
     return convert
@@ -179,7 +181,7 @@ def _array(field, convert):
     return convert_all
 
 
-_transmitters: dict[type, object] = {}
+_transmitters: dict[type, Callable[[Any], Any]] = {}
 _READY = {
     "float64": "{0} if {0}.__class__ is Double and isfinite({0}) else {1}({0})",
     "float32": "Double(single({0})) if {0}.__class__ in floats and -3e38 < {0} < 3e38 else {1}({0})",
@@ -189,23 +191,23 @@ _READY = {
 """What is written out for a field whose value usually can be sent as it is; for the others the converter is called."""
 
 
-def _transmitter(cls):
+def _transmitter(cls: Any) -> Callable[[Any], Any]:
     """Write out, compile and keep the function that transmits messages of class ``cls``."""
     scope = {"new": cls.__new__, "cls": cls, "Double": DoubleFloat, "floats": (DoubleFloat, float), "isfinite": math.isfinite}
     scope["single"] = single
-    lines = ["def transmitted(message):", "    result = new(cls)"]
+    lines = ["result = new(cls)"]  # written out once per type: it is on the path of every message
     for field in cls.fields:
         name, convert = field.attribute, f"convert_{field.attribute}"
         converter = _converter(field)
         scope[convert] = _array(field, converter) if field.is_array else converter
         template = "{1}({0})" if field.is_array else _READY.get(field.base, "{1}({0})")
-        lines += [f"    value = message.{name}", f"    result.{name} = {template.format('value', convert)}"]
-    exec("\n".join([*lines, "    return result"]), scope)  # written out once per type: it is on the path of every message
-    _transmitters[cls] = scope["transmitted"]
-    return scope["transmitted"]
+        lines += [f"value = message.{name}", f"result.{name} = {template.format('value', convert)}"]
+    lines.append("return result")
+    transmitted = _transmitters[cls] = generated_function(f"transmitting {cls.ros_type}", "transmitted", ["message"], lines, scope)
+    return transmitted
 
 
-def transmit(message):
+def transmit(message: M) -> M:
     """The fresh object that a receiver of ``message`` gets. Signals the type errors of serialisation."""
     cls = message.__class__
     try:
@@ -247,26 +249,26 @@ def _misplaced(message):
     raise AssertionError("every value can be sent")
 
 
-_copiers: dict[type, object] = {}
+_copiers: dict[type, Callable[[Any], Any]] = {}
 
 
-def _copier(cls):
+def _copier(cls: Any) -> Callable[[Any], Any]:
     """Write out, compile and keep the function that copies messages of class ``cls``."""
     scope = {"new": cls.__new__, "cls": cls, "fresh": fresh}
-    lines = ["def copied(message):", "    result = new(cls)"]
+    lines = ["result = new(cls)"]
     for field in cls.fields:
         value = f"message.{field.attribute}"
         if field.is_array:
             value = f"{value}[:]" if field.primitive else f"[fresh(each) for each in {value}]"
         elif not field.primitive:
             value = f"fresh({value})"
-        lines.append(f"    result.{field.attribute} = {value}")
-    exec("\n".join([*lines, "    return result"]), scope)
-    _copiers[cls] = scope["copied"]
-    return scope["copied"]
+        lines.append(f"result.{field.attribute} = {value}")
+    lines.append("return result")
+    copied = _copiers[cls] = generated_function(f"copying {cls.ros_type}", "copied", ["message"], lines, scope)
+    return copied
 
 
-def fresh(message):
+def fresh(message: M) -> M:
     """One more copy of an object that `transmit` gave: what another receiver gets."""
     cls = message.__class__
     return (_copiers.get(cls) or _copier(cls))(message)

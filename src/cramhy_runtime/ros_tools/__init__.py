@@ -6,9 +6,9 @@ another terminal on the session that serves there. Importing this package, and a
 Where the parts are:
 
 * `running`      a command from its words to its exit status, and the terminal it writes to
-* `words`        commands, options, usage; `definitions` and `filling` types, and data that fit them
+* `arguments`        commands, options, usage; `definitions` and `filling` types, and data that fit them
 * `yaml_reading`, `yaml_writing`  values as they are typed and printed
-* `nodes`, `topics`, `watching`, `publishing`, `calling`, `parameters`, `types`  the commands
-* `reach`        what they ask of a graph; `here` the graph of this process, `there` the session of another terminal
+* `nodes`, `topics`, `topic_echo`, `publishing`, `calling`, `parameters`, `types`  the commands
+* `graph_access`        what they ask of a graph; `local_graph` the graph of this process, `remote_graph` the session of another terminal
 * `hosting`      programs that run in a session for a terminal elsewhere
 """

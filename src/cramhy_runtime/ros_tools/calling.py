@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from . import definitions, filling, yaml_writing
-from .reach import Refused
-from .words import TOOLS, CommandError, command, global_name, meant, one, option
+from .graph_access import Refused
+from .arguments import TOOLS, CommandError, command, global_name, meant, one, option
 
 
 def _service(terminal, command, given, text, status=1):
@@ -80,7 +80,8 @@ def call(terminal, options, given):
         response = terminal.graph.call(name, ros_type, request)
     except Refused as refusal:
         if refusal.lost:
-            raise CommandError("ERROR: transport error completing service call: unable to receive data from sender, "
-                               "check sender's logs for details", 2) from None
+            raise CommandError(
+                "ERROR: transport error completing service call: unable to receive data from sender, check sender's logs for details", 2
+            ) from None
         raise CommandError(f"ERROR: service [{name}] responded with an error: {str(refusal).encode()!r}", 2) from None
     terminal.write("\n".join(yaml_writing.message_lines(response, parts[1])) + "\n")

@@ -9,8 +9,8 @@ from __future__ import annotations
 import functools
 
 from ..ros import definition_files, definition_text
-from . import reach
-from .words import CommandError
+from . import graph_access as reach
+from .arguments import CommandError
 
 
 def _kept(find):
@@ -110,8 +110,14 @@ def size(data, definition):
     return sum(_field_size(field, data.get(field.name)) for field in definition.fields)
 
 
-_SIZES = {"bool": 1, "float32": 4, "float64": 8, "time": 8, "duration": 8,
-          **{name: bits // 8 for name, (bits, _) in definition_text.INTEGERS.items()}}
+_SIZES = {
+    "bool": 1,
+    "float32": 4,
+    "float64": 8,
+    "time": 8,
+    "duration": 8,
+    **{name: bits // 8 for name, (bits, _) in definition_text.INTEGERS.items()},
+}
 
 
 def _field_size(field, value):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..ros.definition_text import INTEGERS, Field
 from .definitions import leaf_names, message_definition, service_text, text_of
-from .words import CommandError
+from .arguments import CommandError
 from .yaml_reading import YamlError, read
 
 

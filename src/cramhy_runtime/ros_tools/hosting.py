@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import sys
 
-from ..lisp import conditions
-from ..lisp.condition_types import Error
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Error
 from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.services import OfCaller, Refusal, Service
 from ..ros.wire import ros_text
 from ..turtlesim.executables import PROGRAMS
-from ..turtlesim.executables import start as start_executable
+from cramhy_runtime.turtlesim.executables import start as start_executable
 
 LOG = "/cramhy/program_log"
 SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode"}

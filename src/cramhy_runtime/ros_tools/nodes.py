@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .reach import Refused
-from .words import TOOLS, CommandError, command, global_name, one, option
+from .graph_access import Refused
+from .arguments import TOOLS, CommandError, command, global_name, one, option
 
 TIMEOUT = 3.0
 
@@ -55,8 +55,14 @@ def _describe(terminal, name, facts):
     terminal.line()
 
 
-@command("rosnode", "ping", "[-c COUNT] [-a] node", "asks a node for an answer, each second",
-         option("-c", "so often", "COUNT", int), option("-a --all", "all nodes, once"))
+@command(
+    "rosnode",
+    "ping",
+    "[-c COUNT] [-a] node",
+    "asks a node for an answer, each second",
+    option("-c", "so often", "COUNT", int),
+    option("-a --all", "all nodes, once"),
+)
 def ping(terminal, options, given):
     if "all" in options:
         return _ping_all(terminal)

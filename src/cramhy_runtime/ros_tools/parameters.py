@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .. import storage
 from . import yaml_reading, yaml_writing
-from .words import TOOLS, CommandError, command, global_name, one, option
+from .arguments import TOOLS, CommandError, command, global_name, one, option
 
 
 @command("rosparam", "list", "[namespace]", "lists the parameters")
@@ -25,15 +25,27 @@ def _value(terminal, name, complaint):
         raise CommandError(complaint.format(name=name)) from None
 
 
-@command("rosparam", "get", "[-p] parameter", "prints a parameter", option("-p", "has no effect: trees are always printed so"),
-         option("-v", "has no effect"))
+@command(
+    "rosparam",
+    "get",
+    "[-p] parameter",
+    "prints a parameter",
+    option("-p", "has no effect: trees are always printed so"),
+    option("-v", "has no effect"),
+)
 def get(terminal, options, given):
     name = global_name(one(TOOLS["rosparam"]["get"], given, "parameter name"))
     terminal.write(yaml_writing.parameter_text(_value(terminal, name, "ERROR: Parameter [{name}] is not set")))
 
 
-@command("rosparam", "set", "[options] parameter value", "gives a parameter a value", option("-v", "tell what is done"),
-         option("-t --textfile", "the value is the text of a file", "FILE"))
+@command(
+    "rosparam",
+    "set",
+    "[options] parameter value",
+    "gives a parameter a value",
+    option("-v", "tell what is done"),
+    option("-t --textfile", "the value is the text of a file", "FILE"),
+)
 def set_parameter(terminal, options, given):
     this = TOOLS["rosparam"]["set"]
     if not given:
@@ -112,7 +124,7 @@ def load(terminal, options, given):
 
 def _file_text(path):
     try:
-        return Path(path).read_text()
+        return Path(path).read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise CommandError(f"ERROR: file [{path}] does not exist") from None
     except (OSError, UnicodeDecodeError) as problem:

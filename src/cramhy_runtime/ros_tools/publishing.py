@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from . import definitions, filling
-from .words import TOOLS, CommandError, command, global_name, option
+from .arguments import TOOLS, CommandError, command, global_name, option
 
 ONCE = 3.0  # s that `-1` stays, so that a subscriber can connect
 
@@ -21,10 +21,18 @@ def _rate(text):
 _rate.__name__ = "rate"
 
 
-@command("rostopic", "pub", "[options] /topic type [args...]", "publishes a message",
-         option("-1 --once", "end after 3 seconds"), option("-r --rate", "so often per second", "HZ", _rate),
-         option("-f --file", "the message is in a file of YAML", "FILE"), option("-l --latch", "latched, with -r too"),
-         option("-s --substitute-keywords", "has no effect: now and auto are always understood"), option("-v", "tell what is published"))
+@command(
+    "rostopic",
+    "pub",
+    "[options] /topic type [args...]",
+    "publishes a message",
+    option("-1 --once", "end after 3 seconds"),
+    option("-r --rate", "so often per second", "HZ", _rate),
+    option("-f --file", "the message is in a file of YAML", "FILE"),
+    option("-l --latch", "latched, with -r too"),
+    option("-s --substitute-keywords", "has no effect: now and auto are always understood"),
+    option("-v", "tell what is published"),
+)
 def pub(terminal, options, given):
     this = TOOLS["rostopic"]["pub"]
     if not given:
@@ -36,8 +44,9 @@ def pub(terminal, options, given):
     definition = definitions.message_definition(ros_type)
     if definition is None:
         package = ros_type.partition("/")[0]
-        raise CommandError(f"ERROR: invalid message type: {ros_type}.\n"
-                           f"If this is a valid message type, perhaps you need to type 'rosmake {package}'")
+        raise CommandError(
+            f"ERROR: invalid message type: {ros_type}.\nIf this is a valid message type, perhaps you need to type 'rosmake {package}'"
+        )
     if "file" in options:
         if arguments:
             raise this.complaint("the message is in the file, so no values may follow the type")
@@ -53,7 +62,7 @@ def pub(terminal, options, given):
 
 def _read_file(command, path):
     try:
-        return Path(path).read_text()
+        return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as problem:
         raise command.complaint(f"the file {path} cannot be read: {problem}") from None
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 import importlib
 from queue import Empty, SimpleQueue
 
-from . import words
-from .reach import NoSession, Refused, SessionEnded
-from .words import CommandError
+from . import arguments as words
+from .graph_access import NoSession, Refused, SessionEnded
+from .arguments import CommandError
 
 _HOMES = {
     "rosmsg": {"types": ()}, "rossrv": {"types": ()}, "rosnode": {"nodes": ()}, "rosparam": {"parameters": ()},
     "rosservice": {"calling": ()},
-    "rostopic": {"topics": ("list", "type", "info", "find"), "watching": ("echo", "hz", "bw"), "publishing": ("pub",)},
+    "rostopic": {"topics": ("list", "type", "info", "find"), "topic_echo": ("echo", "hz", "bw"), "publishing": ("pub",)},
 }  # fmt: skip
 """The modules of each tool, with the commands in each where there are several."""
 TOOLS = tuple(_HOMES)

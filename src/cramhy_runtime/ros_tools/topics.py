@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from .words import TOOLS, CommandError, command, global_name, one, option
+from .arguments import TOOLS, CommandError, command, global_name, one, option
 
 
-@command("rostopic", "list", "[options] [namespace]", "lists the topics", option("-v --verbose", "types, and numbers of nodes"),
-         option("-p", "those that somebody publishes on"), option("-s", "those that somebody is subscribed to"))
+@command(
+    "rostopic",
+    "list",
+    "[options] [namespace]",
+    "lists the topics",
+    option("-v --verbose", "types, and numbers of nodes"),
+    option("-p", "those that somebody publishes on"),
+    option("-s", "those that somebody is subscribed to"),
+)
 def list_topics(terminal, options, given):
     graph = terminal.graph
     space = global_name(given[0]) if given else "/"
-    types = {name: ros_type for name, ros_type in graph.topics().items()
-             if name == space or name.startswith(space.rstrip("/") + "/")}
+    types = {name: ros_type for name, ros_type in graph.topics().items() if name == space or name.startswith(space.rstrip("/") + "/")}
     if "p" in options and "s" in options:
         raise TOOLS["rostopic"]["list"].complaint("you may only specify one of -p, -s")
     if given and not types:
@@ -55,8 +61,7 @@ def info(terminal, options, given):
     def lines(nodes):
         return "\n" + "".join(f" * {node} (http://{graph.uri(node)}/)\n" for node in nodes) if nodes else "None\n"
 
-    terminal.write(f"Type: {types[name]}\n\nPublishers: {lines(graph.publishers(name))}\n"
-                   f"Subscribers: {lines(graph.subscribers(name))}\n\n")
+    terminal.write(f"Type: {types[name]}\n\nPublishers: {lines(graph.publishers(name))}\nSubscribers: {lines(graph.subscribers(name))}\n\n")
 
 
 @command("rostopic", "find", "msg-type", "lists the topics of a type")

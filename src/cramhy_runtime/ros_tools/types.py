@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from . import definitions, words
-from .words import CommandError, command, one, option
+from . import definitions, arguments as words
+from .arguments import CommandError, command, one, option
 
 
 def _register(tool, kind, what, find, text):
@@ -25,8 +25,9 @@ def _register(tool, kind, what, find, text):
         if "/" in name:
             names = [name] if find(name) is not None else []
         else:
-            names = [full for package in definitions.packages(kind) for full in definitions.types(package, kind)
-                     if full.endswith("/" + name)]
+            names = [
+                full for package in definitions.packages(kind) for full in definitions.types(package, kind) if full.endswith("/" + name)
+            ]
         if not names:
             raise unknown(name)
         return name, names

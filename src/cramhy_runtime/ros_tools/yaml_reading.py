@@ -23,8 +23,11 @@ _ESCAPE = re.compile(r"\\(x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|\s*\n\
 _ESCAPES = {"0": "\0", "a": "\a", "b": "\b", "t": "\t", "n": "\n", "v": "\v", "f": "\f", "r": "\r", "e": "\x1b", "_": "\xa0"}
 _INTEGER = re.compile(r"[-+]?(?:0b[01_]+|0x[0-9a-f_]+|\d[\d_]*)$", re.I)
 _FLOAT = re.compile(r"[-+]?(?:\d[\d_]*\.[\d_]*|\._*\d[\d_]*|\d[\d_]*)(?:e[-+]?\d+)?$", re.I)
-_WORDS = {**dict.fromkeys(("true", "yes", "on"), True), **dict.fromkeys(("false", "no", "off"), False),
-          **dict.fromkeys(("null", "~", ""), None)}
+_WORDS = {
+    **dict.fromkeys(("true", "yes", "on"), True),
+    **dict.fromkeys(("false", "no", "off"), False),
+    **dict.fromkeys(("null", "~", ""), None),
+}
 _SPECIAL = {".nan": float("nan"), ".inf": float("inf"), "+.inf": float("inf"), "-.inf": float("-inf")}
 _REFUSED = {"&": "an anchor", "*": "an alias", "!": "a tag", "%": "a directive", "@": "@", "`": "`"}
 

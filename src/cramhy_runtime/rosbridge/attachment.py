@@ -21,16 +21,16 @@ from importlib.util import find_spec
 
 from .. import kernel
 from ..extras import install_command
-from ..lisp import conditions
-from ..lisp.condition_types import Condition, SimpleError
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Condition, SimpleError
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, from_json, service_named, to_json, type_named
 from ..ros.roslisp import logging
 from ..ros.type_texts import same_on_the_wire
 from . import addresses
-from .far_side import TOPIC, FarParameters, FarService, NearParameters, as_ros2
-from .held import Outflow
-from .offering import Offering
+from .remote_types import TOPIC, FarParameters, FarService, NearParameters, as_ros2
+from .outbound_queue import Outflow
+from .service_proxies import Offering
 from .server import ServerError
 from .uplink import Uplink
 
@@ -45,8 +45,7 @@ RETURNING = 3.0  # s that the end waits for a lost connection when there are mes
 
 
 class Link:
-    """The connection; made by `join`. ``connected``; ``ros2``: whether the other side is ROS 2; ``lost_since``: a time of day, or ``None``.
-    """
+    """The connection; made by `join`. ``connected``; ``ros2``: is the other side ROS 2?; ``lost_since``: a time of day, or ``None``."""
 
     def __init__(self, here, uplink):
         self.graph, self.uplink, self.kernel = here, uplink, here.kernel
@@ -93,8 +92,11 @@ class Link:
             kernel.park(f"the types of {len(self._asked)} services at {self.shown}", until)
         self._joiner = None
         if self._asked:
-            self._log(logging.WARN, f"{self.shown} has not told the types of these services within {PATIENCE:g} s: "
-                                    f"{', '.join(sorted(self._asked))}. They can be called as soon as it does.")
+            self._log(
+                logging.WARN,
+                f"{self.shown} has not told the types of these services within {PATIENCE:g} s: "
+                f"{', '.join(sorted(self._asked))}. They can be called as soon as it does.",
+            )
 
     def close(self):
         """End the connection. To be called with the baton; a second time it does nothing.
@@ -122,14 +124,20 @@ class Link:
         in_order = self.announced and self.uplink.open  # what was sent before comes before what is sent now
         topics, messages, dropped = self.outflow.end(in_order)
         again = [] if in_order else [self._advertisement(topic) for topic in topics if topic in self._outgoing]
-        ends = [*self.offering.withdrawals(), *({"op": "unsubscribe", "topic": name} for name in self._incoming),
-                *({"op": "unadvertise", "topic": name} for name in self._outgoing)]
+        ends = [
+            *self.offering.withdrawals(),
+            *({"op": "unsubscribe", "topic": name} for name in self._incoming),
+            *({"op": "unadvertise", "topic": name} for name in self._outgoing),
+        ]
         patience = min(RETURNING + WITHDRAWING * len(self.offering.services), LONGEST_FAREWELL)
         heard = self.uplink.leave([*again, *messages, *ends], patience, RETURNING if messages else 0.0)
         self.outflow.tell(dropped)
         if not heard and topics:
-            self._log(logging.ERROR, f"{self.shown} has not confirmed the last messages on {', '.join(topics)} before the session left. "
-                                     "If one of them was to stop the robot, stop it there.")
+            self._log(
+                logging.ERROR,
+                f"{self.shown} has not confirmed the last messages on {', '.join(topics)} before the session left. "
+                "If one of them was to stop the robot, stop it there.",
+            )
 
     def _lost(self, why):
         if self.closed:
@@ -141,8 +149,11 @@ class Link:
             self.lost_since = datetime.fromtimestamp(self.graph.now()).strftime("%H:%M:%S")
             self.graph.cut_off = self._no_connection()
         if self._begun:
-            self._log(logging.ERROR, f"The connection to {self.shown} is lost{why and ': '}{why}. It is tried again and again."
-                                     + (f" {doubtful} of the messages that were under way may be lost." if doubtful else ""))
+            self._log(
+                logging.ERROR,
+                f"The connection to {self.shown} is lost{why and ': '}{why}. It is tried again and again."
+                + (f" {doubtful} of the messages that were under way may be lost." if doubtful else ""),
+            )
         self._asked.clear()
         self._wake_joiner()
         self._fail_all(f"the connection to {self.shown} was lost{why and ': '}{why}")
@@ -239,8 +250,11 @@ class Link:
         found, problem = outcome[0] if outcome else (None, f"no answer came within {PATIENCE:g} s")
         if problem is not None:
             if not self._begun:
-                raise ServerError(self.uplink.refusal.why or f"{self.shown} cannot be joined, since {name} cannot be asked there: "
-                                  f"{problem}. Does the node rosapi run there, and does the network carry?")
+                raise ServerError(
+                    self.uplink.refusal.why
+                    or f"{self.shown} cannot be joined, since {name} cannot be asked there: "
+                    f"{problem}. Does the node rosapi run there, and does the network carry?"
+                )
             return conditions.error(SimpleError("~a", f"{name} cannot be asked at {self.shown}: {problem}"))
         return found
 
@@ -271,11 +285,14 @@ class Link:
 
     def _compare(self, name, message_class):
         """Ask for the type of a topic that is used already; a difference is logged."""
+
         def known(found):
             other = self._differs(name, message_class, found.get("type"))
             if other is not None:
-                self._log(logging.ERROR, f"{name} has messages of the type {other[0]} at {self.shown}, not {message_class.ros_type}, so "
-                                         "none of them arrives.")
+                self._log(
+                    logging.ERROR,
+                    f"{name} has messages of the type {other[0]} at {self.shown}, not {message_class.ros_type}, so none of them arrives.",
+                )
 
         self.call("/rosapi/topic_type", {"topic": name}, known, lambda text: None)
 
@@ -330,12 +347,25 @@ class Link:
         return any(publication.latch for publication in self.graph.topics[name].publications) if name in self.graph.topics else False
 
     def _advertisement(self, name):
-        return {"op": "advertise", "id": f"advertise:{name}", "topic": name, "type": self._type_of(name, self._outgoing[name]),
-                "latch": self._latches(name), "queue_size": 100}
+        return {
+            "op": "advertise",
+            "id": f"advertise:{name}",
+            "topic": name,
+            "type": self._type_of(name, self._outgoing[name]),
+            "latch": self._latches(name),
+            "queue_size": 100,
+        }
 
     def _subscription(self, name, message_type):
-        return {"op": "subscribe", "id": f"subscribe:{name}", "topic": name, "type": self._type_of(name, message_type),
-                "compression": "none", "throttle_rate": 0, "queue_length": 0}
+        return {
+            "op": "subscribe",
+            "id": f"subscribe:{name}",
+            "topic": name,
+            "type": self._type_of(name, message_type),
+            "compression": "none",
+            "throttle_rate": 0,
+            "queue_length": 0,
+        }
 
     def _speak(self, name, message_type):
         self._outgoing[name] = message_type
@@ -420,8 +450,12 @@ class Link:
         if self._joiner is not None:
             kernel.unpark(self._joiner)
 
-    HANDLERS = {"publish": _arrive, "service_response": _answered, "status": _status,
-                "call_service": lambda self, operation: self.offering.serve(operation)}
+    HANDLERS = {
+        "publish": _arrive,
+        "service_response": _answered,
+        "status": _status,
+        "call_service": lambda self, operation: self.offering.serve(operation),
+    }
 
 
 def _as_ros1(kind):
@@ -441,8 +475,10 @@ def join(url, patience=PATIENCE):
     if here.kernel.clock.virtual:
         raise ServerError(f"A session in virtual time cannot join {shown}: the robot there lives in wall time. Start it with --time wall.")
     if here.visible_nodes():
-        raise ServerError(f"Nodes run here already ({', '.join(here.visible_nodes())}), so this session cannot join {shown} any more. "
-                          "Do it before the first start-ros-node.")
+        raise ServerError(
+            f"Nodes run here already ({', '.join(here.visible_nodes())}), so this session cannot join {shown} any more. "
+            "Do it before the first start-ros-node."
+        )
     import roslibpy
 
     uplink = Uplink(url, here.kernel)
@@ -450,9 +486,11 @@ def join(url, patience=PATIENCE):
         kernel.run_blocking(uplink.run, patience)
     except roslibpy.core.RosTimeoutError:
         uplink.leave()
-        raise ServerError(f"No rosbridge server answers at {shown}. Does it run there (roslaunch rosbridge_server "
-                          "rosbridge_websocket.launch, or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), "
-                          "and can this machine reach it?") from None
+        raise ServerError(
+            f"No rosbridge server answers at {shown}. Does it run there (roslaunch rosbridge_server "
+            "rosbridge_websocket.launch, or ros2 launch rosbridge_server rosbridge_websocket_launch.xml), "
+            "and can this machine reach it?"
+        ) from None
     uplink.refusal.waited_for = False
     if uplink.refusal.why:
         uplink.leave()

@@ -102,8 +102,13 @@ class Connection:
 
     async def _refuse(self, status, text):
         body = (text + "\n").encode()
-        await self._send({"type": "websocket.http.response.start", "status": status,
-                          "headers": [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(body)).encode())]})
+        await self._send(
+            {
+                "type": "websocket.http.response.start",
+                "status": status,
+                "headers": [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(body)).encode())],
+            }
+        )
         await self._send({"type": "websocket.http.response.body", "body": body})
 
     async def _wait_for_token(self):
@@ -126,8 +131,9 @@ class Connection:
     def give_up(self, late):
         """The token has not come in time (LATE), or others wait, too many of them."""
         if late:
-            self.end(LATER, f"No token came within {self.limits.first_message:g} s. The first message must be "
-                            '{"op": "auth", "token": "..."}.')
+            self.end(
+                LATER, f'No token came within {self.limits.first_message:g} s. The first message must be {{"op": "auth", "token": "..."}}.'
+            )
         else:
             self._protocol.abandon()
         return True

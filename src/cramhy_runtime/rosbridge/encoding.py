@@ -14,8 +14,20 @@ import math
 from ..ros.message_json import to_json
 
 COMPRESSIONS = ("none", "png", "cbor", "cbor-raw")
-TYPED_ARRAYS = {"uint8": 64, "char": 64, "byte": 72, "int8": 72, "uint16": 69, "uint32": 70, "uint64": 71, "int16": 77, "int32": 78,
-                "int64": 79, "float32": 85, "float64": 86}
+TYPED_ARRAYS = {
+    "uint8": 64,
+    "char": 64,
+    "byte": 72,
+    "int8": 72,
+    "uint16": 69,
+    "uint32": 70,
+    "uint64": 71,
+    "int16": 77,
+    "int32": 78,
+    "int64": 79,
+    "float32": 85,
+    "float64": 86,
+}
 """The tags of RFC 8746 for arrays of numbers, little-endian."""
 
 
@@ -42,8 +54,10 @@ def fragments_of(text, size, identity):
     if size is None or len(text) <= size:
         return [text]
     total = -(-len(text) // size)
-    return [text_of({"op": "fragment", "id": identity, "data": text[number * size:(number + 1) * size], "num": number, "total": total})
-            for number in range(total)]
+    return [
+        text_of({"op": "fragment", "id": identity, "data": text[number * size : (number + 1) * size], "num": number, "total": total})
+        for number in range(total)
+    ]
 
 
 def cbor_of(operation):
@@ -68,7 +82,8 @@ def weight(message):
     fields = _varying.get(message.__class__)
     if fields is None:
         fields = _varying[message.__class__] = tuple(
-            field for field in message.fields if field.is_array or field.base == "string" or not field.primitive)
+            field for field in message.fields if field.is_array or field.base == "string" or not field.primitive
+        )
     total = 0
     for field in fields:
         value = getattr(message, field.attribute)

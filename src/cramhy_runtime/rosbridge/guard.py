@@ -28,7 +28,7 @@ CLOCK_SKEW = 5  # s; how old or how early rosauth's time stamp may be
 
 HEADERS = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; "
-                               "connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "x-content-type-options": "nosniff",
     "x-frame-options": "DENY",
     "referrer-policy": "no-referrer",
@@ -105,8 +105,11 @@ class Guard:
         if scope["type"] == "http":
             if scope["method"] not in ("GET", "HEAD"):
                 return 405, "Only GET and HEAD are answered here."
-            if not origins and any(name == b"sec-fetch-site" and value == b"cross-site" for name, value in headers) and not any(
-                    name == b"sec-fetch-mode" and value == b"navigate" for name, value in headers):
+            if (
+                not origins
+                and any(name == b"sec-fetch-site" and value == b"cross-site" for name, value in headers)
+                and not any(name == b"sec-fetch-mode" and value == b"navigate" for name, value in headers)
+            ):
                 return 403, "Pages of other servers may not load anything from here."
         return None
 

@@ -98,8 +98,9 @@ class Channel:
             self.lost = 0
             for feed in self.feeds:
                 if feed.promised:
-                    feed.outbox.overflow(f"Messages of {self.topic} come faster than they can be sent. Subscribe with throttle_rate or "
-                                         "queue_length.")
+                    feed.outbox.overflow(
+                        f"Messages of {self.topic} come faster than they can be sent. Subscribe with throttle_rate or queue_length."
+                    )
         backlog = self.backlog
         while backlog:
             try:
@@ -187,7 +188,7 @@ class Hub:
         if full not in known:
             complaint = check_graph_name(full)
             if complaint or full.endswith("/") or "//" in full:
-                raise Refused(complaint or f"{full} is no name of a {what}: a part of it is empty.")
+                raise Refused(complaint or f"{full} is not a name of a {what}: a part of it is empty.")
         return full
 
     def message_type(self, topic, given):

@@ -55,13 +55,15 @@ class Feed:
             self.listed = True
             outbox.items.append(self)
         if self.promised and len(self.queue) > outbox.limits.messages:
-            outbox.overflow(f"More than {outbox.limits.messages} messages of {self.topic} wait for you. Subscribe with throttle_rate or "
-                            "queue_length.")
+            outbox.overflow(
+                f"More than {outbox.limits.messages} messages of {self.topic} wait for you. Subscribe with throttle_rate or queue_length."
+            )
         while not self.promised and outbox.weight > outbox.limits.heavy and len(self.queue) > 1:
             outbox.weight -= self.queue.popleft().weight
         if outbox.weight > outbox.limits.heavy and self.promised:
-            outbox.overflow(f"More than {outbox.limits.heavy >> 20} MB of messages wait for you. Subscribe with throttle_rate or "
-                            "queue_length.")
+            outbox.overflow(
+                f"More than {outbox.limits.heavy >> 20} MB of messages wait for you. Subscribe with throttle_rate or queue_length."
+            )
 
     def close(self):
         """Nothing more comes."""
@@ -138,8 +140,15 @@ class Outbox:
         except Exception as problem:
             if self.level == "none":
                 return []
-            return [text_of({"op": "status", "level": "error", "msg": f"A message of {parcel.topic} could not be sent to you"
-                             f"{_as(feed.compression)}: {_short(problem)}"})]
+            return [
+                text_of(
+                    {
+                        "op": "status",
+                        "level": "error",
+                        "msg": f"A message of {parcel.topic} could not be sent to you{_as(feed.compression)}: {_short(problem)}",
+                    }
+                )
+            ]
 
     def _frames(self, form, size):
         if size is None or form.__class__ is bytes or len(form) <= size:

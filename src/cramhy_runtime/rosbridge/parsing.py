@@ -33,7 +33,7 @@ def parse(text, depth=50):
     except Malformed:
         raise
     except ValueError as problem:
-        raise Malformed(f"The message is no JSON: {getattr(problem, 'msg', problem)} at character {getattr(problem, 'pos', 0)}.") from None
+        raise Malformed(f"The message is not JSON: {getattr(problem, 'msg', problem)} at character {getattr(problem, 'pos', 0)}.") from None
     return operation(found)
 
 
@@ -43,8 +43,11 @@ def operation(found):
         raise Malformed(f"An operation is a JSON object, but this is {json_type(found)}.")
     op = found.get("op")
     if not isinstance(op, str):
-        problem = Malformed('The message has no operation: an object needs "op", a string such as "subscribe" or "publish".'
-                            if "op" not in found else f'"op" must be a string, but it is {json_type(op)}.')
+        problem = Malformed(
+            'The message has no operation: an object needs "op", a string such as "subscribe" or "publish".'
+            if "op" not in found
+            else f'"op" must be a string, but it is {json_type(op)}.'
+        )
         problem.id = found.get("id")
         raise problem
     return found
@@ -72,7 +75,9 @@ def check_depth(text, limit):
 
 
 def _no_constant(name):
-    raise Malformed(f"The message is no JSON: it has the number {name}, which JSON does not have. Send null for a real that is no number.")
+    raise Malformed(
+        f"The message is not JSON: it has the number {name}, which JSON does not have. Send null for a real that is not a number."
+    )
 
 
 def _integer(text):

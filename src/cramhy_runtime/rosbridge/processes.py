@@ -64,6 +64,8 @@ def dead(identity, here):
 
 
 def _exists(pid):
+    if os.name == "nt":  # where 0 is no signal that only asks, but Ctrl-C
+        return True
     try:
         os.kill(pid, 0)
     except (ProcessLookupError, OverflowError):
@@ -75,7 +77,7 @@ def _exists(pid):
 
 def _text(path):
     try:
-        return Path(path).read_text().strip()
+        return Path(path).read_text(encoding="utf-8").strip()
     except (OSError, ValueError):
         return UNKNOWN
 

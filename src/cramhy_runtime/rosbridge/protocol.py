@@ -62,8 +62,12 @@ class Interest:
         sizes = [size for size in sizes if size is not None]
         compression = max(forms, key=COMPRESSIONS.index)
         queue = 0 if 0 in queues else max(queues)
-        return dict(throttle_rate=min(rates), queue_length=min(queue, limits.messages), compression=compression,
-                    fragment_size=min(sizes) if sizes else None)
+        return dict(
+            throttle_rate=min(rates),
+            queue_length=min(queue, limits.messages),
+            compression=compression,
+            fragment_size=min(sizes) if sizes else None,
+        )
 
 
 def _fragment_size(operation):
@@ -76,7 +80,7 @@ def _compression(operation):
     """The form in which the client wants messages or an answer, one of `COMPRESSIONS`."""
     compression = operation.get("compression", "none")
     if not isinstance(compression, str) or compression not in COMPRESSIONS:
-        raise Refused(f'There is no compression {shown(compression)}. There are {", ".join(COMPRESSIONS)}.')
+        raise Refused(f"There is no compression {shown(compression)}. There are {', '.join(COMPRESSIONS)}.")
     if compression.startswith("cbor"):
         need_cbor()
     return compression
@@ -231,16 +235,22 @@ class Session:
         """Count a latched message, which stays until the topic is unadvertised."""
         others = sum(kept for name, kept in self.latched.items() if name != topic)
         if others + size > self.limits.latched:
-            raise Refused(f"The latched messages that you publish take {others} bytes, and this one {size}; {self.limits.latched} are "
-                          "allowed. Unadvertise some.")
+            raise Refused(
+                f"The latched messages that you publish take {others} bytes, and this one {size}; {self.limits.latched} are "
+                "allowed. Unadvertise some."
+            )
         self.latched[topic] = size
 
     # ----------------------------------------------------------------------------------------------------------- subscribing
 
     def subscribe(self, operation):
         topic = self.hub.name(operation.get("topic"), "topic")
-        wish = (integer(operation, "throttle_rate") or 0, integer(operation, "queue_length") or 0,
-                _fragment_size(operation), _compression(operation))
+        wish = (
+            integer(operation, "throttle_rate") or 0,
+            integer(operation, "queue_length") or 0,
+            _fragment_size(operation),
+            _compression(operation),
+        )
         message_type = self.hub.message_type(topic, operation.get("type"))
         interest = self.interests.get(topic)
         if interest is None:
@@ -413,7 +423,7 @@ class Session:
     def set_level(self, operation):
         level = operation.get("level")
         if not isinstance(level, str) or level not in LEVELS:
-            raise Refused(f'There is no level {shown(level)}. There are {", ".join(LEVELS)}.')
+            raise Refused(f"There is no level {shown(level)}. There are {', '.join(LEVELS)}.")
         self.level = level
         self.hub.hand_out(lambda: setattr(self.outbox, "level", level))
 
@@ -484,5 +494,6 @@ def need_cbor():
     from importlib.util import find_spec
 
     if find_spec("cbor2") is None:
-        raise Refused("The server cannot write CBOR, because the Python package cbor2 is not installed there. Type there: "
-                      + install_command("web"))
+        raise Refused(
+            "The server cannot write CBOR, because the Python package cbor2 is not installed there. Type there: " + install_command("web")
+        )

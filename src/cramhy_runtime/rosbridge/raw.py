@@ -12,8 +12,21 @@ import struct
 
 from ..ros.wire import NONFINITE, as_float
 
-_FORMATS = {"bool": "B", "int8": "b", "byte": "b", "uint8": "B", "char": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I",
-            "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
+_FORMATS = {
+    "bool": "B",
+    "int8": "b",
+    "byte": "b",
+    "uint8": "B",
+    "char": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+    "float32": "f",
+    "float64": "d",
+}
 _LENGTH = struct.Struct("<I")
 
 
@@ -30,8 +43,9 @@ def _write(message, put):
         try:
             _write_field(field, value, put)
         except (struct.error, OverflowError, TypeError):  # a ValueError is that of a message in this one
-            raise ValueError(f"{message.ros_type}: the field {field.name} holds {reprlib.repr(value)}, which ROS 1 cannot write as "
-                             f"{field.type}.") from None
+            raise ValueError(
+                f"{message.ros_type}: the field {field.name} holds {reprlib.repr(value)}, which ROS 1 cannot write as {field.type}."
+            ) from None
 
 
 def _write_field(field, value, put):

@@ -22,8 +22,14 @@ ACTION_TOPICS = {"goal", "cancel", "status", "feedback", "result"}
 ROS_VERSION = (1, "noetic")
 DEEPEST = 50
 
-EXAMPLES = {"bool": "false", "string": "", "float32": "0.0", "float64": "0.0", "time": '{"secs": 0, "nsecs": 0}',
-            "duration": '{"secs": 0, "nsecs": 0}'}
+EXAMPLES = {
+    "bool": "false",
+    "string": "",
+    "float32": "0.0",
+    "float64": "0.0",
+    "time": '{"secs": 0, "nsecs": 0}',
+    "duration": '{"secs": 0, "nsecs": 0}',
+}
 
 
 class RosApi:
@@ -187,15 +193,19 @@ class Shelf:
             raise Refusal(f"The name of the parameter has {len(name)} characters; {limits.name} are allowed.")
         if size > limits.parameter:
             raise Refusal(f"The value of {name} has {size} bytes; {limits.parameter} are allowed.")
-        kept = {other: sizes for other, sizes in self._sizes.items()
-                if other != name and not other.startswith(name + "/") and self.tree.has(other)}
+        kept = {
+            other: sizes
+            for other, sizes in self._sizes.items()
+            if other != name and not other.startswith(name + "/") and self.tree.has(other)
+        }
         number = sum(values for values, _ in kept.values()) + _leaves(value)
         total = sum(taken for _, taken in kept.values()) + size
         if number > limits.parameters:
             raise Refusal(f"Clients have set {number - _leaves(value)} parameters; {limits.parameters} are allowed. Delete some.")
         if total > limits.parameter_bytes:
-            raise Refusal(f"The parameters that clients have set take {total - size} bytes; {limits.parameter_bytes} are allowed. "
-                          "Delete some.")
+            raise Refusal(
+                f"The parameters that clients have set take {total - size} bytes; {limits.parameter_bytes} are allowed. Delete some."
+            )
         self._sizes = {**kept, name: (_leaves(value), size)}
 
 
@@ -264,10 +274,13 @@ def type_definitions(cls):
             continue
         fields = kind.fields
         found[kind.ros_type] = definition(
-            kind.ros_type, [field.name for field in fields], [field.base for field in fields],
+            kind.ros_type,
+            [field.name for field in fields],
+            [field.base for field in fields],
             [-1 if field.length is None else field.length for field in fields],
             ["[]" if field.is_array else EXAMPLES.get(field.base, "0") if field.primitive else "{}" for field in fields],
-            list(kind.constants), [str(value) for value in kind.constants.values()],
+            list(kind.constants),
+            [str(value) for value in kind.constants.values()],
         )
         waiting += [part for part in map(message_class_exact, (field.base for field in fields if not field.primitive)) if part is not None]
     return list(found.values())

@@ -24,13 +24,14 @@ from collections import deque
 from http import HTTPStatus
 from importlib import metadata
 
+from cramhy_runtime.kernel.images import per_image
 from .. import kernel
 from ..extras import install_command
-from ..kernel.company import Company, thread_time
+from cramhy_runtime.kernel.asyncio_thread import Company, thread_time
 from ..ros import graph
 from . import sessions
 from .connection import ENDED, Connection
-from .door import Door, WaitingRoom
+from .authentication import Door, WaitingRoom
 from .guard import HEADERS, Guard, Limits, new_token
 from .hub import Hub
 from .rosapi import RosApi
@@ -57,7 +58,7 @@ class Server:
         self.port = self.socket.getsockname()[1]
         self.announcement = self._announce()  # before anything else is there that would have to be taken back
         self.url = f"http://{HOST}:{self.port}/#{self.token}"
-        self.address = f"ws://{HOST}:{self.port}/{self.token}"
+        self.address: str = f"ws://{HOST}:{self.port}/{self.token}"
         self.guard = Guard(self.token, self.port, origins)
         self.hub = Hub(here, self.hand_out, limits)
         self.rosapi = RosApi(here, limits)
@@ -83,7 +84,7 @@ class Server:
         """The path of the file that announces the server."""
         return self.announcement.path
 
-    def close(self):
+    def close(self) -> None:
         """End the server and its clients; what they had on the graph goes. To be called with the baton. Does nothing a second time."""
         if self.closed:
             return
@@ -124,6 +125,7 @@ class Server:
 
     def post(self, function):
         """Have FUNCTION called in the kernel, unless that has ended; what it costs the kernel is the server's to pay."""
+
         def run():
             if self.closed:
                 return
@@ -242,8 +244,9 @@ def _listen(port):
     except (OSError, OverflowError) as problem:
         found.close()
         why = getattr(problem, "strerror", None) or problem
-        raise ServerError(f"The server cannot listen on port {port} of {HOST}: {why}. "
-                          "Choose another port, or none for a free one.") from None
+        raise ServerError(
+            f"The server cannot listen on port {port} of {HOST}: {why}. Choose another port, or none for a free one."
+        ) from None
     found.setblocking(False)
     return found
 
@@ -257,15 +260,17 @@ def need_extra():
         except metadata.PackageNotFoundError:
             missing.append(name)
     if missing:
-        raise ServerError(f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed. "
-                          f"Type: {install_command('web')}")
+        raise ServerError(
+            f"The server needs {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed. "
+            f"Type: {install_command('web')}"
+        )
     # Here and not in the server's thread, which would have to save up for them while a plan computes.
     import uvicorn.lifespan.off  # noqa: F401
     import uvicorn.protocols.http.h11_impl  # noqa: F401
     import uvicorn.protocols.websockets.websockets_sansio_impl  # noqa: F401
 
 
-_servers = {}
+_servers = per_image({})
 
 
 def serve(here=None, pages=None, port=None, origins=(), limits=None):
@@ -279,8 +284,9 @@ def serve(here=None, pages=None, port=None, origins=(), limits=None):
     need_extra()
     active = kernel.active()
     if active is None or here not in (None, active) and getattr(here, "kernel", active) is not active:
-        raise ServerError("A server belongs to the kernel that is active, and this is another one, or none. Call kernel.start() or make a "
-                          "session first.")
+        raise ServerError(
+            "A server belongs to the kernel that is active, and this is another one, or none. Call kernel.start() or make a session first."
+        )
     running = _servers.get(active)
     if running is not None and not running.closed:
         raise ServerError(f"This session has a server already, on port {running.port}. Close it first, or use it.")

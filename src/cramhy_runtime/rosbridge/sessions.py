@@ -22,6 +22,8 @@ import time
 from dataclasses import MISSING, asdict, dataclass, fields
 from pathlib import Path
 
+from cramhy_runtime.storage import owners
+from cramhy_runtime.storage.unfinished import CAREFULLY
 from . import processes
 from .processes import Identity
 
@@ -73,19 +75,23 @@ def base():
     try:
         found = Path(tempfile.gettempdir())
     except OSError as problem:
-        raise Unsafe(f"There is no temporary folder in which sessions could be announced: {problem.strerror or problem}. Set "
-                     "XDG_RUNTIME_DIR to a folder of your own.") from None
+        raise Unsafe(
+            f"There is no temporary folder in which sessions could be announced: {problem.strerror or problem}. Set "
+            "XDG_RUNTIME_DIR to a folder of your own."
+        ) from None
     if given and given not in _told and sys.stderr is not None:
         _told.add(given)
-        print(f"; XDG_RUNTIME_DIR is {given}, a relative path, and is ignored. Sessions are announced below {found}.", file=sys.stderr,
-              flush=True)
+        print(
+            f"; XDG_RUNTIME_DIR is {given}, a relative path, and is ignored. Sessions are announced below {found}.",
+            file=sys.stderr,
+            flush=True,
+        )
     return found
 
 
 def folder(create=False, path=None):
     """The folder of this user, or ``path``; ``None`` when there is none. Raises `Unsafe`."""
-    uid = os.getuid() if hasattr(os, "getuid") else 0
-    path = path or base() / f"cramhy-{uid}"
+    path = path or base() / f"cramhy-{owners.number()}"
     try:
         if create:
             path.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -93,11 +99,15 @@ def folder(create=False, path=None):
     except OSError as problem:
         if not create and isinstance(problem, (FileNotFoundError, NotADirectoryError)):
             return None
-        raise Unsafe(f"{path}, where sessions are announced, cannot be {'made' if create else 'looked at'}: {problem.strerror}. Set "
-                     "XDG_RUNTIME_DIR to a folder of your own.") from None
-    if not stat.S_ISDIR(status.st_mode) or hasattr(os, "getuid") and (status.st_uid != uid or status.st_mode & 0o077):
-        raise Unsafe(f"{path} is not a folder that belongs to this user alone, so no session is announced or looked for there. Remove it, "
-                     f"or type: chmod 700 {path}")
+        raise Unsafe(
+            f"{path}, where sessions are announced, cannot be {'made' if create else 'looked at'}: {problem.strerror}. Set "
+            "XDG_RUNTIME_DIR to a folder of your own."
+        ) from None
+    if not stat.S_ISDIR(status.st_mode) or not owners.mine(status) or owners.open_to_others(status):
+        raise Unsafe(
+            f"{path} is not a folder that belongs to this user alone, so no session is announced or looked for there. Remove it, "
+            f"or type: chmod 700 {path}"
+        )
     return path
 
 
@@ -110,8 +120,19 @@ class Announcement:
     def __init__(self, port, token, host="127.0.0.1"):
         """Write the file. Raises `Unsafe`."""
         me = self._identity = processes.own()
-        self.found = Found(host, port, token, me.pid, f"ws://{host}:{port}/{token}", f"http://{host}:{port}/#{token}", time.time_ns(),
-                           me.began, me.machine, me.boot, me.namespace)
+        self.found = Found(
+            host,
+            port,
+            token,
+            me.pid,
+            f"ws://{host}:{port}/{token}",
+            f"http://{host}:{port}/#{token}",
+            time.time_ns(),
+            me.began,
+            me.machine,
+            me.boot,
+            me.namespace,
+        )
         self._name = f"session-{me.pid}-{port}-{secrets.token_hex(4)}.json"
         self._mark = None
         self.closed = False
@@ -131,8 +152,10 @@ class Announcement:
             os.replace(temporary, self.path)
         except OSError as problem:
             _remove(temporary)
-            raise Unsafe(f"A file cannot be written in {place}, where sessions are announced: {problem.strerror}. Make room there, or set "
-                         "XDG_RUNTIME_DIR to a folder of your own.") from None
+            raise Unsafe(
+                f"A file cannot be written in {place}, where sessions are announced: {problem.strerror}. Make room there, or set "
+                "XDG_RUNTIME_DIR to a folder of your own."
+            ) from None
         except BaseException:
             _remove(temporary)
             raise
@@ -242,11 +265,11 @@ BROKEN = object()
 def _read(path):
     """The session in a file; ``None`` when it cannot be read, `BROKEN` when it holds none. Raises `Unsafe`."""
     try:
-        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+        handle = os.open(path, os.O_RDONLY | CAREFULLY)
     except OSError:
         return None
     status = os.fstat(handle)
-    if not stat.S_ISREG(status.st_mode) or hasattr(os, "getuid") and (status.st_uid != os.getuid() or status.st_mode & 0o077):
+    if not stat.S_ISREG(status.st_mode) or not owners.mine(status) or owners.open_to_others(status):
         os.close(handle)
         raise Unsafe(f"{path} can be read or written by others than this user, so it is not trusted. Remove it.")
     with os.fdopen(handle, "rb") as file:

@@ -17,13 +17,13 @@ that folder.
 
 Where the parts are: `parts` is a file that is being written, in one go or for hours; `whole` writes a file at once, `trees` several;
 `unfinished` is about their names and locks; `leftovers` removes or recovers what killed processes left; `backups` keeps the older version
-of a file; `sealed` is for code that is kept, and proves whose it is and that it is undamaged before anybody reads it; `reasons` tells
-what to try.
+of a file; `sealed` is for code that is kept, and proves whose it is and that it is undamaged before anybody reads it; `owners` says whose
+a file is; `system_errors` tells what to try.
 """
 
 from .leftovers import tidy, tidy_once
 from .parts import Part, growing
-from .reasons import why
+from .system_errors import why
 from .trees import Tree
 from .whole import write_whole, writing
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import stat
 
+from . import owners
 from .unfinished import CAREFULLY, RECORDING, fcntl, free_name, lock, parsed, same_file
 
 _tidied = set()
@@ -50,7 +51,7 @@ def _dealt_with(path, recording):
     handle = os.open(path, os.O_RDWR | CAREFULLY)
     try:
         status = os.fstat(handle)
-        if not stat.S_ISREG(status.st_mode) or hasattr(os, "getuid") and status.st_uid != os.getuid():
+        if not stat.S_ISREG(status.st_mode) or not owners.mine(status):
             return None
         if fcntl is None:  # what is open cannot be removed, by us neither
             os.close(handle)

@@ -12,6 +12,9 @@ from __future__ import annotations
 import os
 import stat
 
+from . import owners
+from .unfinished import CAREFULLY, NO_LINKS
+
 LABEL = 64
 
 
@@ -42,11 +45,11 @@ def unsealed(path, line, label, in_folder=True):
     start = len(line)
     if not data.startswith(line):
         raise Unusable("foreign", f"{path} is not a file of code, or one of another version of cramhy")
-    if len(data) < start + 32 + LABEL or _digest(data[start + 32:]) != data[start:start + 32]:
+    if len(data) < start + 32 + LABEL or _digest(data[start + 32 :]) != data[start : start + 32]:
         raise Unusable("damaged", f"{path} is damaged")
-    if data[start + 32:start + 32 + LABEL] != label.encode("ascii"):
+    if data[start + 32 : start + 32 + LABEL] != label.encode("ascii"):
         raise Unusable("outdated", f"{path} was made from something else, or by another version of cramhy or Python")
-    return data[start + 32 + LABEL:]
+    return data[start + 32 + LABEL :]
 
 
 def _read(path, in_folder):
@@ -57,8 +60,7 @@ def _read(path, in_folder):
             complaint = distrust_of_folder(folder)
             if complaint:
                 raise Unusable("distrusted", complaint)
-        handle = os.open(path, os.O_RDONLY | (getattr(os, "O_NOFOLLOW", 0) if in_folder else 0) | getattr(os, "O_NONBLOCK", 0)
-                         | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0))
+        handle = os.open(path, os.O_RDONLY | (CAREFULLY if in_folder else CAREFULLY & ~NO_LINKS))
         with open(handle, "rb") as file:
             status = os.fstat(handle)
             if not stat.S_ISREG(status.st_mode):
@@ -75,11 +77,9 @@ def _read(path, in_folder):
 
 def _distrust(status, path):
     """Why others may have written this; "" if they cannot have."""
-    if not hasattr(os, "getuid"):
-        return ""
-    if status.st_uid not in (0, os.getuid()):
+    if not owners.trusted(status):
         return f"{path} belongs to another user ({_user(status.st_uid)})"
-    if status.st_mode & stat.S_IWOTH:
+    if owners.told() and status.st_mode & stat.S_IWOTH:
         return f"{path} can be written to by everybody"
     return ""
 
@@ -87,15 +87,10 @@ def _distrust(status, path):
 def distrust_of_folder(folder):
     """Why others may have put files into ``folder``; "" if they cannot have. Errors: `OSError` when it cannot be looked at."""
     link = os.lstat(folder)
-    if stat.S_ISLNK(link.st_mode) and hasattr(os, "getuid") and link.st_uid not in (0, os.getuid()):
+    if stat.S_ISLNK(link.st_mode) and not owners.trusted(link):
         return f"{folder} is a link that belongs to another user ({_user(link.st_uid)})"
     return _distrust(os.stat(folder), folder)
 
 
 def _user(number):
-    try:
-        import pwd
-
-        return pwd.getpwuid(number).pw_name
-    except (ImportError, KeyError):
-        return f"number {number}"
+    return owners.name_of(number) or f"number {number}"

@@ -15,14 +15,15 @@ _NAME = re.compile(rf"\.(.+)\.[0-9a-f]{{16}}({re.escape(PART)}|{re.escape(RECORD
 _LONGEST = {PART: 40, RECORDING: 200}
 """Bytes of a file's name that the name of its part repeats: a name has room for 255."""
 BINARY = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOINHERIT", 0)
-CAREFULLY = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | BINARY
+NO_LINKS = getattr(os, "O_NOFOLLOW", 0)
+CAREFULLY = NO_LINKS | getattr(os, "O_NONBLOCK", 0) | BINARY
 """For a file that others may have put there: no link is followed, no pipe is waited for."""
 
 
 def part_name(path, ending):
     """A name for an unfinished file ``path``, beside it, that nobody can foretell."""
     folder, name = os.path.split(path)
-    name = os.fsdecode(os.fsencode(name)[:_LONGEST[ending]])
+    name = os.fsdecode(os.fsencode(name)[: _LONGEST[ending]])
     return os.path.join(folder, f".{name}.{os.urandom(8).hex()}{ending}")
 
 
@@ -39,7 +40,7 @@ def free_name(path):
     number = 1
     while True:
         more = ".recovered" if number == 1 else f".recovered-{number}"
-        found = os.path.join(folder, os.fsdecode(os.fsencode(stem)[:_LONGEST[RECORDING]]) + more + ending)
+        found = os.path.join(folder, os.fsdecode(os.fsencode(stem)[: _LONGEST[RECORDING]]) + more + ending)
         if not os.path.lexists(found):
             return found
         number += 1

@@ -23,9 +23,10 @@ from .leftovers import assert_all_dead, assert_nothing_left, assert_tree, leftov
 from .runs import Outcome, run, virtual_time
 from .schedules import Schedule
 from .traces import assert_after, assert_before, assert_concurrent, assert_never, assert_order, assert_times, mark
+from .watched import WatchedKernel
 
 __all__ = [
     "assert_after", "assert_all_dead", "assert_before", "assert_concurrent", "assert_never", "assert_nothing_left", "assert_order",
     "assert_times", "assert_tree", "DependsOnLuck", "Exploration", "explore", "faults", "leftovers", "mark", "Outcome", "run",
-    "Schedule", "virtual_time",
+    "Schedule", "virtual_time", "WatchedKernel",
 ]  # fmt: skip

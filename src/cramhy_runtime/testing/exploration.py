@@ -14,6 +14,19 @@ from __future__ import annotations
 from .plans import plan_of, with_lisp
 from .runs import TIME_LIMIT, observe
 from .schedules import Schedule, without_defaults
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, subscripted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from cramhy_runtime.kernel.signatures import Backend, BackendName
+    from .plans import Plan
+    from .runs import Outcome
+    from .schedules import Decision
+
+T = TypeVar("T", default=Any)
+if TYPE_CHECKING:
+    Check = Callable[[T], object] | Callable[[Outcome[T]], object] | str  # Lisp, as a text, gives a function
 
 MOST_RUNS_TO_SHRINK = 2000
 
@@ -25,22 +38,40 @@ class DependsOnLuck(AssertionError):
     what came of it; ``expected``: what came of first come, first served; ``decisions``: those of the schedule.
     """
 
-    def __init__(self, text, schedule, seed, outcome, expected, decisions):
+    def __init__(
+        self,
+        text: str,
+        schedule: list[int],
+        seed: int | None,
+        outcome: Outcome[object],
+        expected: Outcome[object] | None,
+        decisions: list[Decision],
+    ):
         super().__init__(text)
         self.schedule, self.seed, self.outcome, self.expected, self.decisions = schedule, seed, outcome, expected, decisions
 
 
-class Exploration:
+class Exploration(Generic[T]):
     """What `explore` saw: how many ``runs``, the ``different`` schedules among them, and the common ``outcome``."""
 
-    def __init__(self, runs, different, outcome):
+    __class_getitem__ = subscripted
+
+    def __init__(self, runs: int, different: int, outcome: Outcome[T]):
         self.runs, self.different, self.outcome = runs, different, outcome
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<exploration: {self.runs} runs, {self.different} different schedules, each time {self.outcome}>"
 
 
-def explore(plan, schedules=1000, check=None, *, backend="threads", replay=None, time_limit=TIME_LIMIT):
+def explore(
+    plan: Plan[T],
+    schedules: int = 1000,
+    check: Check[T] | None = None,
+    *,
+    backend: BackendName | Backend = "threads",
+    replay: Sequence[int] | None = None,
+    time_limit: float | None = TIME_LIMIT,
+) -> Exploration[T]:
     """Run ``plan`` under so many schedules and see that nothing depends on luck; returns an `Exploration`.
 
     The first run is first come, first served, the next use the seeds 1, 2, ...; each has a fresh kernel. Without ``check`` all runs
@@ -55,10 +86,12 @@ def explore(plan, schedules=1000, check=None, *, backend="threads", replay=None,
     if replay is not None:
         outcome, schedule = explorer.run(replay)
         if schedule.misfit is not None:
-            raise ValueError(f"The schedule does not fit the plan: at decision {schedule.misfit + 1} there is no candidate "
-                             f"{schedule.prefix[schedule.misfit]}. Was it recorded with this plan, and this version of it?")
+            raise ValueError(
+                f"The schedule does not fit the plan: at decision {schedule.misfit + 1} there is no candidate "
+                f"{schedule.prefix[schedule.misfit]}. Was it recorded with this plan, and this version of it?"
+            )
         if explorer.wrong(outcome):
-            explorer.report(replay, None)
+            explorer.report(list(replay), None)
         return Exploration(1, 1, outcome)
     seen = set()
     for seed in range(schedules):
@@ -69,7 +102,7 @@ def explore(plan, schedules=1000, check=None, *, backend="threads", replay=None,
     return Exploration(schedules, len(seen), explorer.expected)
 
 
-def _lisp_check(text):
+def _lisp_check(text: str) -> Callable[[object], bool]:
     predicate = with_lisp(lambda: plan_of(text)())
 
     def check(value):
@@ -79,15 +112,17 @@ def _lisp_check(text):
     return check
 
 
-class _Explorer:
+class _Explorer(Generic[T]):
     """The runs of one exploration."""
 
-    def __init__(self, function, check, backend, time_limit):
+    def __init__(
+        self, function: Callable[[], T], check: Callable[[Any], object] | None, backend: BackendName | Backend, time_limit: float | None
+    ):
         self.function, self.check, self.backend, self.time_limit = function, check, backend, time_limit
-        self.expected = None
+        self.expected: Outcome[T] | None = None
         self.runs = 0
 
-    def run(self, prefix=(), seed=None, noting=False):
+    def run(self, prefix: Sequence[int] = (), seed: int | None = None, noting: bool = False) -> tuple[Outcome[T], Schedule]:
         schedule = Schedule(prefix, seed, noting)
         outcome = observe(self.function, self.backend, schedule=schedule, time_limit=self.time_limit)
         self.runs += 1
@@ -95,7 +130,7 @@ class _Explorer:
             self.expected = outcome if not prefix and seed is None else self.run()[0]
         return outcome, schedule
 
-    def wrong(self, outcome):
+    def wrong(self, outcome: Outcome[T]) -> str | None:
         """What is wrong with OUTCOME, as text; None if nothing is."""
         if self.check is None:
             return None if outcome.same(self.expected) else "the result is another one"
@@ -103,17 +138,17 @@ class _Explorer:
             return self._checked(outcome)
         return self._checked(outcome.value) if outcome.error is None else f"it ended with {outcome}"
 
-    def _checked(self, value):
+    def _checked(self, value: object) -> str | None:
         try:
             return "the check says no" if self.check(value) is False else None
         except AssertionError as problem:
             return f"the check says: {problem or 'no'}"
 
-    def breaks(self, choices):
+    def breaks(self, choices: Sequence[int]) -> bool:
         outcome, schedule = self.run(choices)
         return schedule.misfit is None and self.wrong(outcome) is not None
 
-    def shrink(self, choices):
+    def shrink(self, choices: Sequence[int]) -> list[int]:
         """The shortest prefix of CHOICES that breaks the plan, with as many zeros as possible."""
         choices = without_defaults(choices)
         limit = self.runs + MOST_RUNS_TO_SHRINK
@@ -125,19 +160,21 @@ class _Explorer:
                 break
         for index, choice in enumerate(choices):
             if choice and self.runs <= limit:
-                other = [*choices[:index], 0, *choices[index + 1:]]
+                other = [*choices[:index], 0, *choices[index + 1 :]]
                 if self.breaks(without_defaults(other)):
                     choices = other
         return without_defaults(choices)
 
-    def report(self, choices, seed):
+    def report(self, choices: list[int], seed: int | None) -> NoReturn:
         outcome, schedule = self.run(choices, noting=True)
-        decisions = schedule.decisions[:len(choices)]
+        decisions = schedule.decisions[: len(choices)]
         found = "first come, first served" if seed is None else f"seed {seed}"
-        lines = [f"The plan depends on who goes first: {self.wrong(outcome)} with this schedule.",
-                 f"  expected (first come, first served): {self.expected}" if self.check is None else "",
-                 f"  got: {outcome}",
-                 f"Found with {found}. The shortest schedule that shows it: {choices}, then first come, first served."]
+        lines = [
+            f"The plan depends on who goes first: {self.wrong(outcome)} with this schedule.",
+            f"  expected (first come, first served): {self.expected}" if self.check is None else "",
+            f"  got: {outcome}",
+            f"Found with {found}. The shortest schedule that shows it: {choices}, then first come, first served.",
+        ]
         for number, decision in enumerate(decisions, 1):
             lines.append(f"  decision {number}, at {decision.time:g} s:")
             for index, candidate in enumerate(decision.candidates):

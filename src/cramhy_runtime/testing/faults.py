@@ -9,12 +9,22 @@ cleanup forms run once, its other branches end, nothing is left.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fnmatch import fnmatchcase
+from typing import Literal
 
-from ..cpl.failure_types import SimplePlanFailure
-from ..cpl.failures import fail
-from ..cpl.pausing import release, request
+from cramhy_runtime.cpl.failures.failure_types import SimplePlanFailure
+from cramhy_runtime.cpl.failures.handling import fail
+from cramhy_runtime.cpl.tasks.pausing import release, request
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from cramhy_runtime.cpl.tasks.tasks import AbstractTask
+    from cramhy_runtime.kernel import Kernel, Task, Timer
+    from .park_points import ParkPoint
+
+
+Action = Literal["evaporate", "fail", "raise", "suspend-and-resume"] | Callable[[], object]
 ACTIONS = ("evaporate", "fail", "raise", "suspend-and-resume")
 SUSPENDED_FOR = 0.05  # s
 
@@ -32,22 +42,23 @@ class InjectedError(Exception):
 class Fault:
     """Something that happens once, at the park point that `at` describes. ``happened``: the point, or None."""
 
-    def __init__(self, task, park, nth, action, seconds, entering):
+    def __init__(self, task: str, park: str | None, nth: int, action: Action, seconds: float, entering: bool):
         self.task, self.park, self.nth, self.action, self.seconds, self.entering = task, park, nth, action, seconds, entering
-        self.happened = self.timer = None
+        self.happened: ParkPoint | None = None
+        self.timer: Timer | None = None
 
-    def over(self):
+    def over(self) -> None:
         """The run is over: nothing is to be resumed any more."""
         if self.timer is not None:
             self.timer.cancel()
 
-    def meets(self, point):
+    def meets(self, point: ParkPoint) -> bool:
         """True if it has not happened yet and this is the point."""
         if self.happened is not None or not (self.task == point.task or fnmatchcase(point.task, _pattern(self.task))):
             return False
         return self.nth == point.number if self.park is None else self.park == point.name and self.nth == point.nth
 
-    def happen(self, kernel, me, point):
+    def happen(self, kernel: Kernel, me: Task[object], point: ParkPoint) -> None:
         """Have it happen to the kernel's task ME: before it parks (``entering``), or as the first thing after."""
         self.happened = point
         task = me.owner
@@ -56,7 +67,7 @@ class Fault:
         else:
             kernel.post(lambda: self._act(kernel, me, task))
 
-    def _act(self, kernel, me, task):
+    def _act(self, kernel: Kernel, me: Task[object], task: AbstractTask[object]) -> None:
         if task.dead:
             return
         if self.action == "evaporate":
@@ -67,7 +78,7 @@ class Fault:
         elif not me.shielded:  # who is shielded waits for the death of others, and nothing can go wrong there
             me.interject(self._go_wrong)
 
-    def _go_wrong(self):
+    def _go_wrong(self) -> None:
         if self.action == "fail":
             fail(InjectedFailure(f"A fault at {self.happened}."))
         if callable(self.action):
@@ -75,7 +86,7 @@ class Fault:
         else:
             raise InjectedError(f"A fault at {self.happened}.")
 
-    def __str__(self):
+    def __str__(self) -> str:
         action = getattr(self.action, "__name__", self.action)
         where = f"park point {self.nth}" if self.park is None else f"{self.park} {self.nth}"
         return f"{action} {self.task} at {where}{', entering' if self.entering else ''}"
@@ -83,11 +94,19 @@ class Fault:
     __repr__ = __str__
 
 
-def _pattern(task):
+def _pattern(task: str) -> str:
     return task.replace("[", "[[]")
 
 
-def at(task="*", park=None, nth=1, action="evaporate", *, seconds=SUSPENDED_FOR, entering=False):
+def at(
+    task: str = "*",
+    park: str | None = None,
+    nth: int = 1,
+    action: Action = "evaporate",
+    *,
+    seconds: float = SUSPENDED_FOR,
+    entering: bool = False,
+) -> Fault:
     """A fault that happens to ``task``, a label or a pattern of one (``*``, ``?``), at its ``nth`` park point.
 
     ``park``: count points of this name only, as ``"sleep"`` or ``"wait-for"`` (see ``park_points.NAMES``). ``action``:

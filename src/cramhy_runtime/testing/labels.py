@@ -11,6 +11,12 @@ import re
 from collections import Counter
 from weakref import ref
 
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cramhy_runtime.kernel import Task
+    from cramhy_runtime.kernel.reports import Named
+
 _NUMBERED = re.compile(r"\[(.*)\]-\d+$")
 
 
@@ -19,12 +25,12 @@ class Births:
 
     __slots__ = ("born", "known", "counts")
 
-    def __init__(self):
-        self.born = []  # weak references, or names of tasks that are gone
+    def __init__(self) -> None:
+        self.born: list[Any] = []  # weak references, or names of tasks that are gone
         self.known = 0
-        self.counts = Counter()
+        self.counts: Counter[str] = Counter()
 
-    def label_until(self, task, prefix):
+    def label_until(self, task: Task[object], prefix: str) -> None:
         """Label the tasks up to TASK in their order of birth."""
         while True:
             entry = self.born[self.known]
@@ -40,14 +46,14 @@ class Births:
                 return
 
 
-def plain_name(task):
+def plain_name(task: Named | None) -> str:
     """The task's own name, without brackets and number."""
     name = "a task" if task is None else str(task.name)
     numbered = _NUMBERED.match(name)
     return numbered[1] if numbered else name.removeprefix("[").removesuffix("]")
 
 
-def born(task, parent):
+def born(task: Task[object], parent: Task[object]) -> None:
     """Note that PARENT has started TASK."""
     births = getattr(parent.local, "births", None)
     if births is None:
@@ -56,7 +62,7 @@ def born(task, parent):
     births.born.append(ref(task))
 
 
-def label(task):
+def label(task: Task[object]) -> str:
     """The label of a kernel's task."""
     known = getattr(task.local, "label", None)
     if known is not None:

@@ -10,17 +10,28 @@ import gc
 from fnmatch import fnmatchcase
 
 from .. import kernel
-from ..cpl import past_plans
-from ..cpl.fluents import ValueFluent
-from ..cpl.tree import flatten_task_tree
+from cramhy_runtime.cpl.tree import finished_plans
+from cramhy_runtime.cpl.fluents.fluents import ValueFluent
+from cramhy_runtime.cpl.tree.task_tree import flatten_task_tree
 from .labels import label, plain_name
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from cramhy_runtime.cpl.tasks.tasks import AbstractTask
+    from cramhy_runtime.cpl.tree.task_tree import TaskTreeNode
+    from .watched import WatchedKernel
 
 
-def leftovers(watched):
+def leftovers(watched: WatchedKernel) -> list[str]:
     """What is left on a kernel of `virtual_time`, as texts; an empty list when nothing is."""
-    past_plans.forget()  # the task tree of the last plan is kept on purpose, for whoever asks for its episode
-    found = [f"task {label(task)} is alive ({task.state}, waits for {task.describe_why() or 'nothing'})"
-             for task in watched.tasks if task is not watched.main and (task.carrier is not None or not task.cancelled)]
+    finished_plans.forget()  # the task tree of the last plan is kept on purpose, for whoever asks for its episode
+    found = [
+        f"task {label(task)} is alive ({task.state}, waits for {task.describe_why() or 'nothing'})"
+        for task in watched.tasks
+        if task is not watched.main and (task.carrier is not None or not task.cancelled)
+    ]
     alive = len(found)
     if len(watched.tasks) > 1 + alive:
         watched.settle()  # those that were ended before their first step are only waiting to be forgotten
@@ -39,7 +50,7 @@ def leftovers(watched):
     return found + _observed(watched)
 
 
-def _observed(watched):
+def _observed(watched: WatchedKernel) -> list[str]:
     """What is wrong with the fluents that somebody still holds."""
     found = []
     for fluent in watched.living_fluents():
@@ -54,7 +65,7 @@ def _observed(watched):
     return found
 
 
-def assert_nothing_left(watched=None, allowed=()):
+def assert_nothing_left(watched: WatchedKernel | None = None, allowed: Iterable[str] = ()) -> None:
     """No task but the main one, no timer, no thread, no waiter, callback or net on a fluent made since `watch_fluents`.
 
     ``allowed``: patterns of texts that may be left.
@@ -62,20 +73,20 @@ def assert_nothing_left(watched=None, allowed=()):
     complain([text for text in leftovers(watched or kernel.active()) if not any(fnmatchcase(text, pattern) for pattern in allowed)])
 
 
-def complain(found):
+def complain(found: Sequence[str]) -> None:
     """The AssertionError of what is left, if anything is."""
     if found:
         raise AssertionError("Something is left:\n" + "\n".join(f"  {text}" for text in found))
 
 
-def assert_all_dead(tree_or_tasks):
+def assert_all_dead(tree_or_tasks: TaskTreeNode | Sequence[AbstractTask[object]]) -> None:
     """All tasks of a task tree, or of a list, are dead."""
     alive = [task for _, task in _tasks(tree_or_tasks) if task.alive]
     if alive:
         raise AssertionError("Alive: " + ", ".join(f"{plain_name_of(task)} {task.status.name.lower()}" for task in alive))
 
 
-def assert_tree(tree, expected):
+def assert_tree(tree: TaskTreeNode, expected: Mapping[str, str]) -> None:
     """The tasks of a task tree have the statuses that ``expected`` says: {pattern of a path: status}.
 
     A path is written from the top, ``"drive-home/tagged-grasp"``, its parts in lower case; a pattern may use ``*``. Every pattern
@@ -93,22 +104,22 @@ def assert_tree(tree, expected):
         raise AssertionError("; ".join(wrong) + ".\nThe tree:\n" + tree_text)
 
 
-def _tasks(tree_or_tasks):
+def _tasks(tree_or_tasks: TaskTreeNode | Sequence[AbstractTask[object]]) -> list[tuple[str, AbstractTask[object]]]:
     if isinstance(tree_or_tasks, list | tuple):
         return [(plain_name_of(task), task) for task in tree_or_tasks]
     nodes = [node for node in flatten_task_tree(tree_or_tasks) or () if node.code is not None and node.code.task is not None]
     return [(written(node.path), node.code.task) for node in reversed(nodes)]
 
 
-def written(path):
+def written(path: Iterable[Any] | None) -> str:
     """A path of the task tree as text, from the top: ``drive-home/tagged-grasp``."""
     return "/".join("-".join(_word(word) for word in part) for part in reversed(list(path or ())))
 
 
-def _word(word):
+def _word(word: object) -> str:
     return str(getattr(word, "name", word)).lower()
 
 
-def plain_name_of(task):
+def plain_name_of(task: AbstractTask[object]) -> str:
     """The name of a plan's task without brackets and number."""
     return label(task.kernel_task) if task.kernel_task is not None else plain_name(task)

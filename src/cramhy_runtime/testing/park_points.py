@@ -11,19 +11,20 @@ start.
 from __future__ import annotations
 
 import os
+from types import CodeType, FrameType
 
 NAMES = {
-    "cpl/waiting.py:_wait": "wait-for",
-    "cpl/waiting.py:sleep_star": "sleep",
-    "cpl/watching.py:watch": "with-parallel-childs",
-    "cpl/branches.py:Branches.wait": "branches",
-    "cpl/tasks.py:end_tasks": "cleanup",
-    "cpl/tasks.py:AbstractTask.join": "end",
-    "cpl/tasks.py:_evaporate": "evaporation",
-    "cpl/tasks.py:AbstractTask.suspend": "suspension",
-    "cpl/suspension.py:task_suspended": "suspension",
-    "cpl/tasks.py:AbstractTask.wake_up": "wake-up",
-    "cpl/pausing.py:_be_suspended": "suspended",
+    "cpl/tasks/waiting.py:_wait": "wait-for",
+    "cpl/tasks/waiting.py:sleep_star": "sleep",
+    "cpl/tasks/parallel_children.py:watch": "with-parallel-childs",
+    "cpl/tasks/branches.py:Branches.wait": "branches",
+    "cpl/tasks/tasks.py:end_tasks": "cleanup",
+    "cpl/tasks/tasks.py:AbstractTask.join": "end",
+    "cpl/tasks/tasks.py:_evaporate": "evaporation",
+    "cpl/tasks/tasks.py:AbstractTask.suspend": "suspension",
+    "cpl/tasks/suspension.py:task_suspended": "suspension",
+    "cpl/tasks/tasks.py:AbstractTask.wake_up": "wake-up",
+    "cpl/tasks/pausing.py:_be_suspended": "suspended",
     "kernel/scheduler.py:Kernel.sleep": "sleep",
     "kernel/tasks.py:Task.join": "end",
     "process_modules/modules.py:ProcessModule._await_request": "request",
@@ -32,13 +33,14 @@ NAMES = {
 }
 """The functions that wait, by file and name, and what their waiting is called."""
 
-ORDER = "cpl/tasks.py:AbstractTask._await_constraints"  # waits by wait-for, for the steps before in a partial order
+ORDER = "cpl/tasks/tasks.py:AbstractTask._await_constraints"  # waits by wait-for, for the steps before in a partial order
 OTHER = "park"
 _FARTHEST = 8  # frames between a function that waits and the kernel
-_known = {}  # what each code object is
+_RUNTIME = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
+_known: dict[CodeType, str] = {}  # what each code object is
 
 
-def name_of_wait(frame):
+def name_of_wait(frame: FrameType | None) -> str:
     """What the innermost function of `NAMES` from FRAME outwards is called; ``park`` if none of them is near."""
     for _ in range(_FARTHEST):
         if frame is None:
@@ -50,15 +52,16 @@ def name_of_wait(frame):
     return OTHER
 
 
-def _of(code):
+def _of(code: CodeType) -> str:
     """A code object's file and name, as in `NAMES`."""
     known = _known.get(code)
     if known is None:
-        known = _known[code] = "/".join(code.co_filename.split(os.sep)[-2:]) + ":" + code.co_qualname
+        path = code.co_filename.removeprefix(_RUNTIME).replace(os.sep, "/")
+        known = _known[code] = f"{path}:{code.co_qualname}"
     return known
 
 
-def _called_by(frame, name):
+def _called_by(frame: FrameType, name: str) -> bool:
     for _ in range(_FARTHEST):
         frame = frame.f_back
         if frame is None or _of(frame.f_code) == name:
@@ -72,10 +75,10 @@ class ParkPoint:
 
     __slots__ = ("task", "name", "number", "nth", "time")
 
-    def __init__(self, task, name, number, nth, time):
+    def __init__(self, task: str, name: str, number: int, nth: int, time: float):
         self.task, self.name, self.number, self.nth, self.time = task, name, number, nth, time
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.task}, point {self.number} ({self.name} {self.nth}), at {self.time:g} s"
 
     __repr__ = __str__

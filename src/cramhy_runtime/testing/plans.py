@@ -8,14 +8,23 @@ TESTING-USER, which has the plan language and ``mark``, unless the text begins w
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp.data import Cons, lisp_list
-from ..lisp.packages import find_package_or_error, sym
+from cramhy_runtime.ground.data import Cons, lisp_list
+from cramhy_runtime.ground.packages import find_package_or_error, sym
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
-_compiled = {}
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T", default=Any)
+if TYPE_CHECKING:
+    Plan = Callable[[], T] | str | Cons  # a function, a text of Lisp or a form
+
+_compiled: dict[str, Callable[[], Any]] = per_image({})
 _AT_ONCE = (sym("IN-PACKAGE"), sym("DEFPACKAGE"))
 
 
-def plan_of(plan):
+def plan_of(plan: Plan[T]) -> Callable[[], T]:
     """The function of no arguments that runs ``plan``."""
     if callable(plan):
         return plan
@@ -29,22 +38,24 @@ def plan_of(plan):
     raise TypeError(f"A plan is a function, a text of Lisp or a Lisp form, not {plan!r}.")
 
 
-def with_lisp(thunk):
+def with_lisp(thunk: Callable[[], T]) -> T:
     """Call ``thunk`` with the Lisp image made, in a kernel of its own, in the package TESTING-USER."""
-    from .. import image
-    from ..lisp.dynamic import binding
-    from ..lisp.evaluation.evaluator import PACKAGE
+    from .. import session
+    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE
+    from . import package
 
     with kernel.aside():
         kernel.start()
-        image.boot()
+        session.boot()
+        package.define_faces()
         with binding(PACKAGE, find_package_or_error("TESTING-USER")):
             return thunk()
 
 
-def _compile_text(text):
-    from ..lisp.evaluation.evaluator import evaluate
-    from ..lisp.reader.reader import Reader
+def _compile_text(text: str) -> Callable[[], Any]:
+    from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
+    from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
     reader = Reader(text, filename="<plan>")
     end, form = object(), None
@@ -64,7 +75,7 @@ def _compile_text(text):
 
 
 def _function_of(form, reader=None):
-    from ..lisp.evaluation.evaluator import evaluate
+    from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 
     function = lisp_list(sym("LAMBDA"), None, form)
     place = (reader.filename, reader.positions) if reader else ()

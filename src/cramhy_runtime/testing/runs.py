@@ -9,25 +9,45 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from .. import kernel
-from ..cpl.failure_types import CommonLispErrorEnvelope, CompositeFailure, opened
-from ..lisp.data import Cons, all_values
-from ..lisp.equality import equalp
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, TypeVar, subscripted
+from cramhy_runtime.cpl.failures.failure_types import CommonLispErrorEnvelope, CompositeFailure, opened
+from cramhy_runtime.ground.data import Cons, all_values
+from cramhy_runtime.ground.equality import equalp
 from .leftovers import complain, leftovers
 from .plans import plan_of
 from .schedules import Schedule
 from .watched import WatchedKernel
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from types import TracebackType
+
+    from cramhy_runtime.kernel.signatures import Backend, BackendName
+    from .faults import Fault
+    from .park_points import ParkPoint
+    from .plans import Plan
+    from .traces import Trace
+
+T = TypeVar("T", default=Any)
 TIME_LIMIT = 3600.0  # s of virtual time after which a plan has lost its end
 
 
 @contextmanager
-def virtual_time(backend="threads", seed=None, *, schedule=None, faults=(), time_limit=TIME_LIMIT):
+def virtual_time(
+    backend: BackendName | Backend = "threads",
+    seed: int | None = None,
+    *,
+    schedule: Sequence[int] | Schedule | None = None,
+    faults: Sequence[Fault] = (),
+    time_limit: float | None = TIME_LIMIT,
+) -> Iterator[WatchedKernel]:
     """A block with a kernel of its own, in virtual time: ``with virtual_time() as clock: ...; clock.now()``.
 
     ``backend``: ``"threads"`` or ``"greenlet"``. ``seed``: a number that shuffles which of the runnable tasks goes on, as
     ``--seed`` does; ``schedule``: a list of choices, or a `Schedule`, instead. ``faults``: see `faults.at`. ``time_limit``: in
     seconds of virtual time. Gives the kernel. Tasks that are left when the block ends are ended.
     """
+    chooser: int | Schedule | None
     if schedule is None:
         chooser = seed
     elif seed is not None:
@@ -41,37 +61,43 @@ def virtual_time(backend="threads", seed=None, *, schedule=None, faults=(), time
         yield watched
 
 
-def _same_random_numbers():
-    from ..lisp.numbers.random_state import seed_random
+def _same_random_numbers() -> None:
+    from cramhy_runtime.languages.commonlisp.numbers.random_state import seed_random
 
     seed_random()
 
 
-class Outcome:
+class Outcome(Generic[T]):
     """What came of a run: ``values`` (a list) or the ``error`` that left the plan; ``trace``, ``points``, ``time`` (s);
     ``left``: what it left behind, as `assert_nothing_left` sees it; ``stack``: where the error came through."""
 
-    def __init__(self, values, error, watched):
+    __class_getitem__ = subscripted
+
+    def __init__(self, values: Sequence[Any] | None, error: BaseException | None, watched: WatchedKernel):
         self.values, self.error = values, error
-        self.left, self.stack = [], ()
-        self.trace, self.points, self.time = watched.trace, watched.points, watched.now()
+        self.left: list[str] = []
+        self.stack: Sequence[str] = ()
+        self.trace: Trace = watched.trace
+        self.points: list[ParkPoint] = watched.points
+        self.time = watched.now()
 
     @property
-    def value(self):
+    def value(self) -> T:
         """The first value; the error is raised if there was one."""
         if self.error is not None:
             raise self.error
-        return self.values[0] if self.values else None
+        return self.values[0] if self.values else None  # type: ignore[return-value]  # no values are nil
 
-    def same(self, other):
+    def same(self, other: Outcome[object]) -> bool:
         """True if both ended alike: equal values (``equalp``), or errors of one type with one text."""
         if (self.error is None) != (other.error is None):
             return False
         if self.error is not None:
             return str(self) == str(other)
-        return len(self.values) == len(other.values) and all(map(_equal, self.values, other.values))
+        mine, others = self.values or (), other.values or ()
+        return len(mine) == len(others) and all(map(_equal, mine, others))
 
-    def __str__(self):
+    def __str__(self) -> str:
         if self.error is not None:
             return describe(self.error)
         return ", ".join(map(shown, self.values)) if self.values else "no values"
@@ -79,7 +105,7 @@ class Outcome:
     __repr__ = __str__
 
 
-def describe(error):
+def describe(error: BaseException) -> str:
     """An error as text, those in a composite failure and in an envelope too."""
     error = opened(error) if isinstance(error, CommonLispErrorEnvelope) else error
     if isinstance(error, CompositeFailure):
@@ -88,21 +114,29 @@ def describe(error):
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
-def _equal(one, other):
+def _equal(one: object, other: object) -> bool:
     try:
         return bool(one == other or equalp(one, other) or shown(one) == shown(other))
     except Exception:
         return shown(one) == shown(other)
 
 
-def shown(value):
+def shown(value: object) -> str:
     """A value as Lisp prints it."""
-    from ..lisp.printer.printer import prin1_to_string
+    from cramhy_runtime.ground.printing import prin1_to_string
 
     return prin1_to_string(value)
 
 
-def run(plan, *, backend="threads", seed=None, schedule=None, faults=(), time_limit=TIME_LIMIT):
+def run(
+    plan: Plan[T],
+    *,
+    backend: BackendName | Backend = "threads",
+    seed: int | None = None,
+    schedule: Sequence[int] | Schedule | None = None,
+    faults: Sequence[Fault] = (),
+    time_limit: float | None = TIME_LIMIT,
+) -> Outcome[T]:
     """Run ``plan`` once in a fresh kernel and return its `Outcome`; nothing is raised that the plan raises.
 
     The arguments are those of `virtual_time`. A fault that did not happen is an AssertionError, since a test of it would test
@@ -117,12 +151,13 @@ def run(plan, *, backend="threads", seed=None, schedule=None, faults=(), time_li
     return outcome
 
 
-def observe(function, *arguments, **options):
+def observe(function: Callable[[], T], *arguments: Any, **options: Any) -> Outcome[T]:
     """The `Outcome` of ``function()`` in a `virtual_time` with the given arguments; ``left`` says what it left behind."""
     with virtual_time(*arguments, **options) as watched:
         watched.watch_fluents()
-        values = error = None
-        stack = ()
+        values: Sequence[Any] | None = None
+        error: BaseException | None = None
+        stack: Sequence[str] = ()
         try:
             values = all_values(function())
         except (KeyboardInterrupt, SystemExit):
@@ -131,7 +166,7 @@ def observe(function, *arguments, **options):
             error = problem
             stack = _places(error.__traceback__)
             _let_go_of_stacks(error, set())
-        outcome = Outcome(values, error, watched)
+        outcome: Outcome[T] = Outcome(values, error, watched)
         outcome.stack = stack
         for fault in watched.faults:
             fault.over()
@@ -139,7 +174,7 @@ def observe(function, *arguments, **options):
     return outcome
 
 
-def _let_go_of_stacks(error, known):
+def _let_go_of_stacks(error: object, known: set[int]) -> None:
     """Take from an error, and those it is made of, the stacks that they came through, which are not what the plan has left behind."""
     if isinstance(error, list | tuple | Cons):
         for other in error:
@@ -151,7 +186,7 @@ def _let_go_of_stacks(error, known):
             _let_go_of_stacks(other, known)
 
 
-def _places(stack):
+def _places(stack: TracebackType | None) -> list[str]:
     """The functions and lines of a traceback, the innermost last."""
     places = []
     while stack is not None:

@@ -9,7 +9,14 @@ so ``[]`` is the ordinary run, and ``[0, 1]`` is one in which the second decisio
 from __future__ import annotations
 
 from ..kernel.scheduler import lots
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from .labels import label
+
+if TYPE_CHECKING:
+    from collections import deque
+    from collections.abc import Iterable, Sequence
+
+    from ..kernel import Kernel, Task
 
 
 class Decision:
@@ -17,7 +24,7 @@ class Decision:
 
     __slots__ = ("time", "candidates", "choice")
 
-    def __init__(self, time, candidates, choice):
+    def __init__(self, time: float, candidates: list[str], choice: int):
         self.time, self.candidates, self.choice = time, candidates, choice
 
 
@@ -27,24 +34,25 @@ class Schedule:
     Afterwards ``choices`` are the decisions made. ``noting``: keep them with their candidates in ``decisions`` as well.
     """
 
-    def __init__(self, prefix=(), seed=None, noting=False):
+    def __init__(self, prefix: Iterable[int] = (), seed: int | None = None, noting: bool = False):
         self.prefix = list(prefix)
         self.lots = None if seed is None else lots(seed)
         self.noting = noting
-        self.choices = []
-        self.decisions = []
-        self.misfit = None  # the number of a decision that the prefix does not fit
-        self.kernel = None
+        self.choices: list[int] = []
+        self.decisions: list[Decision] = []
+        self.misfit: int | None = None  # the number of a decision that the prefix does not fit
+        self.kernel: Kernel  # from `watch` on
 
-    def watch(self, kernel):
+    def watch(self, kernel: Kernel) -> None:
         """It decides for KERNEL."""
         self.kernel = kernel
 
-    def __call__(self, queue):
+    def __call__(self, queue: deque[Task[object]]) -> int:
         drawn = None if self.lots is None else self.lots(queue)
         if len(queue) == 1:
             return 0
-        eligible, newborn = [], None
+        eligible: list[int] = []
+        newborn = None
         for index, task in enumerate(queue):
             if task.carrier is not None:
                 eligible.append(index)
@@ -69,7 +77,7 @@ class Schedule:
         return eligible[choice]
 
 
-def _activity(task):
+def _activity(task: Task[object]) -> str:
     """Who TASK is, and what it goes on with."""
     if task.carrier is None:
         doing = "begins"
@@ -81,7 +89,7 @@ def _activity(task):
     return f"{label(task)} ({doing})"
 
 
-def without_defaults(choices):
+def without_defaults(choices: Sequence[int]) -> list[int]:
     """The schedule without the zeros at its end, which are what happens anyway."""
     end = len(choices)
     while end and not choices[end - 1]:

@@ -15,8 +15,14 @@ a *partial* order: reach before grasp, whatever else comes between. In Lisp: ``(
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp.data import Symbol
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
 from .labels import label
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from cramhy_runtime.cpl.signatures import Name
 
 
 class Event:
@@ -24,49 +30,49 @@ class Event:
 
     __slots__ = ("name", "time", "task", "number", "value")
 
-    def __init__(self, name, time, task, number, value):
+    def __init__(self, name: str, time: float, task: str, number: int, value: Any):
         self.name, self.time, self.task, self.number, self.value = name, time, task, number, value
 
-    def __str__(self):
+    def __str__(self) -> str:
         value = "" if self.value is None else f" {self.value}"
         return f"{self.time:8.3f} s  {self.name}{value}  ({self.task})"
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<mark {self.name} at {self.time:g} s>"
 
 
 class Trace:
     """The marks of one run, in the order in which they were left."""
 
-    def __init__(self):
-        self.events = []
+    def __init__(self) -> None:
+        self.events: list[Event] = []
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Event]:
         return iter(self.events)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.events)
 
     @property
-    def names(self):
+    def names(self) -> list[str]:
         """The names, in order."""
         return [event.name for event in self.events]
 
-    def named(self, name):
+    def named(self, name: Name) -> list[Event]:
         """The events of one name, which may be a string or a Lisp symbol."""
         name = spelled(name)
         return [event for event in self.events if event.name == name]
 
-    def __str__(self):
+    def __str__(self) -> str:
         return "\n".join(map(str, self.events)) or "(no marks)"
 
 
-def spelled(name):
+def spelled(name: Name) -> str:
     """A mark's name as a test writes it: Lisp symbols and keywords in lower case."""
     return name.name.lower() if isinstance(name, Symbol) else str(name)
 
 
-def mark(name, value=None):
+def mark(name: Name, value: object = None) -> None:
     """Leave a mark in the trace of the test that runs; without one nothing happens. Returns nil, so that plans are as before."""
     active = kernel.active()
     trace = getattr(active, "trace", None)
@@ -74,7 +80,7 @@ def mark(name, value=None):
         trace.events.append(Event(spelled(name), active.now(), label(active.current), len(trace), value))
 
 
-def assert_order(trace, *chains):
+def assert_order(trace: Trace, *chains: Sequence[Name]) -> None:
     """In each chain of names every event of a name comes before all events of the next name. Each name must occur."""
     for chain in chains:
         groups = [_some(trace, name) for name in chain]
@@ -84,31 +90,35 @@ def assert_order(trace, *chains):
                 _fail(trace, f"{first.name} came before {last.name}: it should be {' < '.join(map(spelled, chain))}.", (last, first))
 
 
-def assert_before(trace, before, after):
+def assert_before(trace: Trace, before: Name, after: Name) -> None:
     """Every event ``before`` comes before every event ``after``."""
     assert_order(trace, (before, after))
 
 
-def assert_after(trace, after, before):
+def assert_after(trace: Trace, after: Name, before: Name) -> None:
     """Every event ``after`` comes after every event ``before``."""
     assert_order(trace, (before, after))
 
 
-def assert_concurrent(trace, *names):
+def assert_concurrent(trace: Trace, *names: Name) -> None:
     """The names overlap in time, each pair of them: from its first to its last mark each spans a time, and the spans meet.
 
     Mark the beginning and the end of a step with one name. One mark is a span without length.
     """
     spans = [(name, _some(trace, name)) for name in names]
     for index, (_, one) in enumerate(spans):
-        for _, other in spans[index + 1:]:
+        for _, other in spans[index + 1 :]:
             if one[-1].time < other[0].time or other[-1].time < one[0].time:
                 first, second = sorted((one, other), key=lambda events: events[0].time)
-                _fail(trace, f"{first[0].name} was over at {first[-1].time:g} s, before {second[0].name} began at "
-                             f"{second[0].time:g} s: they should overlap.", (first[-1], second[0]))
+                _fail(
+                    trace,
+                    f"{first[0].name} was over at {first[-1].time:g} s, before {second[0].name} began at "
+                    f"{second[0].time:g} s: they should overlap.",
+                    (first[-1], second[0]),
+                )
 
 
-def assert_never(trace, *names):
+def assert_never(trace: Trace, *names: Name) -> None:
     """None of the names was marked."""
     for name in names:
         events = trace.named(name)
@@ -116,14 +126,14 @@ def assert_never(trace, *names):
             _fail(trace, f"{spelled(name)} happened, which it should not.", events)
 
 
-def assert_times(trace, name, times):
+def assert_times(trace: Trace, name: Name, times: int) -> None:
     """``name`` was marked so many times."""
     events = trace.named(name)
     if len(events) != times:
         _fail(trace, f"{spelled(name)} happened {len(events)} times, not {times}.", events)
 
 
-def _some(trace, name):
+def _some(trace: Trace, name: Name) -> list[Event]:
     events = trace.named(name)
     if not events:
         known = ", ".join(dict.fromkeys(trace.names)) or "none"
@@ -131,6 +141,6 @@ def _some(trace, name):
     return events
 
 
-def _fail(trace, text, pointed):
+def _fail(trace: Trace, text: str, pointed: Sequence[Event]) -> NoReturn:
     lines = [("> " if event in pointed else "  ") + str(event) for event in trace]
     raise AssertionError("\n".join([text, *(lines or ["  (no marks)"])]))

@@ -16,6 +16,19 @@ from ..kernel.backends.threads import threads_in_use
 from .labels import born, label
 from .park_points import ParkPoint, name_of_wait
 from .traces import Trace
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, TypeVar, TypeVarTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+    from cramhy_runtime.cpl import Fluent
+    from cramhy_runtime.kernel import Task
+    from cramhy_runtime.kernel.signatures import Backend, BackendName, Clock, ClockName, Name, Seed, Why
+    from .faults import Fault
+
+T = TypeVar("T")
+Arguments = TypeVarTuple("Arguments")
 
 HOOK = "cramhy-testing"
 
@@ -23,36 +36,44 @@ HOOK = "cramhy-testing"
 class WatchedKernel(Kernel):
     """A kernel that is looked at. ``points``: the park points of tasks of plans so far; ``faults``: what shall happen at them."""
 
-    def __init__(self, clock="virtual", backend="threads", seed=None, time_limit=None):
+    def __init__(
+        self,
+        clock: ClockName | Clock = "virtual",
+        backend: BackendName | Backend = "threads",
+        seed: Seed | None = None,
+        time_limit: float | None = None,
+    ):
         super().__init__(clock, backend, seed, time_limit)
-        self.points = []
-        self.faults = []
+        self.points: list[ParkPoint] = []
+        self.faults: list[Fault] = []
         self.trace = Trace()
-        self.fluents = []  # weak references
+        self.fluents: list[ref[Fluent[object]]] = []  # weak references
         self.threads_before = threads_in_use()
         if hasattr(seed, "watch"):
             seed.watch(self)
 
     # ------------------------------------------------------------------------------------------------------- tasks and points
 
-    def spawn(self, fn, *args, name=None, parent=None):
+    def spawn(
+        self, fn: Callable[[*Arguments], T], *args: *Arguments, name: Name | None = None, parent: Task[object] | None = None
+    ) -> Task[T]:
         task = super().spawn(fn, *args, name=name, parent=parent)
         born(task, task.parent)
         return task
 
-    def _bury(self, task):
+    def _bury(self, task: Task[object]) -> None:
         label(task)
         super()._bury(task)
 
-    def park(self, why="", until=None):
+    def park(self, why: Why = "", until: float | None = None) -> bool:
         self._at_park_point(sys._getframe(1))
         return super().park(why, until)
 
-    def yield_(self):
+    def yield_(self) -> None:
         self._at_park_point(sys._getframe(1))
         super().yield_()
 
-    def _at_park_point(self, frame):
+    def _at_park_point(self, frame: FrameType) -> None:
         me = self.current
         if me.owner is None:
             return
@@ -71,25 +92,25 @@ class WatchedKernel(Kernel):
 
     # ----------------------------------------------------------------------------------------------------------- what is left
 
-    def watch_fluents(self):
+    def watch_fluents(self) -> None:
         """Note the fluents that are made from now on, until the kernel stops."""
         on_make_fluent_hook.add(lambda fluent, *_: self.fluents.append(ref(fluent)), HOOK)
 
-    def stop(self):
+    def stop(self) -> None:
         try:
             super().stop()
         finally:
             on_make_fluent_hook.remove(HOOK)
 
-    def living_fluents(self):
+    def living_fluents(self) -> list[Fluent[object]]:
         """The fluents made since `watch_fluents` that somebody still holds."""
         return [fluent for fluent in (reference() for reference in self.fluents) if fluent is not None]
 
-    def next_timer(self):
+    def next_timer(self) -> float | None:
         """The time of the next timer or deadline that counts, or None. Those that do not count are swept out."""
         self._timers.sweep()
         return self._timers.next_time()
 
-    def threads_kept(self):
+    def threads_kept(self) -> int:
         """How many more threads are in use than when this kernel was made; those of living tasks count."""
         return threads_in_use() - self.threads_before

@@ -1,7 +1,7 @@
 """Frames and how they lie to each other: stamped poses and transforms, tf's buffer, listeners and broadcasters.
 
 The packages CL-TRANSFORMS-STAMPED, CL-TF and CL-TF2 of roslisp_common, made when somebody names one of them
-(`package.define_faces`). Source: reference page ``cl-transforms.md``, sections 5 to 8.
+(``languages/commonlisp/faces/tf/package.py``). Source: reference page ``cl-transforms.md``, sections 5 to 8.
 
 Where the parts are:
 
@@ -10,5 +10,4 @@ Where the parts are:
 * `buffer`           the transforms of the last ten seconds and the way through them: plain Python, knows nothing of ROS
 * `transformer`      the buffer for Lisp, with waiting; the listener that fills it from ``/tf`` and ``/tf_static``
 * `broadcasting`     sending transforms; `buffer_client` asking a tf2 buffer server
-* `package`          the Lisp packages and how their objects print
 """

@@ -7,10 +7,10 @@ the same one field, and who listens to one hears the other. What is republished 
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp.conditions import type_error
-from ..lisp.data import Cons, list_from, truth
-from ..lisp.numbers.arithmetic import is_real
-from ..lisp.objects.generic_errors import no_applicable_method
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import Cons, list_from, truth
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.ground.generic_errors import no_applicable_method
 from ..ros import graph
 from ..ros.messages import message_class_exact
 from ..ros.roslisp import topics
@@ -95,8 +95,13 @@ def send_static_transforms_blocking(broadcaster, interval, *transforms):
     publication = _checked(broadcaster, "SEND-STATIC-TRANSFORMS-BLOCKING", interval, transforms)
     while publication.node.alive:
         ahead = ros_time() + AHEAD
-        send_transforms(publication, *(TransformStamped(transform.frame_id, transform.child_frame_id, ahead, transform.translation,
-                                                        transform.rotation) for transform in transforms))
+        send_transforms(
+            publication,
+            *(
+                TransformStamped(transform.frame_id, transform.child_frame_id, ahead, transform.translation, transform.rotation)
+                for transform in transforms
+            ),
+        )
         kernel.sleep(float(interval))
 
 
@@ -106,8 +111,7 @@ def send_static_transforms(broadcaster, interval, new_thread, *transforms):
         return send_static_transforms_blocking(broadcaster, interval, *transforms)
     _checked(broadcaster, "SEND-STATIC-TRANSFORMS", interval, transforms)
     owner = graph.active().kernel
-    owner.spawn(lambda: send_static_transforms_blocking(broadcaster, interval, *transforms), name="static transforms",
-                parent=owner.main)
+    owner.spawn(lambda: send_static_transforms_blocking(broadcaster, interval, *transforms), name="static transforms", parent=owner.main)
     return None
 
 

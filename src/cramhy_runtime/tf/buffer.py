@@ -18,12 +18,17 @@ from __future__ import annotations
 from bisect import bisect_right
 from math import floor, isfinite
 
-from ..lisp.data import DoubleFloat
-from ..lisp.numbers.arithmetic import is_real
+from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.numbers import is_real
 from ..transforms.quaternions import general, inverse, multiply, quaternion, rotated, slerp
 from ..transforms.vectors import interpolate_vector, point, vector
 from .frames import unslash_frame
 from .stamped import TransformStamped
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 
 SECONDS = 10
 """How many buckets a link has, and how far back it knows."""
@@ -32,7 +37,7 @@ SECONDS = 10
 class Unavailable(Exception):
     """A transform that the buffer cannot give. ``kind``: lookup, connectivity, extrapolation or empty; ``hint``: what to try."""
 
-    def __init__(self, kind, text, hint=None):
+    def __init__(self, kind: str, text: str, hint: str | None = None):
         super().__init__(text)
         self.kind, self.text, self.hint = kind, text, hint
 
@@ -42,7 +47,7 @@ class Bucket:
 
     __slots__ = ("second", "stamps", "transforms")
 
-    def __init__(self, second):
+    def __init__(self, second: int):
         self.second, self.stamps, self.transforms = second, [], []
 
 
@@ -51,15 +56,15 @@ class Link:
 
     __slots__ = ("child", "newest", "buckets")
 
-    def __init__(self, child):
+    def __init__(self, child: str):
         self.child, self.newest = child, None
         self.buckets = [None] * SECONDS
 
     @property
-    def parent(self):
+    def parent(self) -> str:
         return self.newest.frame_id
 
-    def store(self, transform):
+    def store(self, transform: TransformStamped) -> bool:
         """Keep ``transform``; false when its second has newer ones, or is forgotten, for what comes late is ignored."""
         if self.newest is not None and transform.frame_id != self.parent:
             if transform.stamp < self.newest.stamp:
@@ -81,7 +86,7 @@ class Link:
             self.newest = transform
         return True
 
-    def at(self, time):
+    def at(self, time: float | None) -> TransformStamped:
         """The transform at ``time``, as it was stored or interpolated; without a time the newest."""
         if not time:
             return self.newest
@@ -114,26 +119,30 @@ class Link:
         return f"What is known of the transform {way} is from {min(stamps)} to {max(stamps)} s. Without a time the newest is taken."
 
 
-def _between(before, after, time):
+def _between(before: TransformStamped, after: TransformStamped, time: float) -> TransformStamped:
     share = DoubleFloat((time - before.stamp) / (after.stamp - before.stamp))
-    return TransformStamped(before.frame_id, before.child_frame_id, DoubleFloat(time),
-                            interpolate_vector(vector(point(before.translation)), vector(point(after.translation)), share),
-                            slerp(quaternion(general(before.rotation)), quaternion(general(after.rotation)), share))
+    return TransformStamped(
+        before.frame_id,
+        before.child_frame_id,
+        DoubleFloat(time),
+        interpolate_vector(vector(point(before.translation)), vector(point(after.translation)), share),
+        slerp(quaternion(general(before.rotation)), quaternion(general(after.rotation)), share),
+    )
 
 
 class FrameBuffer:
     """All links, by their child frames. Names of frames are kept without slashes."""
 
-    def __init__(self):
-        self.links = {}
-        self.roots = {}  # frame without a parent -> None: a frame that has been named as a parent is known
+    def __init__(self) -> None:
+        self.links: dict[str, Link] = {}
+        self.roots: dict[str, None] = {}  # frame without a parent -> None: a frame that has been named as a parent is known
 
     @property
-    def frames(self):
+    def frames(self) -> list[str]:
         """The names of all frames, sorted."""
         return sorted({*self.links, *self.roots})
 
-    def store(self, transform):
+    def store(self, transform: TransformStamped) -> bool:
         """Keep the transform-stamped; false if it came too late. What is no transform between two frames is a `ValueError`."""
         parent, child = unslash_frame(transform.frame_id), unslash_frame(transform.child_frame_id)
         if not parent or not child:
@@ -155,7 +164,7 @@ class FrameBuffer:
         self.roots[parent] = None
         return True
 
-    def lookup(self, target, source, time=None):
+    def lookup(self, target: str, source: str, time: float | None = None) -> TransformStamped:
         """The transform that takes coordinates in ``source`` into those in ``target`` at ``time`` (seconds; ``None`` or 0: the newest).
 
         Both frames must be known, and different. Errors: `Unavailable`, and `ValueError` for a time that is none.
@@ -181,7 +190,7 @@ class FrameBuffer:
                 translation, rotation = (bx, by, bz), back
         return TransformStamped(unslash_frame(target), unslash_frame(source), stamp, vector(translation), quaternion(rotation))
 
-    def _ways(self, target, source):
+    def _ways(self, target: str, source: str) -> tuple[list[Link], list[Link]]:
         """The links from ``source`` and from ``target`` up to the first frame that both hang on."""
         for frame in (source, target):
             if frame not in self.links and frame not in self.roots:
@@ -190,28 +199,34 @@ class FrameBuffer:
         above = {source: 0, **{link.parent: count for count, link in enumerate(from_source, 1)}}
         for count, frame in enumerate((target, *(link.parent for link in from_target))):
             if frame in above:
-                return from_source[:above[frame]], from_target[:count]
-        raise Unavailable("connectivity", f"The frames {source}\nand {target} are not connected in the reference frame tree",
-                          f"{source} hangs on {from_source[-1].parent if from_source else 'nothing'}, "
-                          f"{target} on {from_target[-1].parent if from_target else 'nothing'}.")
+                return from_source[: above[frame]], from_target[:count]
+        raise Unavailable(
+            "connectivity",
+            f"The frames {source}\nand {target} are not connected in the reference frame tree",
+            f"{source} hangs on {from_source[-1].parent if from_source else 'nothing'}, "
+            f"{target} on {from_target[-1].parent if from_target else 'nothing'}.",
+        )
 
-    def _to_the_root(self, frame):
+    def _to_the_root(self, frame: str) -> list[Link]:
         links, seen = [], {frame}
         while (link := self.links.get(frame)) is not None:
             frame = link.parent
             links.append(link)
             if frame in seen:
-                raise Unavailable("connectivity", f"The frame {frame} hangs on itself in the reference frame tree",
-                                  "Somebody publishes transforms in a circle: " + " -> ".join([link.child for link in links] + [frame]))
+                raise Unavailable(
+                    "connectivity",
+                    f"The frame {frame} hangs on itself in the reference frame tree",
+                    "Somebody publishes transforms in a circle: " + " -> ".join([link.child for link in links] + [frame]),
+                )
             seen.add(frame)
         return links
 
-    def _frames_told(self):
+    def _frames_told(self) -> str:
         frames = self.frames
         return f"Known frames: {', '.join(frames[:20])}{', …' if len(frames) > 20 else ''}." if frames else "No frame is known yet."
 
 
-def _product(transforms):
+def _product(transforms: Iterable[TransformStamped]) -> tuple[Any, Any]:
     """(translation, rotation) of the product of links on the way up, the first of which is applied first."""
     translation = rotation = None
     for transform in transforms:

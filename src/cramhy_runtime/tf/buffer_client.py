@@ -9,15 +9,22 @@ from __future__ import annotations
 
 from .. import kernel
 from ..actionlib.client import ActionClient
-from ..lisp.data import DoubleFloat
+from cramhy_runtime.ground.data import DoubleFloat
 from ..ros.messages import message_class_exact
 from . import errors
 from .stamped_messages import from_msg
 
 ACTION = "tf2_msgs/LookupTransformAction"
 NO_ERROR, SUCCEEDED = 0, "SUCCEEDED"
-_KINDS = (None, errors.FrameLookupError, errors.ConnectivityError, errors.ExtrapolationError, errors.InvalidArgumentError,
-          errors.TimeoutError_, errors.TransformStampedError)
+_KINDS = (
+    None,
+    errors.FrameLookupError,
+    errors.ConnectivityError,
+    errors.ExtrapolationError,
+    errors.InvalidArgumentError,
+    errors.TimeoutError_,
+    errors.TransformStampedError,
+)
 """The conditions by the codes of ``tf2_msgs/TF2Error``."""
 
 
@@ -31,14 +38,23 @@ class BufferClient:
         self.timeout, self.server = timeout, server
         self.idle = [ActionClient(server, ACTION)]
         if not self.idle[0].wait_for_server(timeout):
-            errors.transform_error(errors.TimeoutError_, "Waiting for action server timed out.",
-                                   f"Nobody serves the action {server} ({ACTION}). A CL-TF:TRANSFORM-LISTENER needs no server.")
+            errors.transform_error(
+                errors.TimeoutError_,
+                "Waiting for action server timed out.",
+                f"Nobody serves the action {server} ({ACTION}). A CL-TF:TRANSFORM-LISTENER needs no server.",
+            )
 
     def lookup(self, target, source, *, time=None, timeout=DoubleFloat(0), target_time=None, fixed_frame=None):
         """The transform as the server knows it after waiting up to ``timeout`` seconds."""
         goal = message_class_exact("tf2_msgs/LookupTransformGoal")(
-            target_frame=target, source_frame=source, source_time=time or 0, timeout=timeout or 0, target_time=target_time or 0,
-            fixed_frame=fixed_frame or "", advanced=True if fixed_frame is not None else None)
+            target_frame=target,
+            source_frame=source,
+            source_time=time or 0,
+            timeout=timeout or 0,
+            target_time=target_time or 0,
+            fixed_frame=fixed_frame or "",
+            advanced=True if fixed_frame is not None else None,
+        )
         client = self.idle.pop() if self.idle else ActionClient(self.server, ACTION)  # each follows one goal at a time
         sent = client.send(goal)
         try:

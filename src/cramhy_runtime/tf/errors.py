@@ -6,9 +6,9 @@ original; one that cannot be read as such, because a frame is called ``a~b``, is
 
 from __future__ import annotations
 
-from ..lisp.condition_types import Condition, Error, formatted
-from ..lisp.conditions import error
-from ..lisp.data import UNBOUND
+from cramhy_runtime.ground.condition_types import Condition, Error, formatted
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import UNBOUND
 
 
 class TransformStampedError(Error):

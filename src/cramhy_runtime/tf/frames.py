@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from ..lisp.conditions import type_error
-from ..lisp.data import LispString
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import LispString
+from cramhy_runtime.kernel.typing_names import Any
 
 
-def unslash_frame(frame):
+def unslash_frame(frame: Any) -> str:
     """``frame``, a string, without slashes and blanks at its ends; NIL stays NIL."""
     if frame is None:
         return None
@@ -15,6 +16,6 @@ def unslash_frame(frame):
     return str(frame).strip("/ ")
 
 
-def resolve_frame(prefix, frame_name):
+def resolve_frame(prefix: str | None, frame_name: str) -> str:
     """``frame_name`` below ``prefix``: ``"pre/map"``; without a prefix (NIL) ``"/map"``."""
     return f"{unslash_frame(prefix) or ''}/{unslash_frame(frame_name)}"

@@ -6,8 +6,8 @@ keeps it. A quaternion message that nobody filled in converts, but makes no pose
 
 from __future__ import annotations
 
-from ..lisp.data import Cons
-from ..lisp.objects.generic_errors import no_applicable_method
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.generic_errors import no_applicable_method
 from ..ros.messages import RosMessage, message_class_exact
 from ..ros.wire import transmit
 from ..transforms.coercion import check_type, instance
@@ -67,19 +67,32 @@ def _pose_msg(pose):
 
 
 def _transform_msg(transform):
-    return _message("geometry_msgs/Transform", translation=_vector_msg(transform.translation),
-                    rotation=_quaternion_msg(transform.rotation))
+    return _message("geometry_msgs/Transform", translation=_vector_msg(transform.translation), rotation=_quaternion_msg(transform.rotation))
 
 
 _TO = (
     (PoseStamped, lambda pose: make_pose_stamped_msg(pose, pose.frame_id, pose.stamp)),
-    (TransformStamped, lambda transform: _message(
-        "geometry_msgs/TransformStamped", header=make_header_msg(transform.stamp, transform.frame_id),
-        child_frame_id=transform.child_frame_id, transform=_transform_msg(transform))),
-    (PointStamped, lambda point: _message("geometry_msgs/PointStamped", header=make_header_msg(point.stamp, point.frame_id),
-                                          point=make_point_msg(point))),
-    (Vector3, _vector_msg), (Quaternion, _quaternion_msg), (Pose, _pose_msg), (Transform, _transform_msg),
-    (Cons, lambda items: [to_msg(item) for item in items]), (type(None), lambda _: []),
+    (
+        TransformStamped,
+        lambda transform: _message(
+            "geometry_msgs/TransformStamped",
+            header=make_header_msg(transform.stamp, transform.frame_id),
+            child_frame_id=transform.child_frame_id,
+            transform=_transform_msg(transform),
+        ),
+    ),
+    (
+        PointStamped,
+        lambda point: _message(
+            "geometry_msgs/PointStamped", header=make_header_msg(point.stamp, point.frame_id), point=make_point_msg(point)
+        ),
+    ),
+    (Vector3, _vector_msg),
+    (Quaternion, _quaternion_msg),
+    (Pose, _pose_msg),
+    (Transform, _transform_msg),
+    (Cons, lambda items: [to_msg(item) for item in items]),
+    (type(None), lambda _: []),
 )
 """Class → the function that makes the message, the special ones first."""
 
@@ -109,11 +122,13 @@ _FROM = {
     "geometry_msgs/Quaternion": _quaternion,
     "geometry_msgs/Pose": lambda msg: Pose(_vector(msg.position), _quaternion(msg.orientation)),
     "geometry_msgs/Transform": lambda msg: unchecked_transform(_vector(msg.translation), _quaternion(msg.rotation)),
-    "geometry_msgs/PoseStamped": lambda msg: PoseStamped(msg.header.frame_id, msg.header.stamp, _vector(msg.pose.position),
-                                                         _quaternion(msg.pose.orientation)),
+    "geometry_msgs/PoseStamped": lambda msg: PoseStamped(
+        msg.header.frame_id, msg.header.stamp, _vector(msg.pose.position), _quaternion(msg.pose.orientation)
+    ),
     "geometry_msgs/PointStamped": lambda msg: PointStamped(msg.header.frame_id, msg.header.stamp, *_vector_numbers(msg.point)),
     "geometry_msgs/TransformStamped": lambda msg: TransformStamped(
-        msg.header.frame_id, msg.child_frame_id, msg.header.stamp, _vector(msg.transform.translation), _quaternion(msg.transform.rotation)),
+        msg.header.frame_id, msg.child_frame_id, msg.header.stamp, _vector(msg.transform.translation), _quaternion(msg.transform.rotation)
+    ),
 }
 
 

@@ -9,17 +9,17 @@ server, take part by having the Python method ``lookup``. Source: cl-transforms.
 from __future__ import annotations
 
 from .. import kernel
-from ..lisp.condition_types import Error
-from ..lisp.conditions import SimpleError, error, handler_case, type_error, warn
-from ..lisp.data import DoubleFloat, LispString, truth
-from ..lisp.numbers.arithmetic import is_real
-from ..lisp.objects.generic_errors import no_applicable_method
-from ..lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground.condition_types import Error
+from cramhy_runtime.ground.conditions import SimpleError, error, handler_case, type_error, warn
+from cramhy_runtime.ground.data import DoubleFloat, LispString, truth
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.roslisp import logging, node, parameters, topics
 from ..ros.roslisp.clock import ros_time
 from ..transforms.coercion import check_type
 from ..transforms.poses import transform_point, transform_pose
-from ..utilities.lines import time_limit
+from cramhy_runtime.utilities.wait_queue import time_limit
 from . import errors
 from .buffer import FrameBuffer, Unavailable
 from .frames import unslash_frame
@@ -48,8 +48,11 @@ class Transformer:
         except ValueError as problem:
             return errors.transform_error(errors.InvalidArgumentError, str(problem))
         if not stored:
-            logging.log_text(logging.DEBUG, LOG, f"Ignoring the transform from {transform.child_frame_id} to {transform.frame_id}: it is "
-                                                 f"older than what is known.")
+            logging.log_text(
+                logging.DEBUG,
+                LOG,
+                f"Ignoring the transform from {transform.child_frame_id} to {transform.frame_id}: it is older than what is known.",
+            )
         elif notify:
             self.changed()
         return stored
@@ -91,8 +94,10 @@ class Transformer:
         found = self.wait(target, source, time, timeout)
         if isinstance(found, Unavailable):
             return errors.transform_error(
-                errors.TimeoutError_, f"No transform was published between frames {princ_to_string(source)} and {princ_to_string(target)}",
-                f"{found.text.rstrip('.')}. {found.hint}".replace("\n", " "))
+                errors.TimeoutError_,
+                f"No transform was published between frames {princ_to_string(source)} and {princ_to_string(target)}",
+                f"{found.text.rstrip('.')}. {found.hint}".replace("\n", " "),
+            )
         return found
 
 
@@ -105,8 +110,10 @@ class TransformListener(Transformer):
         super().__init__()
         node.require_node()
         self.prefix = parameters.get_param("~tf_prefix", "")
-        self.subscribers = [topics.subscribe("/tf", "tf/tfMessage", self.hear),
-                            topics.subscribe("/tf_static", "tf/tfMessage", lambda message: self.hear(message, 0.0))]
+        self.subscribers = [
+            topics.subscribe("/tf", "tf/tfMessage", self.hear),
+            topics.subscribe("/tf_static", "tf/tfMessage", lambda message: self.hear(message, 0.0)),
+        ]
 
     def hear(self, message, stamp=None):
         """Store the transforms of a tf message, with ``stamp`` if one is given; one that is broken does not spoil the others."""
@@ -199,8 +206,14 @@ def lookup_transform(transformer, target_frame, source_frame, *, time=None, time
     """
     if not hasattr(transformer, "lookup"):
         return no_applicable_method("CL-TRANSFORMS-STAMPED:LOOKUP-TRANSFORM", None, transformer, target_frame, source_frame)
-    return transformer.lookup(_frame(target_frame, "TARGET-FRAME"), _frame(source_frame, "SOURCE-FRAME"), time=_seconds(time),
-                              timeout=_seconds(timeout), target_time=_seconds(target_time), fixed_frame=fixed_frame)
+    return transformer.lookup(
+        _frame(target_frame, "TARGET-FRAME"),
+        _frame(source_frame, "SOURCE-FRAME"),
+        time=_seconds(time),
+        timeout=_seconds(timeout),
+        target_time=_seconds(target_time),
+        fixed_frame=fixed_frame,
+    )
 
 
 def transform_pose_stamped(transformer, *, target_frame=None, pose=None, timeout=NOW, use_current_ros_time=None):
@@ -237,5 +250,3 @@ def old_transform_point(tf, *, target_frame=None, point=None):
     check_type(point, PointStamped, "POINT")
     found = lookup_cached_transform(tf, target_frame=target_frame, source_frame=point.frame_id, time=point.stamp)
     return make_point_stamped(found.frame_id, found.stamp, transform_point(found, point))
-
-

@@ -8,20 +8,27 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.collections.arrays import aref
-from cramhy_runtime.lisp.collections.vectors import LispArray
-from cramhy_runtime.lisp.condition_types import TypeError_, shown_with
-from cramhy_runtime.lisp.conditions import FloatingPointInvalidOperation, SimpleTypeError, error, type_error
-from cramhy_runtime.lisp.data import DoubleFloat
-from cramhy_runtime.lisp.numbers.arithmetic import is_real, single
-from cramhy_runtime.lisp.numbers.irrational import too_large_for
-from cramhy_runtime.lisp.objects.generic_errors import no_applicable_method
-from cramhy_runtime.lisp.packages import ensure_package, sym
+from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
+from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.ground.condition_types import TypeError_, shown_with
+from cramhy_runtime.ground.conditions import FloatingPointInvalidOperation, SimpleTypeError, error, type_error
+from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.numbers import is_real, single
+from cramhy_runtime.ground.numbers import too_large_for
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .signatures import Component
+
+T = TypeVar("T")
 ensure_package("CL-TRANSFORMS")
 
 
-def real(value, parameter=None):
+def real(value: Any, parameter: str | None = None) -> float:
     """The real ``value``, given for ``parameter``, as a Python float at double precision."""
     kind = value.__class__
     if kind is DoubleFloat:
@@ -36,26 +43,26 @@ def real(value, parameter=None):
     return type_error(value, "REAL", "" if parameter is None else _binding(parameter))
 
 
-def _binding(parameter, package="CL-TRANSFORMS"):
+def _binding(parameter: str, package: str = "CL-TRANSFORMS") -> str:
     """The end of a type-error's text: which parameter the value was for."""
     return f"\nwhen binding {shown_with(sym(f'{package}::{parameter}'), 'COMMON-LISP')}"
 
 
-def wrong_type(value, expected, parameter, hint=None, package="CL-TRANSFORMS"):
+def wrong_type(value: object, expected: object, parameter: str, hint: str | None = None, package: str = "CL-TRANSFORMS") -> NoReturn:
     """Signal a type-error: ``value`` was given for ``parameter``, which must be of the type ``expected``."""
     condition = TypeError_(value, expected)
     condition.context = _binding(parameter, package)
     return error(condition, hint=hint)
 
 
-def float_argument(value, parameter):
+def float_argument(value: Any, parameter: str) -> float:
     """A parameter that must be a float: integers are refused, as in the original."""
     if isinstance(value, float):
         return value
     return wrong_type(value, "FLOAT", parameter, f"An angle must be a float: write {value}.0." if value.__class__ is int else None)
 
 
-def sine_and_cosine(angle):
+def sine_and_cosine(angle: float) -> tuple[float, float]:
     """Both of an angle in radians, plain floats; of an infinite one they are an error, as in Lisp."""
     try:
         return math.sin(angle), math.cos(angle)
@@ -63,7 +70,7 @@ def sine_and_cosine(angle):
         return error(FloatingPointInvalidOperation())
 
 
-def array_elements(array):
+def array_elements(array: Any) -> list[Any] | None:
     """The elements of a Lisp vector, or ``None`` if ``array`` is not one. Strings hold no numbers and do not count."""
     if isinstance(array, list):
         return array
@@ -72,7 +79,7 @@ def array_elements(array):
     return None
 
 
-def elements(array, size):
+def elements(array: Any, size: int) -> list[Any] | None:
     """The elements of a Lisp vector of ``size`` numbers, or ``None`` if ``array`` is not one."""
     items = array_elements(array)
     return items if items is not None and len(items) == size else None
@@ -80,26 +87,37 @@ def elements(array, size):
 
 def element(array, index):
     """Element ``index`` of a Lisp array, with the errors of ``aref``; ``None`` if it is not an array."""
-    return aref(array, index) if isinstance(array, (list, LispArray)) else None
+    if not isinstance(array, (list, LispArray)):
+        return None
+    sizes = (len(array),) if isinstance(array, list) else array.shape()
+    if len(sizes) != 1:
+        wrong_rank((index,), len(sizes))
+    if not 0 <= index < sizes[0]:
+        error(InvalidArrayIndex(index, array, None, sizes[0]))
+    return array[index] if isinstance(array, list) else array.storage[array.offset + index]
 
 
-def check_type(value, cls, parameter):
+def check_type(value: object, cls: type[T], parameter: str) -> T:
     """Signal the error of ``check-type`` unless ``value`` is of the class."""
     if isinstance(value, cls):
         return value
-    name, package = sym(cls.lisp_name), cls.lisp_name.partition("::")[0]
-    return error(SimpleTypeError("The value of ~S is ~S, which is not of type ~A.", sym(f"{package}::{parameter}"), value, name,
-                                 datum=value, expected_type=name))
+    lisp_name: str = cls.lisp_name  # type: ignore[attr-defined]
+    name, package = sym(lisp_name), lisp_name.partition("::")[0]
+    return error(
+        SimpleTypeError(
+            "The value of ~S is ~S, which is not of type ~A.", sym(f"{package}::{parameter}"), value, name, datum=value, expected_type=name
+        )
+    )
 
 
-def instance(value, cls, parameter):
+def instance(value: object, cls: type[T], parameter: str) -> T:
     """Signal a type-error unless ``value`` is of the class: a declared parameter or slot."""
     if isinstance(value, cls):
         return value
-    return wrong_type(value, sym(cls.lisp_name), parameter)
+    return wrong_type(value, sym(cls.lisp_name), parameter)  # type: ignore[attr-defined]
 
 
-def component(index):
+def component(index: int) -> Component:
     """A property: component ``index`` of an object with ``components``, a tuple of floats, as ``component(index)`` shows it to Lisp."""
 
     def get(self):
@@ -110,15 +128,15 @@ def component(index):
         components[index] = real(value)
         self.components = tuple(components)
 
-    return property(get, set_, doc="A component, as the float that Lisp sees.")
+    return property(get, set_, doc="A component, as the float that Lisp sees.")  # type: ignore[return-value]
 
 
-def no_method(function, *arguments):
+def no_method(function: str, *arguments: object) -> Any:
     """Signal that a generic function has no method for ``arguments``."""
     return no_applicable_method(f"CL-TRANSFORMS:{function.upper()}", None, *arguments)
 
 
-def slot_reader(name, *classes, package="CL-TRANSFORMS"):
+def slot_reader(name: str, *classes: type, package: str = "CL-TRANSFORMS") -> Callable[[Any], Any]:
     """The function that reads the slot ``name`` of objects of ``classes``; it is generic in the original."""
     attribute = name.replace("-", "_")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.collections.vectors import LispArray
-from cramhy_runtime.lisp.conditions import error
-from cramhy_runtime.lisp.data import DoubleFloat
+from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import DoubleFloat
 
 from .coercion import instance, real, wrong_type
 from .poses import Pose, Transform, make_transform, pose_to_transform
@@ -23,7 +23,7 @@ def _rows(matrix):
     if not isinstance(matrix, LispArray) or len(matrix.dimensions) != 2:
         return wrong_type(matrix, "(ARRAY * (* *))", "MATRIX")
     items, width = matrix.active(), matrix.dimensions[1]
-    return [items[start:start + width] for start in range(0, len(items), width or 1)]
+    return [items[start : start + width] for start in range(0, len(items), width or 1)]
 
 
 def _square(matrix, size, at_least=False):
@@ -31,15 +31,18 @@ def _square(matrix, size, at_least=False):
     height, width = matrix.dimensions
     if (height, width) == (size, size) or at_least and min(height, width) >= size:
         return rows
-    return error("The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(~D ~D)) failed: the matrix is ~D by ~D.",
-                 size, size, height, width)
+    return error(
+        "The assertion (EQUAL (ARRAY-DIMENSIONS CL-TRANSFORMS::MATRIX) '(~D ~D)) failed: the matrix is ~D by ~D.", size, size, height, width
+    )
 
 
 def _rotation_rows(components):
     x, y, z, w = components
-    return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    return [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
 
 
 def quaternion_to_matrix(q):
@@ -70,8 +73,10 @@ def _quaternion_of(rows):
 def transform_to_matrix(transform):
     """The 4 by 4 matrix; its last row is three singles and an integer, as in the original."""
     instance(transform, Transform, "TRANSFORM")
-    rows = [[*map(DoubleFloat, row), DoubleFloat(moved)]
-            for row, moved in zip(_rotation_rows(general(transform.rotation)), point(transform.translation))]
+    rows = [
+        [*map(DoubleFloat, row), DoubleFloat(moved)]
+        for row, moved in zip(_rotation_rows(general(transform.rotation)), point(transform.translation))
+    ]
     return _matrix([*rows, [0.0, 0.0, 0.0, 1]])
 
 

@@ -6,14 +6,21 @@ orientation, the same numbers. Source: cl-transforms.md sections 4.1 to 4.3.
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import error, warn, wrong_argument_count
-from cramhy_runtime.lisp.data import truth
-from cramhy_runtime.lisp.packages import keyword
+from cramhy_runtime.ground.conditions import error, warn, wrong_argument_count
+from cramhy_runtime.ground.data import truth
+from cramhy_runtime.ground.packages import keyword
 
 from .coercion import array_elements, instance, no_method, slot_reader
 from .quaternions import TOLERANCE, Quaternion, general, inverse, multiply, normalize, normalized, quaternion, rotated, unit, yaw
 from .vectors import Vector3, make_3d_vector, point, vector
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .signatures import Four, Place, PoseOrTransform, Rotation, Three
+
+T = TypeVar("T", bound="Twist | Wrench")
 _WARN, _NO_WARN = keyword("WARN"), keyword("NO-WARN")
 
 
@@ -23,11 +30,11 @@ class Transform:
     lisp_name = "CL-TRANSFORMS::TRANSFORM"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
 
-    def __init__(self, translation=None, rotation=None):
+    def __init__(self, translation: Vector3 | None = None, rotation: Rotation | None = None):
         self.translation = Vector3() if translation is None else translation
         self.rotation = Quaternion() if rotation is None else unit(rotation)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"#<TRANSFORM {self.translation!r} {self.rotation!r}>"
 
 
@@ -37,11 +44,11 @@ class Pose:
     lisp_name = "CL-TRANSFORMS::POSE"
     initargs = {"ORIGIN": "origin", "ORIENTATION": "orientation"}
 
-    def __init__(self, origin=None, orientation=None):
+    def __init__(self, origin: Vector3 | None = None, orientation: Rotation | None = None):
         self.origin = Vector3() if origin is None else origin
         self.orientation = Quaternion() if orientation is None else unit(orientation)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"#<POSE {self.origin!r} {self.orientation!r}>"
 
 
@@ -51,7 +58,7 @@ class Twist:
     lisp_name = "CL-TRANSFORMS::TWIST"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
 
-    def __init__(self, translation=None, rotation=None):
+    def __init__(self, translation: Vector3 | None = None, rotation: Vector3 | None = None):
         self.translation = Vector3() if translation is None else translation
         self.rotation = Vector3() if rotation is None else rotation
 
@@ -61,26 +68,28 @@ class Wrench:
 
     lisp_name = "CL-TRANSFORMS::WRENCH"
     initargs = Twist.initargs
+    translation: Vector3
+    rotation: Vector3
     __init__ = Twist.__init__
 
 
-translation = slot_reader("translation", Transform, Twist, Wrench)
-rotation = slot_reader("rotation", Transform, Twist, Wrench)
-origin = slot_reader("origin", Pose)
-orientation = slot_reader("orientation", Pose)
+translation: Callable[[Transform | Twist | Wrench], Vector3] = slot_reader("translation", Transform, Twist, Wrench)
+rotation: Callable[[Any], Any] = slot_reader("rotation", Transform, Twist, Wrench)
+origin: Callable[[Pose], Vector3] = slot_reader("origin", Pose)
+orientation: Callable[[Pose], Quaternion] = slot_reader("orientation", Pose)
 
 
 # --------------------------------------------------------------------------------------------------------------- transforms
 
 
-def unchecked_transform(translation, rotation):
+def unchecked_transform(translation: Vector3, rotation: Quaternion) -> Transform:
     """A transform whose rotation is taken as it is."""
     made = Transform.__new__(Transform)
     made.translation, made.rotation = translation, rotation
     return made
 
 
-def make_transform(translation, rotation, *, validate_args=_WARN):
+def make_transform(translation: Any, rotation: Any, *, validate_args: object = _WARN) -> Transform:
     """A transform. A rotation that is not of unit length is normalised with a warning.
 
     ``validate_args``: ``:warn``, ``:no-warn`` (normalise silently), ``nil`` (keep it), anything else (an error).
@@ -94,19 +103,20 @@ def make_transform(translation, rotation, *, validate_args=_WARN):
     return unchecked_transform(translation, rotation)
 
 
-def make_identity_transform():
+def make_identity_transform() -> Transform:
     """The transform that changes nothing."""
     return Transform()
 
 
-def copy_transform(transform, *, translation=None, rotation=None):
+def copy_transform(transform: Transform, *, translation: Vector3 | None = None, rotation: Quaternion | None = None) -> Transform:
     """A transform like ``transform`` with parts replaced."""
     instance(transform, Transform, "TRANSFORM")
-    return make_transform(transform.translation if translation is None else translation,
-                          transform.rotation if rotation is None else rotation)
+    return make_transform(
+        transform.translation if translation is None else translation, transform.rotation if rotation is None else rotation
+    )
 
 
-def transform_inv(trans):
+def transform_inv(trans: Transform) -> Transform:
     """The transform back."""
     instance(trans, Transform, "TRANS")
     turned_back = inverse(general(trans.rotation))
@@ -114,14 +124,14 @@ def transform_inv(trans):
     return _computed(rotated(turned_back, (-tx, -ty, -tz)), turned_back)
 
 
-def moved(trans, components):
+def moved(trans: Transform, components: Three) -> Three:
     """The components of a point, a tuple, after the transform."""
     vx, vy, vz = rotated(general(trans.rotation), components)
     tx, ty, tz = point(trans.translation)
     return tx + vx, ty + vy, tz + vz
 
 
-def transform_star(*transforms):
+def transform_star(*transforms: Transform) -> Transform:
     """``transform*``: the composition; the last one is applied first."""
     if not transforms:
         return wrong_argument_count(0)
@@ -133,7 +143,7 @@ def transform_star(*transforms):
     return result
 
 
-def _computed(translation, rotation):
+def _computed(translation: Three, rotation: Four) -> Transform:
     """The transform of component tuples; when many products have made the rotation drift, with the warning of `make_transform`."""
     qx, qy, qz, qw = rotation
     if -TOLERANCE < qx * qx + qy * qy + qz * qz + qw * qw - 1 < TOLERANCE:
@@ -141,18 +151,22 @@ def _computed(translation, rotation):
     return make_transform(vector(translation), quaternion(rotation))
 
 
-def transform_diff(transform_to, transform_from):
+def transform_diff(transform_to: Transform, transform_from: Transform) -> Transform:
     """The D with D * from = to."""
     return transform_star(transform_to, transform_inv(transform_from))
 
 
-def transform_point(trans, p):
+def transform_point(trans: Transform, p: Place) -> Vector3:
     """The coordinates of the point ``p`` after the transform."""
     instance(trans, Transform, "TRANS")
     return vector(moved(trans, point(p, "P")))
 
 
-def transform(tr, x):
+@overload
+def transform(tr: Transform, x: Pose) -> Pose: ...
+@overload
+def transform(tr: Transform, x: Place) -> Vector3: ...
+def transform(tr: Transform, x: Any) -> Any:
     """The point or pose ``x`` after the transform ``tr``."""
     if isinstance(x, Vector3):
         return transform_point(tr, x)
@@ -169,54 +183,54 @@ def transform(tr, x):
 # -------------------------------------------------------------------------------------------------------------------- poses
 
 
-def unchecked_pose(origin, orientation):
+def unchecked_pose(origin: Vector3, orientation: Quaternion) -> Pose:
     """A pose whose orientation is of unit length already."""
     made = Pose.__new__(Pose)
     made.origin, made.orientation = origin, orientation
     return made
 
 
-def make_pose(origin, orientation):
+def make_pose(origin: Vector3, orientation: Rotation) -> Pose:
     """A pose at a point, in metres; an orientation that is not of unit length is normalised silently."""
     return unchecked_pose(origin, unit(orientation))
 
 
-def make_identity_pose():
+def make_identity_pose() -> Pose:
     """The pose at the origin that looks along x."""
     return Pose()
 
 
-def make_2d_pose(x, y, theta):
+def make_2d_pose(x: float, y: float, theta: float) -> Pose:
     """The pose at (x, y, 0), in metres, with heading ``theta``, a float in radians."""
     return unchecked_pose(make_3d_vector(x, y, 0), yaw(theta))
 
 
-def copy_pose(pose, *, origin=None, orientation=None):
+def copy_pose(pose: Pose, *, origin: Vector3 | None = None, orientation: Rotation | None = None) -> Pose:
     """A pose like ``pose`` with parts replaced."""
     instance(pose, Pose, "POSE")
     return make_pose(pose.origin if origin is None else origin, pose.orientation if orientation is None else orientation)
 
 
-def reference_transform(pose):
+def reference_transform(pose: PoseOrTransform) -> Transform:
     """The transform with the components of a pose; a transform is its own."""
     if isinstance(pose, Transform):
         return pose
     return pose_to_transform(pose) if isinstance(pose, Pose) else no_method("reference-transform", pose)
 
 
-def pose_to_transform(pose):
+def pose_to_transform(pose: Pose) -> Transform:
     """The transform from the coordinates of ``pose`` to those that it is given in."""
     instance(pose, Pose, "POSE")
     return unchecked_transform(pose.origin, pose.orientation)
 
 
-def transform_to_pose(transform):
+def transform_to_pose(transform: Transform) -> Pose:
     """The pose with the components of a transform."""
     instance(transform, Transform, "TRANSFORM")
     return make_pose(transform.translation, transform.rotation)
 
 
-def transform_pose(tr, p):
+def transform_pose(tr: Transform, p: Pose) -> Pose:
     """The pose ``p`` after the transform ``tr``."""
     instance(tr, Transform, "TR")
     moved = transform_star(tr, pose_to_transform(p))
@@ -226,36 +240,36 @@ def transform_pose(tr, p):
 # ------------------------------------------------------------------------------------------------------- twists and wrenches
 
 
-def make_twist(translation, rotation):
+def make_twist(translation: Vector3, rotation: Vector3) -> Twist:
     """A twist: linear velocity in m/s and angular velocity in rad/s, two vectors."""
     return Twist(translation, rotation)
 
 
-def make_identity_twist():
+def make_identity_twist() -> Twist:
     """The twist of what stands still."""
     return Twist()
 
 
-def copy_twist(twist, *, translation=None, rotation=None):
+def copy_twist(twist: Twist, *, translation: Vector3 | None = None, rotation: Vector3 | None = None) -> Twist:
     """A twist like ``twist`` with parts replaced."""
     return _copy(twist, Twist, "TWIST", translation, rotation)
 
 
-def make_wrench(translation, rotation):
+def make_wrench(translation: Vector3, rotation: Vector3) -> Wrench:
     """A wrench: force in N and torque in N m, two vectors."""
     return Wrench(translation, rotation)
 
 
-def make_identity_wrench():
+def make_identity_wrench() -> Wrench:
     """The wrench of what nothing pulls or turns."""
     return Wrench()
 
 
-def copy_wrench(wrench, *, translation=None, rotation=None):
+def copy_wrench(wrench: Wrench, *, translation: Vector3 | None = None, rotation: Vector3 | None = None) -> Wrench:
     """A wrench like ``wrench`` with parts replaced."""
     return _copy(wrench, Wrench, "WRENCH", translation, rotation)
 
 
-def _copy(obj, cls, parameter, translation, rotation):
+def _copy(obj: T, cls: type[T], parameter: str, translation: Vector3 | None, rotation: Vector3 | None) -> T:
     instance(obj, cls, parameter)
     return cls(obj.translation if translation is None else translation, obj.rotation if rotation is None else rotation)

@@ -7,12 +7,18 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.lisp.conditions import DivisionByZero, error, wrong_argument_count
-from cramhy_runtime.lisp.data import Cons, DoubleFloat
-from cramhy_runtime.lisp.numbers.arithmetic import is_real
-from cramhy_runtime.lisp.packages import sym
+from cramhy_runtime.ground.conditions import DivisionByZero, error, wrong_argument_count
+from cramhy_runtime.ground.data import Cons, DoubleFloat
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.ground.packages import sym
 
 from .coercion import check_type, component, element, elements, instance, no_method, real, wrong_type
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from .signatures import Place, Three
 
 
 class Vector3:
@@ -22,27 +28,27 @@ class Vector3:
     initargs = {"X": "x", "Y": "y", "Z": "z"}
     x, y, z = component(0), component(1), component(2)
 
-    def __init__(self, x=0.0, y=0.0, z=0.0):
-        self.components = (float(x), float(y), float(z))
+    def __init__(self, x: float = 0.0, y: float = 0.0, z: float = 0.0):
+        self.components: Three = (float(x), float(y), float(z))
 
-    def component(self, index):
+    def component(self, index: int) -> DoubleFloat:
         return DoubleFloat(self.components[index])
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[float]:
         return iter(self.components)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return "#<3D-VECTOR ({}d0 {}d0 {}d0)>".format(*self.components)
 
 
-def vector(components):
+def vector(components: Three) -> Vector3:
     """The vector with three plain Python floats, which are not coerced."""
     made = Vector3.__new__(Vector3)
     made.components = components
     return made
 
 
-def point(value, parameter="V"):
+def point(value: Place, parameter: str = "V") -> Three:
     """The three components of a point as plain floats."""
     if isinstance(value, Vector3):
         return value.components
@@ -54,24 +60,24 @@ def point(value, parameter="V"):
     return real(x), real(y), real(z)
 
 
-def make_3d_vector(x, y, z):
+def make_3d_vector(x: float, y: float, z: float) -> Vector3:
     """A vector of three reals, in metres where it is a place; components are coerced to double-floats."""
     return vector((real(x), real(y), real(z)))
 
 
-def make_identity_vector():
+def make_identity_vector() -> Vector3:
     """The vector (0 0 0)."""
     return Vector3()
 
 
-def copy_3d_vector(v, *, x=None, y=None, z=None):
+def copy_3d_vector(v: Vector3, *, x: float | None = None, y: float | None = None, z: float | None = None) -> Vector3:
     """A copy of ``v`` with components replaced."""
     old = instance(v, Vector3, "V").components
     return Vector3(*(before if new is None else real(new) for before, new in zip(old, (x, y, z))))
 
 
-def _reader(index, letter):
-    def read(obj):
+def _reader(index: int, letter: str) -> Callable[[object], float]:
+    def read(obj: Any) -> float:
         if obj.__class__ is Vector3:
             return DoubleFloat(obj.components[index])
         if hasattr(obj, "components"):  # a quaternion, or a vector of another kind
@@ -89,7 +95,7 @@ def _reader(index, letter):
 x, y, z = _reader(0, "x"), _reader(1, "y"), _reader(2, "z")
 
 
-def v_plus(*vecs):
+def v_plus(*vecs: Place) -> Vector3:
     """``v+``: the sum of points; a single argument is returned as it is."""
     if len(vecs) < 2:
         return vecs[0] if vecs else wrong_argument_count(0)
@@ -100,7 +106,7 @@ def v_plus(*vecs):
     return vector((ax, ay, az))
 
 
-def v_minus(*vecs):
+def v_minus(*vecs: Place) -> Vector3:
     """``v-``: the first point less the others; a single argument is returned unchanged, not negated."""
     if len(vecs) < 2:
         return vecs[0] if vecs else wrong_argument_count(0)
@@ -111,20 +117,20 @@ def v_minus(*vecs):
     return vector((ax, ay, az))
 
 
-def v_star(v, scalar):
+def v_star(v: Place, scalar: float) -> Vector3:
     """``v*``: the point ``v`` (first) scaled by a real."""
     factor = real(scalar, "SCALAR")
     vx, vy, vz = point(v)
     return vector((vx * factor, vy * factor, vz * factor))
 
 
-def v_star_pairwise(v_1, v_2):
+def v_star_pairwise(v_1: Place, v_2: Place) -> Vector3:
     """``v*-pairwise``: the products of the components."""
     (ax, ay, az), (bx, by, bz) = point(v_1, "V-1"), point(v_2, "V-2")
     return vector((ax * bx, ay * by, az * bz))
 
 
-def v_slash_pairwise(v_1, v_2):
+def v_slash_pairwise(v_1: Place, v_2: Place) -> Vector3:
     """``v/-pairwise``: the quotients of the components; a zero in ``v_2`` is a division by zero."""
     (ax, ay, az), (bx, by, bz) = point(v_1, "V-1"), point(v_2, "V-2")
     if not (bx and by and bz):
@@ -132,12 +138,12 @@ def v_slash_pairwise(v_1, v_2):
     return vector((ax / bx, ay / by, az / bz))
 
 
-def v_inv(v):
+def v_inv(v: Place) -> Vector3:
     """The vector in the other direction. Zeros become -0.0d0."""
     return v_star(v, -1)
 
 
-def _numbers(v, parameter):
+def _numbers(v: Place, parameter: str) -> list[float]:
     """The components as Lisp sees them, for functions whose result has the type of the inputs."""
     if isinstance(v, Vector3):
         return [v.component(index) for index in range(3)]
@@ -145,7 +151,7 @@ def _numbers(v, parameter):
     return elements(v, 3)
 
 
-def dot_product(v_1, v_2):
+def dot_product(v_1: Place, v_2: Place) -> float:
     """The scalar product of two points; an integer for integer arrays, a double for vectors."""
     if isinstance(v_1, Vector3) and isinstance(v_2, Vector3):
         (ax, ay, az), (bx, by, bz) = v_1.components, v_2.components
@@ -153,19 +159,19 @@ def dot_product(v_1, v_2):
     return sum(a * b for a, b in zip(_numbers(v_1, "V-1"), _numbers(v_2, "V-2")))
 
 
-def cross_product(v_1, v_2):
+def cross_product(v_1: Place, v_2: Place) -> Vector3:
     """The right-handed vector product."""
     (ax, ay, az), (bx, by, bz) = point(v_1, "V-1"), point(v_2, "V-2")
     return vector((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
 
 
-def v_norm(v):
+def v_norm(v: Place) -> float:
     """The length of a point; a double for vectors, a single for arrays of integers."""
     square = dot_product(v, v)
     return DoubleFloat(math.sqrt(square)) if isinstance(square, DoubleFloat) else math.sqrt(square)
 
 
-def v_dist(v_1, v_2):
+def v_dist(v_1: Place, v_2: Place) -> float:
     """The distance of two points, a double."""
     for v in (v_1, v_2):
         if not isinstance(v, Vector3) and elements(v, 3) is None:
@@ -173,7 +179,7 @@ def v_dist(v_1, v_2):
     return DoubleFloat(math.dist(point(v_1), point(v_2)))
 
 
-def normalize_vector(v):
+def normalize_vector(v: Place) -> Vector3:
     """The vector of length 1 in the same direction; a zero vector is a division by zero."""
     vx, vy, vz = point(v)
     length = math.sqrt(vx * vx + vy * vy + vz * vz)
@@ -183,7 +189,7 @@ def normalize_vector(v):
     return vector((vx * factor, vy * factor, vz * factor))
 
 
-def interpolate_vector(v_0, v_1, ratio):
+def interpolate_vector(v_0: Vector3, v_1: Vector3, ratio: float) -> Vector3:
     """``v_0`` + ``ratio`` (``v_1`` - ``v_0``) of two 3d-vectors; the ratio, a real, is not limited to [0, 1]."""
     ax, ay, az = check_type(v_0, Vector3, "V-0").components
     bx, by, bz = check_type(v_1, Vector3, "V-1").components

@@ -2,8 +2,8 @@
 
 ==================  ========================================================================================
 ``world``           a turtle: kinematics, walls, teleports, pen
-``measures``        how large the paper and the metre are
-``canvas, ink``     the paper in pixels, with the lines and the colour sensor; the same lines as vectors
+``dimensions``        how large the paper and the metre are
+``canvas, strokes`` the paper in pixels, with the lines and the colour sensor; the same lines as vectors
 ``node``            the simulator: topics, services, parameters, ticks, observers
 ``roscpp``          what all executables have in common: command line, log, loggers
 ``teleop``          the arrow keys
@@ -14,7 +14,6 @@
 ``sprites``         the same in pixels
 ``stills, replay``  pictures of the window, as it is and as it came about; ``history`` is what a replay shows
 ``pictures``        which kind of picture a file gets
-``package``         the Lisp package TURTLESIM
 ==================  ========================================================================================
 
 Importing this package imports none of them.

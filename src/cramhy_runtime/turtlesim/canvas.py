@@ -11,8 +11,15 @@ from __future__ import annotations
 
 from math import ceil, floor, hypot, inf
 
-from .ink import PIECE, Ink
-from .measures import METRE, SIZE
+from .strokes import PIECE, Ink
+from .dimensions import METRE, SIZE
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from .signatures import Colour, Polyline, Stroke
+
 
 _CENTRE = 0.5 - 2.0**-7  # of a pixel, from its corner; a little less than half, which decides about centres on the border
 _LEVEL = 1e-12
@@ -28,23 +35,24 @@ class Canvas:
     line as it is kept, for those who follow the pens tick by tick (`Turtlesim.observe`).
     """
 
-    def __init__(self, background=(69, 86, 255)):
+    def __init__(self, background: Iterable[int] = (69, 86, 255)):
         self._pixels = bytearray()
-        self.news = None
+        self.news: list[Stroke] | None = None
         self.clears = -1
         self.clear(background)
 
-    def clear(self, background):
+    def clear(self, background: Iterable[int]) -> None:
         """Fill everything with ``background``."""
-        self.background = tuple(background)
+        self.background: Colour = tuple(background)  # type: ignore[assignment]  # of three
         self._pixels[:] = bytes(self.background) * (SIZE * SIZE)
-        self._lines, self._drawn = [], 0
+        self._lines: list[Stroke] = []
+        self._drawn = 0
         self._ink = Ink()
         self.clears += 1
         if self.news:
             self.news.clear()
 
-    def line(self, x0, y0, x1, y1, colour, width):
+    def line(self, x0: float, y0: float, x1: float, y1: float, colour: Colour, width: int) -> None:
         """Draw a line; a width of 0 is a width of 1."""
         line = (x0, y0, x1, y1, colour, width)
         self._lines.append(line)
@@ -55,27 +63,27 @@ class Canvas:
             (self._ink.take if len(self._ink) < _AS_DRAWN else self._ink.take_thinned)(self._lines)
             self._lines, self._drawn = [], 0
 
-    def flush(self):
+    def flush(self) -> None:
         """Draw the lines that were kept."""
         lines, begin = self._lines, self._drawn
         self._drawn = len(lines)
         for index in range(begin, len(lines)):
             self._draw(*lines[index])
 
-    def strokes(self):
+    def strokes(self) -> list[Stroke]:
         """All that was drawn since the last clear, as `Ink.strokes` tells it: for who was not there to see it."""
         return self._all_ink().strokes()
 
-    def polylines(self):
+    def polylines(self) -> list[Polyline]:
         """The same as `Ink.polylines`, for pictures without pixels."""
         return self._all_ink().polylines()
 
-    def _all_ink(self):
+    def _all_ink(self) -> Ink:
         ink = self._ink.copy()
         ink.take(self._lines)
         return ink
 
-    def pixel(self, x, y):
+    def pixel(self, x: float, y: float) -> Colour:
         """The colour at (x, y) metres, at the nearest pixel, halves up; outside of the paper the nearest pixel on it."""
         if self._drawn < len(self._lines):
             self.flush()
@@ -85,14 +93,14 @@ class Canvas:
         column = (floor(x + 0.5) if x > 0.0 else 0) if x < _LAST else _LAST
         row = (floor(y + 0.5) if y > 0.0 else 0) if y < _LAST else _LAST
         start = (row * SIZE + column) * 3
-        return tuple(self._pixels[start : start + 3])
+        return tuple(self._pixels[start : start + 3])  # type: ignore[return-value]  # of three
 
-    def rgb(self):
+    def rgb(self) -> bytes:
         """All pixels as bytes, row by row from the top."""
         self.flush()
         return bytes(self._pixels)
 
-    def _draw(self, x0, y0, x1, y1, colour, width):
+    def _draw(self, x0: float, y0: float, x1: float, y1: float, colour: Colour, width: int) -> None:
         x0, y0, x1, y1 = x0 * METRE, y0 * METRE, x1 * METRE, y1 * METRE
         along_x, along_y = x1 - x0, y1 - y0
         length = hypot(along_x, along_y)

@@ -12,9 +12,14 @@ import math
 
 from .. import kernel
 from ..ros import rosout, wire
-from ..ros.messages import message_class_exact
+from ..ros.messages import RosMessage, message_class
 from ..ros.services import start_call
 from .roscpp import Program
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .signatures import Echo, Words
+
 
 PERIOD = 0.016
 PI = 3.141592
@@ -27,27 +32,28 @@ class DrawSquare(Program):
 
     name = "draw_square"
 
-    def __init__(self, name=None, namespace="/", arguments=(), echo=None):
+    def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), echo: Echo = None):
         super().__init__(name, namespace, arguments, echo=echo)
         node = self.node
-        self.twist = message_class_exact("geometry_msgs/Twist")
-        self.pose = self.goal = None
+        self.twist = message_class("geometry_msgs/Twist")
+        self.pose: tuple[float, ...] | None = None
+        self.goal: tuple[float, float, float] | None = None
         self.state = FORWARD
-        node.subscribe("turtle1/pose", message_class_exact("turtlesim/Pose"), self._see, queue=1)
+        node.subscribe("turtle1/pose", message_class("turtlesim/Pose"), self._see, queue=1)
         self.publication = node.advertise("turtle1/cmd_vel", self.twist)
         self._reset()
         timer = kernel.call_every(PERIOD, self.tick)
         node.on_shutdown.append(timer.cancel)
 
-    def _reset(self):
+    def _reset(self) -> None:
         reset = self.graph.services.get(self.node.resolve("reset"))
         if reset is not None:  # without a simulator the original, too, goes on and waits for a pose
             start_call(reset, reset.type.request(), lambda call: None)
 
-    def _see(self, pose):
+    def _see(self, pose: RosMessage) -> None:
         self.pose = tuple(value if math.isfinite(value) else math.nan for value in map(wire.as_float, pose.values()))
 
-    def tick(self):
+    def tick(self) -> None:
         """What the timer does: one command, and perhaps the next state."""
         if self.pose is None:
             return
@@ -71,7 +77,7 @@ class DrawSquare(Program):
                     self.state = FORWARD
                     self._aim(x + math.cos(heading) * SIDE, y + math.sin(heading) * SIDE, heading)
 
-    def _drive(self, speed, turn, when_there):
+    def _drive(self, speed: float, turn: float, when_there: str) -> None:
         x, y, heading = self.pose[:3]
         goal_x, goal_y, goal_heading = self.goal
         if abs(x - goal_x) < 0.1 and abs(y - goal_y) < 0.1 and abs(heading - goal_heading) < 0.01:
@@ -80,11 +86,11 @@ class DrawSquare(Program):
         else:
             self._command(speed, turn)
 
-    def _aim(self, x, y, heading):
+    def _aim(self, x: float, y: float, heading: float) -> None:
         self.goal = (x, y, heading)
         self.log(rosout.INFO, f"New goal [{x:f} {y:f}, {heading:f}]")
 
-    def _command(self, speed, turn):
+    def _command(self, speed: float, turn: float) -> None:
         message = self.twist()
         message.linear.x, message.angular.z = speed, turn
         self.publication.publish(message)

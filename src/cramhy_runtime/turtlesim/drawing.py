@@ -12,6 +12,13 @@ from __future__ import annotations
 import math
 from functools import cache
 
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .signatures import Shape
+
 OUTLINE, WHITE, PUPIL = "#1b2a24", "#ffffff", "#14181c"
 EDGE = 0.02
 """How far the dark outline stands out, in metres."""
@@ -19,14 +26,16 @@ _ROUND = 0.5522847498
 """Distance of the control points of a Bézier curve that makes a quarter of a circle."""
 
 
-def shapes():
+def shapes() -> list[Shape]:
     """The drawings, in the order in which turtles get them: picture ``n`` of a turtle is ``shapes()[n % 14]``.
 
     Result: a list of ``{"name": str, "shell": "#rrggbb", "paths": [{"d": path data, "fill": "#rrggbb"}, ...]}``, to be painted in that
     order; the path data have absolute ``M``, ``L``, ``C`` and ``Z`` only. It may go to JSON as it is.
     """
-    return [{"name": name, "shell": shell, "paths": [{"d": d, "fill": fill} for d, fill in _paths(number)]}
-            for number, (name, _, _, shell, _, _, _) in enumerate(PICTURES)]
+    return [
+        {"name": name, "shell": shell, "paths": [{"d": d, "fill": fill} for d, fill in _paths(number)]}
+        for number, (name, _, _, shell, _, _, _) in enumerate(PICTURES)
+    ]
 
 
 @cache
@@ -67,11 +76,13 @@ def _smooth(*points):
     count, segments = len(points), []
     for index in range(count):
         before, start, end, after = (points[(index + step) % count] for step in (-1, 0, 1, 2))
-        segments.append((
-            (start[0] + (end[0] - before[0]) / 6, start[1] + (end[1] - before[1]) / 6),
-            (end[0] - (after[0] - start[0]) / 6, end[1] - (after[1] - start[1]) / 6),
-            end,
-        ))
+        segments.append(
+            (
+                (start[0] + (end[0] - before[0]) / 6, start[1] + (end[1] - before[1]) / 6),
+                (end[0] - (after[0] - start[0]) / 6, end[1] - (after[1] - start[1]) / 6),
+                end,
+            )
+        )
     return points[0], segments
 
 
@@ -80,8 +91,12 @@ def _polygon(*points):
 
 
 def _regular(x, y, radius, corners, turn=0.0):
-    return _polygon(*[(x + radius * math.cos(turn + 2 * math.pi * step / corners),
-                       y + radius * math.sin(turn + 2 * math.pi * step / corners)) for step in range(corners)])
+    return _polygon(
+        *[
+            (x + radius * math.cos(turn + 2 * math.pi * step / corners), y + radius * math.sin(turn + 2 * math.pi * step / corners))
+            for step in range(corners)
+        ]
+    )
 
 
 def _mirrored(outline):
@@ -171,8 +186,18 @@ def _sea():
         _smooth((0.13, 0.17), (0.25, 0.2), (0.27, 0.33), (0.13, 0.46), (0.02, 0.48), (0.1, 0.36)),
         _smooth((-0.27, 0.1), (-0.36, 0.2), (-0.47, 0.24), (-0.43, 0.13), (-0.36, 0.06)),
     )
-    back = _smooth((0.29, 0.0), (0.25, 0.15), (0.1, 0.25), (-0.12, 0.215), (-0.32, 0.08), (-0.4, 0.0),
-                   (-0.32, -0.08), (-0.12, -0.215), (0.1, -0.25), (0.25, -0.15))
+    back = _smooth(
+        (0.29, 0.0),
+        (0.25, 0.15),
+        (0.1, 0.25),
+        (-0.12, 0.215),
+        (-0.32, 0.08),
+        (-0.4, 0.0),
+        (-0.32, -0.08),
+        (-0.12, -0.215),
+        (0.1, -0.25),
+        (0.25, -0.15),
+    )
     return flippers, back
 
 
@@ -185,11 +210,11 @@ def _dome():
 
 def _robot():
     """Four wheels, an aerial and a case with cut corners."""
-    wheels = _both(_polygon((0.08, 0.24), (0.3, 0.24), (0.3, 0.37), (0.08, 0.37)),
-                   _polygon((-0.32, 0.24), (-0.1, 0.24), (-0.1, 0.37), (-0.32, 0.37)))
+    wheels = _both(
+        _polygon((0.08, 0.24), (0.3, 0.24), (0.3, 0.37), (0.08, 0.37)), _polygon((-0.32, 0.24), (-0.1, 0.24), (-0.1, 0.37), (-0.32, 0.37))
+    )
     aerial = [_polygon((-0.3, -0.015), (-0.44, -0.015), (-0.44, 0.015), (-0.3, 0.015)), _ellipse(-0.445, 0.0, 0.035, 0.035)]
-    back = _polygon((0.28, 0.13), (0.18, 0.27), (-0.24, 0.27), (-0.34, 0.17),
-                    (-0.34, -0.17), (-0.24, -0.27), (0.18, -0.27), (0.28, -0.13))
+    back = _polygon((0.28, 0.13), (0.18, 0.27), (-0.24, 0.27), (-0.34, 0.17), (-0.34, -0.17), (-0.24, -0.27), (0.18, -0.27), (0.28, -0.13))
     return [*wheels, *aerial], back
 
 
@@ -210,8 +235,10 @@ def _diamonds(shell, second, back):
     for ahead in (-0.17, 0.0, 0.17):
         size = 0.1 if ahead == 0.0 else 0.08
         yield _polygon((x + ahead + size * 0.8, y), (x + ahead, y + size), (x + ahead - size * 0.8, y), (x + ahead, y - size)), second
-    for outline in _both(_polygon((x + 0.15, 0.13), (x + 0.085, 0.185), (x + 0.02, 0.13), (x + 0.085, 0.075)),
-                         _polygon((x - 0.02, 0.13), (x - 0.085, 0.185), (x - 0.15, 0.13), (x - 0.085, 0.075))):
+    for outline in _both(
+        _polygon((x + 0.15, 0.13), (x + 0.085, 0.185), (x + 0.02, 0.13), (x + 0.085, 0.075)),
+        _polygon((x - 0.02, 0.13), (x - 0.085, 0.185), (x - 0.15, 0.13), (x - 0.085, 0.075)),
+    ):
         yield outline, second
 
 
@@ -228,15 +255,30 @@ def _bands(shell, second, back):
 
 def _spots(shell, second, back):
     x, y = _middle(back)
-    for ahead, aside, radius in ((0.0, 0.0, 0.075), (0.15, 0.07, 0.048), (0.13, -0.1, 0.04), (-0.02, 0.15, 0.045), (-0.04, -0.15, 0.05),
-                                 (-0.16, 0.06, 0.042), (-0.17, -0.07, 0.05)):
+    for ahead, aside, radius in (
+        (0.0, 0.0, 0.075),
+        (0.15, 0.07, 0.048),
+        (0.13, -0.1, 0.04),
+        (-0.02, 0.15, 0.045),
+        (-0.04, -0.15, 0.05),
+        (-0.16, 0.06, 0.042),
+        (-0.17, -0.07, 0.05),
+    ):
         yield _ellipse(x + ahead, y + aside, radius, radius), second
 
 
 def _star(shell, second, back):
     x, y = _middle(back)
-    yield _polygon(*[(x + radius * math.cos(step * math.pi / 5), y + radius * math.sin(step * math.pi / 5))
-                     for step in range(10) for radius in (0.19 if step % 2 == 0 else 0.08,)]), second
+    yield (
+        _polygon(
+            *[
+                (x + radius * math.cos(step * math.pi / 5), y + radius * math.sin(step * math.pi / 5))
+                for step in range(10)
+                for radius in (0.19 if step % 2 == 0 else 0.08,)
+            ]
+        ),
+        second,
+    )
 
 
 def _petals(shell, second, back):
@@ -258,7 +300,7 @@ def _panel(shell, second, back):
         yield _ellipse(x + 0.17, y + aside, 0.024, 0.024), WHITE
 
 
-PICTURES = (
+PICTURES: tuple[tuple[str, Callable[..., object], Callable[..., object], str, str, str, str], ...] = (
     # name, body, pattern, shell, pattern's colour, skin, rim
     ("meadow", _pond, _plates, "#3f8f4f", "#2b6b3a", "#8fce7a", "#28562f"),
     ("bolt", _robot, _panel, "#c9d2da", "#e0803a", "#59636e", "#7d8892"),

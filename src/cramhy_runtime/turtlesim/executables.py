@@ -6,23 +6,45 @@
 
 from __future__ import annotations
 
-from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
 from .draw_square import DrawSquare
 from .mimic import Mimic
 from .node import Turtlesim
 from .teleop import Teleop
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Literal, overload
 
-PROGRAMS = {"turtlesim_node": Turtlesim, "turtle_teleop_key": Teleop, "draw_square": DrawSquare, "mimic": Mimic}
+if TYPE_CHECKING:
+    from .signatures import Echo, Words
+    from .roscpp import Program
 
 
-def start(executable, arguments=(), echo=None):
+PROGRAMS: dict[str, type[Turtlesim | Teleop | DrawSquare | Mimic]] = {
+    "turtlesim_node": Turtlesim,
+    "turtle_teleop_key": Teleop,
+    "draw_square": DrawSquare,
+    "mimic": Mimic,
+}
+
+
+@overload
+def start(executable: Literal["turtlesim_node"], arguments: Words = (), echo: Echo = None) -> Turtlesim: ...
+@overload
+def start(executable: Literal["turtle_teleop_key"], arguments: Words = (), echo: Echo = None) -> Teleop: ...
+@overload
+def start(executable: Literal["draw_square"], arguments: Words = (), echo: Echo = None) -> DrawSquare: ...
+@overload
+def start(executable: Literal["mimic"], arguments: Words = (), echo: Echo = None) -> Mimic: ...
+@overload
+def start(executable: str, arguments: Words = (), echo: Echo = None) -> Program: ...
+def start(executable: str, arguments: Words = (), echo: Echo = None) -> Program:
     """Start an executable of the package with the words of its command line (``__name:=x``, ``__ns:=/y``, ``a:=b``, ``_p:=v``).
 
     echo: where its log goes, see `Program`. Result: the `Program`. An unknown executable is a simple error.
     """
     program = PROGRAMS.get(executable)
     if program is None:
-        conditions.error(SimpleError(
-            "~a", f"The package turtlesim has no executable {executable}. Executables: {' '.join(sorted(PROGRAMS))}."))
+        conditions.error(
+            SimpleError("~a", f"The package turtlesim has no executable {executable}. Executables: {' '.join(sorted(PROGRAMS))}.")
+        )
     return program(arguments=arguments, echo=echo)

@@ -10,8 +10,15 @@ from __future__ import annotations
 from array import array
 from bisect import bisect_left
 
-from .ink import Ink
-from .measures import EXTENT
+from .strokes import Ink
+from .dimensions import EXTENT
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .node import Inhabitant, Turtlesim
+    from .signatures import Colour, Era, Sample, Stroke, TimedStroke
+    from .world import Turtle
+
 
 MOST_SAMPLES = 250_000
 """Poses, strokes and clears that are kept: half an hour of one turtle that draws all the time, thirty megabytes."""
@@ -23,13 +30,14 @@ class Track:
 
     __slots__ = ("turtle", "name", "number", "begin", "end", "ticks", "poses", "last")
 
-    def __init__(self, turtle, tick):
+    def __init__(self, turtle: Turtle, tick: int):
         self.turtle, self.name, self.number = turtle, turtle.name, turtle.number
-        self.begin, self.end = tick, None
+        self.begin = tick
+        self.end: int | None = None
         self.ticks, self.poses = array("I"), array("d")
-        self.last = None
+        self.last: tuple[float, float, float] | None = None
 
-    def see(self, tick):
+    def see(self, tick: int) -> None:
         """Note where the turtle is, if that is news; before a move out of rest, also that it had not moved until then."""
         turtle = self.turtle
         pose = (turtle.x, turtle.y, turtle.heading)
@@ -42,12 +50,12 @@ class Track:
         self.poses.extend(pose)
         self.last = pose
 
-    def samples(self):
+    def samples(self) -> list[Sample]:
         """[(tick, x, y, heading), ...], metres on the screen and radians; between two samples the turtle moved evenly."""
         values = self.poses
         return [(tick, *values[3 * index : 3 * index + 3]) for index, tick in enumerate(self.ticks)]
 
-    def forget(self, cut):
+    def forget(self, cut: int) -> None:
         """Keep only what was from tick ``cut`` on, and count ticks from there."""
         first = max(bisect_left(self.ticks, cut + 1) - 1, 0)  # the last sample before says where the turtle stood
         self.ticks = array("I", (max(tick - cut, 0) for tick in self.ticks[first:]))
@@ -59,23 +67,25 @@ class Track:
 class History:
     """``tracks`` are the turtles' ways, ``strokes`` and ``clears`` what happened to the paper, ``ticks`` how many have passed."""
 
-    def __init__(self, simulator):
+    def __init__(self, simulator: Turtlesim):
         self.simulator = simulator
         self.ticks = 0
-        self.tracks = []
-        self.there = {}
-        self._inhabitants = None
-        self.clears = [(0, simulator.canvas.background)]  # (tick, background)
+        self.tracks: list[Track] = []
+        self.there: dict[int, Track] = {}
+        self._inhabitants: dict[str, Inhabitant] | None = None
+        self.clears: list[tuple[int, Colour]] = [(0, simulator.canvas.background)]  # (tick, background)
         self._cleared = simulator.canvas.clears
-        self.strokes = [(0, *stroke) for stroke in simulator.canvas.strokes()]  # (tick, x1, y1, x2, y2, colour, width), y up
+        self.strokes: list[TimedStroke] = [
+            (0, *stroke) for stroke in simulator.canvas.strokes()
+        ]  # (tick, x1, y1, x2, y2, colour, width), y up
         self._note_turtles()
         simulator.observe(self.see)
 
-    def stop(self):
+    def stop(self) -> None:
         """Look on no more."""
         self.simulator.unobserve(self.see)
 
-    def see(self, simulator, strokes):
+    def see(self, simulator: Turtlesim, strokes: list[Stroke]) -> None:
         """One tick (the callback of `Turtlesim.observe`)."""
         self.ticks = tick = self.ticks + 1
         canvas = simulator.canvas
@@ -91,16 +101,15 @@ class History:
         if not tick % _LOOK and self._size() > MOST_SAMPLES:
             self._shorten()
 
-    def eras(self):
+    def eras(self) -> list[Era]:
         """[(tick, background, strokes), ...]: each clear, or the beginning, with what was drawn until the next."""
         begins = [bisect_left(self.strokes, (tick,)) for tick, _ in self.clears] + [len(self.strokes)]
-        return [(tick, background, self.strokes[begins[index] : begins[index + 1]])
-                for index, (tick, background) in enumerate(self.clears)]
+        return [(tick, background, self.strokes[begins[index] : begins[index + 1]]) for index, (tick, background) in enumerate(self.clears)]
 
-    def _size(self):
+    def _size(self) -> int:
         return len(self.strokes) + len(self.clears) + sum(len(track.ticks) for track in self.tracks)
 
-    def _shorten(self):
+    def _shorten(self) -> None:
         """Forget the older half, but for what lay on the paper in its middle."""
         cut = self.ticks // 2
         paper = Ink()
@@ -109,14 +118,15 @@ class History:
         last = bisect_left(self.strokes, (cut + 1,))
         paper.take([(x2, EXTENT - y2, x1, EXTENT - y1, colour, width) for _, x1, y1, x2, y2, colour, width in self.strokes[first:last]])
         self.strokes = [(0, *stroke) for stroke in paper.strokes()[-MOST_SAMPLES // 4 :]] + [
-            (tick - cut, *stroke) for tick, *stroke in self.strokes[last:]]
+            (tick - cut, *stroke) for tick, *stroke in self.strokes[last:]
+        ]
         self.clears = [(max(tick - cut, 0), background) for tick, background in self.clears[begin:]]
         self.tracks = [track for track in self.tracks if track.end is None or track.end > cut]
         for track in self.tracks:
             track.forget(cut)
         self.ticks -= cut
 
-    def _note_turtles(self):
+    def _note_turtles(self) -> None:
         self._inhabitants = self.simulator.inhabitants
         now = {id(inhabitant): inhabitant.turtle for inhabitant in self._inhabitants.values()}
         for key in [key for key in self.there if key not in now]:

@@ -6,8 +6,12 @@ The speed of a pose is a magnitude, so a leader that drives backwards or sideway
 
 from __future__ import annotations
 
-from ..ros.messages import message_class_exact
+from ..ros.messages import RosMessage, message_class
 from .roscpp import Program
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .signatures import Echo, Words
 
 
 class Mimic(Program):
@@ -15,15 +19,23 @@ class Mimic(Program):
 
     name = "turtle_mimic"
 
-    def __init__(self, leader="input", follower="output", name=None, namespace="/", arguments=(), echo=None):
+    def __init__(
+        self,
+        leader: str = "input",
+        follower: str = "output",
+        name: str | None = None,
+        namespace: str = "/",
+        arguments: Words = (),
+        echo: Echo = None,
+    ):
         super().__init__(name, namespace, arguments, echo=echo)
-        self.twist = message_class_exact("geometry_msgs/Twist")
+        self.twist = message_class("geometry_msgs/Twist")
         node = self.node
         # The original makes a node handle of each name, so the handle's name is remapped and then the topic's.
         self.publication = node.advertise(f"{node.resolve(follower)}/cmd_vel", self.twist)
-        node.subscribe(f"{node.resolve(leader)}/pose", message_class_exact("turtlesim/Pose"), self._follow, queue=1)
+        node.subscribe(f"{node.resolve(leader)}/pose", message_class("turtlesim/Pose"), self._follow, queue=1)
 
-    def _follow(self, pose):
+    def _follow(self, pose: RosMessage) -> None:
         message = self.twist()
         message.linear.x, message.angular.z = pose.linear_velocity, pose.angular_velocity
         self.publication.publish(message)

@@ -11,17 +11,26 @@ import math
 from weakref import WeakKeyDictionary
 
 from .. import kernel
-from ..lisp import conditions
-from ..lisp.data import DoubleFloat
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import DoubleFloat
 from ..ros import graph, rosout, wire
-from ..ros.messages import message_class_exact, service_type_exact
+from ..ros.messages import message_class, service_type
 from ..ros.names import check_graph_name
 from ..ros.services import OfCaller, Refusal
 from .canvas import Canvas
 from .history import History
-from .measures import CENTRE, DRAWINGS, EXTENT
+from .dimensions import CENTRE, DRAWINGS, EXTENT
 from .roscpp import Program
 from .world import TICK, Turtle
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..ros.messages import RosMessage
+    from ..ros.services import Service
+    from .signatures import Echo, Observer, Stroke, Words
+
 
 BACKGROUND = (("background_r", 69), ("background_g", 86), ("background_b", 255))
 _double = DoubleFloat
@@ -32,14 +41,14 @@ class Inhabitant:
 
     of_client = False
 
-    def __init__(self, simulator, turtle):
+    def __init__(self, simulator: Turtlesim, turtle: Turtle):
         node, name = simulator.node, turtle.name
         self.turtle = turtle
         self.pose = node.advertise(f"{name}/pose", simulator.pose_type)
         self.colour = node.advertise(f"{name}/color_sensor", simulator.colour_type)
-        self.commands = node.subscribe(f"{name}/cmd_vel", message_class_exact("geometry_msgs/Twist"), self._command, queue=1)
-        self.services = [
-            node.serve(f"{name}/{service}", service_type_exact(f"turtlesim/{kind}"), handler)
+        self.commands = node.subscribe(f"{name}/cmd_vel", message_class("geometry_msgs/Twist"), self._command, queue=1)
+        self.services: list[Service] = [
+            node.serve(f"{name}/{service}", service_type(f"turtlesim/{kind}"), handler)
             for service, kind, handler in (
                 ("set_pen", "SetPen", self._set_pen),
                 ("teleport_absolute", "TeleportAbsolute", self._teleport_absolute),
@@ -48,7 +57,7 @@ class Inhabitant:
         ]
         self.simulator = simulator
 
-    def leave(self):
+    def leave(self) -> None:
         node = self.simulator.node
         for publication in (self.pose, self.colour):
             node.unadvertise(publication.name)
@@ -56,23 +65,23 @@ class Inhabitant:
         for service in self.services:
             node.withdraw(service.name)
 
-    def _command(self, twist):
+    def _command(self, twist: RosMessage) -> None:
         linear = twist.linear
         self.turtle.command(wire.as_float(linear.x), wire.as_float(linear.y), wire.as_float(twist.angular.z), kernel.now())
 
-    def _set_pen(self, request):
+    def _set_pen(self, request: RosMessage) -> RosMessage:
         self.turtle.set_pen(request.r, request.g, request.b, request.width, request.off)
         return self.services[0].type.response()
 
-    def _teleport_absolute(self, request):
+    def _teleport_absolute(self, request: RosMessage) -> RosMessage:
         self.turtle.teleport_absolute(*(wire.as_float(value) for value in request.values()))
         return self.services[1].type.response()
 
-    def _teleport_relative(self, request):
+    def _teleport_relative(self, request: RosMessage) -> RosMessage:
         self.turtle.teleport_relative(*(wire.as_float(value) for value in request.values()))
         return self.services[2].type.response()
 
-    def publish(self):
+    def publish(self) -> None:
         """The pose and the colour of this tick, for those who listen."""
         simulator = self.simulator
         if self.pose.connections:
@@ -95,15 +104,15 @@ class Turtlesim(Program):
 
     name = "turtlesim"
 
-    def __init__(self, name=None, namespace="/", arguments=(), echo=None):
+    def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), echo: Echo = None):
         super().__init__(name, namespace, arguments, spins=True, echo=echo)
-        self.pose_type, self.colour_type = message_class_exact("turtlesim/Pose"), message_class_exact("turtlesim/Color")
+        self.pose_type, self.colour_type = message_class("turtlesim/Pose"), message_class("turtlesim/Color")
         self.canvas = Canvas()
-        self.inhabitants = {}
+        self.inhabitants: dict[str, Inhabitant] = {}
         self.counter = self.spawned = 0
         self.started = False
-        self.observers = ()
-        self.history = None
+        self.observers: tuple[Observer, ...] = ()
+        self.history: History | None = None
         for parameter, value in BACKGROUND:
             full = self.node.resolve("~" + parameter)
             if not self.graph.parameters.has(full):
@@ -118,10 +127,10 @@ class Turtlesim(Program):
             callback(self)
 
     @property
-    def turtles(self):
+    def turtles(self) -> dict[str, Turtle]:
         return {name: inhabitant.turtle for name, inhabitant in self.inhabitants.items()}
 
-    def tick(self):
+    def tick(self) -> None:
         """What happens every 16 ms."""
         node = self.node
         if node.inbox:
@@ -138,15 +147,16 @@ class Turtlesim(Program):
             if inhabitant.pose.connections or inhabitant.colour.connections:
                 inhabitant.publish()
             if talkative:
-                self.log(rosout.DEBUG, f"[{self.node.resolve(turtle.name)}]: pos_x: {turtle.x:f} pos_y: {turtle.y:f} "
-                                        f"theta: {turtle.heading:f}")
+                self.log(
+                    rosout.DEBUG, f"[{self.node.resolve(turtle.name)}]: pos_x: {turtle.x:f} pos_y: {turtle.y:f} theta: {turtle.heading:f}"
+                )
             if turtle.segment is not None:
                 turtle.draw()
         if self.observers:
             self._show()
         node.tick_done()
 
-    def observe(self, callback):
+    def observe(self, callback: Observer) -> None:
         """Have ``callback(simulator, strokes)`` called at the end of every tick, after all updates; it must not wait.
 
         strokes: a list of what the pens drew in this tick, ``(x1, y1, x2, y2, (r, g, b), width)``, in metres of the world (y up) and
@@ -160,24 +170,27 @@ class Turtlesim(Program):
             self.canvas.news = []
         self.observers = (*self.observers, callback)
 
-    def unobserve(self, callback):
+    def unobserve(self, callback: Observer) -> None:
         """Call ``callback`` no more; one that does not observe is no error."""
         self.observers = tuple(each for each in self.observers if each != callback)
         if not self.observers:
             self.canvas.news = None
 
-    def keep_history(self):
+    def keep_history(self) -> History:
         """Remember from now on what happens, for `replay`; the `History`, the same one when it is asked for again."""
         if self.history is None:
             self.history = History(self)
         return self.history
 
-    def _show(self):
+    def _show(self) -> None:
         news = self.canvas.news
-        strokes = []
+        strokes: list[Stroke] = []
         if news:
-            strokes = [(x1, EXTENT - y1, x2, EXTENT - y2, colour, width) for x2, y2, x1, y1, colour, width in news
-                       if (x1 + y1 + x2 + y2) * 0.0 == 0.0]  # a line to nowhere is no stroke
+            strokes = [
+                (x1, EXTENT - y1, x2, EXTENT - y2, colour, width)
+                for x2, y2, x1, y1, colour, width in news
+                if (x1 + y1 + x2 + y2) * 0.0 == 0.0
+            ]  # a line to nowhere is no stroke
             news.clear()
         for observer in self.observers:
             try:
@@ -186,7 +199,7 @@ class Turtlesim(Program):
                 self.unobserve(observer)
                 kernel.unhandled(kernel.current(), problem)
 
-    def spawn(self, name, x, y, heading):
+    def spawn(self, name: str, x: float, y: float, heading: float) -> str:
         """A new turtle at world coordinates; an empty name stands for the next free ``turtleN``. Returns the name."""
         if not name:
             while True:
@@ -208,12 +221,12 @@ class Turtlesim(Program):
         self.log(rosout.INFO, f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{heading:f}]")
         return name
 
-    def _taken(self, name):
+    def _taken(self, name: str) -> bool:
         """Whether a turtle has the name, or one that means the same (``/turtle1``): the two would share their topics."""
         full = self.node.resolve(name)
         return any(self.node.resolve(other) == full for other in self.inhabitants)
 
-    def _check_number(self, name, caller):
+    def _check_number(self, name: str, caller: Any) -> None:
         """Refuse a client of another process that asks for too much (`ros.services.start_call`)."""
         if caller is None:
             return
@@ -223,7 +236,7 @@ class Turtlesim(Program):
         if len(name) > caller.limits.name:
             raise Refusal(f"The name of the turtle has {len(name)} characters; {caller.limits.name} are allowed.")
 
-    def kill(self, name):
+    def kill(self, name: str) -> None:
         """Remove a turtle; its trail stays."""
         if name not in self.inhabitants:
             self.log(rosout.ERROR, f"Tried to kill turtle [{name}], which does not exist")
@@ -231,12 +244,12 @@ class Turtlesim(Program):
         self.inhabitants[name].leave()
         self.inhabitants = {other: inhabitant for other, inhabitant in self.inhabitants.items() if other != name}
 
-    def clear(self):
+    def clear(self) -> None:
         """Fill the paper with the background, as the parameters are now."""
         self.log(rosout.INFO, "Clearing turtlesim.")
         self._clear()
 
-    def reset(self):
+    def reset(self) -> None:
         """One turtle in the centre, clean paper."""
         self.log(rosout.INFO, "Resetting turtlesim.")
         for inhabitant in self.inhabitants.values():
@@ -246,13 +259,13 @@ class Turtlesim(Program):
         self.spawn("", CENTRE, CENTRE, 0.0)
         self._clear()
 
-    def _clear(self):
+    def _clear(self) -> None:
         values = [(self.number("~" + parameter, default), default) for parameter, default in BACKGROUND]
         self.canvas.clear([math.floor((value if math.isfinite(value) else default) + 0.5) & 255 for value, default in values])
 
-    def _offer_services(self):
-        empty = service_type_exact("std_srvs/Empty")
-        spawn, kill = service_type_exact("turtlesim/Spawn"), service_type_exact("turtlesim/Kill")
+    def _offer_services(self) -> None:
+        empty = service_type("std_srvs/Empty")
+        spawn, kill = service_type("turtlesim/Spawn"), service_type("turtlesim/Kill")
 
         def do(action, kind):
             def handler(_):
@@ -277,39 +290,42 @@ class Turtlesim(Program):
         self.node.serve("kill", kill, kill_turtle)
 
 
-_expecting = WeakKeyDictionary()  # graph -> functions that get every simulator that starts
+_expecting: WeakKeyDictionary[graph.Graph, list[Callable[[Turtlesim], object]]] = (
+    WeakKeyDictionary()
+)  # graph -> functions that get every simulator that starts
 
 
-def simulators():
+def simulators() -> list[Turtlesim]:
     """The simulators that run in the active graph, in the order of their start."""
     return [node.program for node in graph.active().nodes.values() if isinstance(getattr(node, "program", None), Turtlesim)]
 
 
-def each_simulator(callback):
+def each_simulator(callback: Callable[[Turtlesim], object]) -> None:
     """Have ``callback(simulator)`` called for each simulator of the active graph: those that run at once, others when they start."""
     _expecting.setdefault(graph.active(), []).append(callback)
     for simulator in simulators():
         callback(simulator)
 
 
-def start_turtlesim(name=None, namespace="/", echo=None):
+def start_turtlesim(name: str | None = None, namespace: str = "/", echo: Echo = None) -> Turtlesim:
     """Start the simulator in the active graph; see `Program`."""
     return Turtlesim(name, namespace, echo=echo)
 
 
-def running_simulator():
+def running_simulator() -> Turtlesim | None:
     """The simulator whose node is ``/turtlesim``, else the one that runs longest, or ``None``."""
     running = simulators()
     return next((each for each in running if each.node.name == "/turtlesim"), running[0] if running else None)
 
 
-def needed_simulator():
+def needed_simulator() -> Turtlesim:
     """The `running_simulator`; that there is none is a simple error."""
     return running_simulator() or conditions.error(
-        'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).')
+        'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).'
+    )
 
 
-def start_with_first_node(echo=None):
+def start_with_first_node(echo: Echo = None) -> None:
     """Have the simulator start with the first ``start-ros-node``, as if ``turtlesim_node`` had been running before."""
 
     def start():

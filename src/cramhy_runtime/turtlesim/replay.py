@@ -17,9 +17,14 @@ from html import escape
 from .. import storage
 from . import sprites, stills
 from .canvas import Canvas
-from .ink import thinned_by
-from .measures import EXTENT, METRE, SIZE
+from .strokes import thinned_by
+from .dimensions import EXTENT, METRE, SIZE
 from .world import TICK
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .history import History
+
 
 LONGEST = 30.0
 UTMOST = 600.0
@@ -30,7 +35,7 @@ _CLOSE, _TURNED, _SHARP = 0.015, 0.05, 0.005
 """How far a turtle may be off its way, in metres, or off its heading, in radians; and how far a line, in metres."""
 
 
-def speed_for(history, speed=None):
+def speed_for(history: History, speed: float | None = None) -> float:
     """How many seconds of plan time pass in a second of the replay."""
     return speed or max(1.0, math.ceil(history.ticks * TICK / LONGEST))
 
@@ -38,7 +43,7 @@ def speed_for(history, speed=None):
 # --------------------------------------------------------------------------------------------------------------------- SVG
 
 
-def write_svg(history, path, speed=None):
+def write_svg(history: History, path: str, speed: float | None = None) -> None:
     """Write the replay as an animated SVG. speed: seconds of plan time per second, ``None``: see the module."""
     speed = speed_for(history, speed)
     writer = _Writer(history.ticks * TICK / speed + REST, speed)
@@ -72,8 +77,10 @@ class _Writer:
         moments = [(0.0, moments[0][1]), *moments, (1.0, moments[-1][1])]
         times = ";".join(f"{share:.5f}".rstrip("0").rstrip(".") for share, _ in moments)
         values = ";".join(value for _, value in moments)
-        return (f'<{element} attributeName="{attribute}"{more} dur="{self.length:.2f}s" repeatCount="indefinite" '
-                f'keyTimes="{times}" values="{values}"/>')
+        return (
+            f'<{element} attributeName="{attribute}"{more} dur="{self.length:.2f}s" repeatCount="indefinite" '
+            f'keyTimes="{times}" values="{values}"/>'
+        )
 
     def shown(self, begin, end):
         """(attribute, animation) of what is there from one tick to another, or to the end."""
@@ -112,7 +119,8 @@ class _Writer:
             + (self.animation("animateTransform", "transform", places, transform.format("translate")) if len(way) > 1 else "")
             + f'<g transform="rotate({turns[-1][1]})">'
             + (self.animation("animateTransform", "transform", turns, transform.format("rotate")) if len(way) > 1 else "")
-            + f"{stills.svg_turtle(track.number)}</g></g>")
+            + f"{stills.svg_turtle(track.number)}</g></g>"
+        )
 
 
 def _moved(samples):
@@ -157,15 +165,24 @@ def _polylines(strokes):
 # --------------------------------------------------------------------------------------------------------------------- GIF
 
 
-def write_gif(history, path, speed=None):
+def write_gif(history: History, path: str, speed: float | None = None) -> None:
     """Write the replay as a GIF that runs for ever. speed: seconds of plan time per second, ``None``: see the module."""
     moments = _moments(history, speed_for(history, speed))
     palette = _palette(history, [*moments[:: max(len(moments) // 6, 1)][:6], moments[-1]])
     frames = (image.quantize(palette=palette, dither=0) for image in _painted(history, moments))
     first = next(frames)
     with storage.writing(path) as file:
-        stills.save_image(first, file, "GIF", save_all=True, append_images=frames, duration=[round(moment[3] * 1000) for moment in moments],
-                          loop=0, disposal=1, optimize=False)
+        stills.save_image(
+            first,
+            file,
+            "GIF",
+            save_all=True,
+            append_images=frames,
+            duration=[round(moment[3] * 1000) for moment in moments],
+            loop=0,
+            disposal=1,
+            optimize=False,
+        )
 
 
 def _palette(history, moments):
@@ -189,8 +206,11 @@ def _moments(history, speed):
         while era + 1 < len(eras) and eras[era + 1][0] <= tick:
             era += 1
         drawn = bisect_left(eras[era][2], (tick + 1e-9,))
-        turtles = [(track.number, *_place(samples, tick)) for track, samples in tracks
-                   if track.begin <= tick and (track.end is None or tick < track.end)]
+        turtles = [
+            (track.number, *_place(samples, tick))
+            for track, samples in tracks
+            if track.begin <= tick and (track.end is None or tick < track.end)
+        ]
         if moments and moments[-1][:3] == [era, drawn, turtles]:
             moments[-1][3] += FRAME
         else:

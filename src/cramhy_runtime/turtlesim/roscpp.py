@@ -10,10 +10,15 @@ from __future__ import annotations
 
 import sys
 
-from ..lisp import conditions
-from ..lisp.condition_types import SimpleError
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
 from ..ros import graph, names, rosout
 from ..ros.loggers import Loggers
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .signatures import Echo, Words
+
 
 LABELS = {rosout.DEBUG: "DEBUG", rosout.INFO: " INFO", rosout.WARN: " WARN", rosout.ERROR: "ERROR"}
 MOST_LINES = 1_000
@@ -32,7 +37,7 @@ class Program:
     name = ""
     package = "turtlesim"
 
-    def __init__(self, name=None, namespace="/", arguments=(), spins=False, echo=None):
+    def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), spins: bool = False, echo: Echo = None):
         self.graph = graph.active()
         naming = names.Naming(name or self.name, namespace)
         words = names.split_arguments(arguments)
@@ -43,21 +48,22 @@ class Program:
             conditions.error(SimpleError("~a", f"A node cannot be called {naming.node_name}. {complaint}"))
         self.node = self.graph.add_node(naming, spins)
         self.node.program = self
-        self.echo, self.lines = echo, []
+        self.echo = echo
+        self.lines: list[str] = []
         for parameter, value, _ in reversed(naming.private_parameters):
             self.graph.parameters.set(self.node.resolve(parameter), value)
         rosout.join(self.node)
         self.loggers = Loggers(self.node, self.package)
 
     @property
-    def alive(self):
+    def alive(self) -> bool:
         return self.node.alive
 
-    def shutdown(self):
+    def shutdown(self) -> None:
         """Leave the graph."""
         self.node.shutdown()
 
-    def number(self, parameter, default):
+    def number(self, parameter: str, default: float) -> float:
         """The value of a parameter as roscpp's ``param`` reads a number; ``default`` when it is not set or something else."""
         try:
             value = self.graph.parameters.get(self.node.resolve(parameter))
@@ -65,7 +71,7 @@ class Program:
             return default
         return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else default
 
-    def log(self, level, text):
+    def log(self, level: int, text: str) -> None:
         """A log line as roscpp prints it, and a message on ``/rosout``; nothing when the node's logger is less talkative."""
         if not self.loggers.enabled(level):
             return
@@ -82,7 +88,7 @@ class Program:
             print(line, file=sys.stderr if self.echo is True else self.echo)
 
 
-def _rank(word):
+def _rank(word: str) -> int:
     """To roscpp name space and name count before all other words of a command line."""
     left = word.partition(":=")[0]
     return _FIRST.index(left) if left in _FIRST else len(_FIRST)

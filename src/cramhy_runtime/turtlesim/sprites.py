@@ -10,7 +10,14 @@ import re
 from functools import cache, lru_cache
 
 from . import drawing
-from .measures import DRAWINGS, METRE, SIZE
+from .dimensions import DRAWINGS, METRE, SIZE
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
+
+    from .signatures import Point
+
 
 _FINER = 8
 _STEPS = 8  # straight pieces per Bézier curve
@@ -18,9 +25,9 @@ MARGIN = 0.6
 """Metres from the middle of a turtle to the edge of its sprite."""
 
 
-def outlines(data):
+def outlines(data: str) -> list[list[Point]]:
     """Path data as `drawing` writes them, as a list of polygons ``[(x, y), ...]``."""
-    found = []
+    found: list[list[Any]] = []
     for command, numbers in re.findall(r"([MLCZ])([^MLCZ]*)", data):
         values = [float(number) for number in numbers.split()]
         points = list(zip(values[::2], values[1::2]))
@@ -38,13 +45,13 @@ def outlines(data):
 
 
 @cache
-def _polygons(number):
+def _polygons(number: int) -> list[tuple[list[Point], str]]:
     shapes = drawing.shapes()
     return [(outline, path["fill"]) for path in shapes[number % len(shapes)]["paths"] for outline in outlines(path["d"])]
 
 
 @lru_cache(maxsize=1024)
-def sprite(number, degrees):
+def sprite(number: int, degrees: int) -> Picture:
     """The drawing ``number`` of a turtle whose heading is ``degrees``, as a square Pillow image with transparency."""
     from PIL import Image, ImageDraw
 
@@ -58,7 +65,7 @@ def sprite(number, degrees):
     return image.resize((size, size), Image.Resampling.BOX)
 
 
-def put(image, number, x, y, heading):
+def put(image: Picture, number: int, x: float, y: float, heading: float) -> None:
     """Paint a turtle on a Pillow image of the window; x and y in metres on the screen (y down), heading in radians.
 
     What stands far outside, or nowhere (not a number), is not painted.

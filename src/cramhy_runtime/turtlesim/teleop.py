@@ -7,8 +7,13 @@ are typed, in any portions. Source: turtlesim.md 10.
 
 from __future__ import annotations
 
-from ..ros.messages import message_class_exact
+from ..ros.messages import message_class
 from .roscpp import Program
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .signatures import Echo, Words
+
 
 BANNER = "Reading from keyboard\n---------------------------\nUse arrow keys to move the turtle. 'q' to quit.\n"
 KEYS = {"A": (1, 0), "B": (-1, 0), "C": (0, -1), "D": (0, 1)}
@@ -20,15 +25,15 @@ class Teleop(Program):
 
     name = "teleop_turtle"
 
-    def __init__(self, turtle="turtle1", name=None, namespace="/", arguments=(), echo=None):
+    def __init__(self, turtle: str = "turtle1", name: str | None = None, namespace: str = "/", arguments: Words = (), echo: Echo = None):
         super().__init__(name, namespace, arguments, echo=echo)
         self.turtle = turtle
-        self.twist = message_class_exact("geometry_msgs/Twist")
+        self.twist = message_class("geometry_msgs/Twist")
         self.publication = self.node.advertise(f"{turtle}/cmd_vel", self.twist)
         self.linear = self.number("scale_linear", 2.0)
         self.angular = self.number("scale_angular", 2.0)
 
-    def press(self, key):
+    def press(self, key: str) -> bool:
         """One key: ``"up"``, ``"down"``, ``"left"``, ``"right"``, ``"q"``, or the byte it ends in. True when it moved the turtle."""
         key = NAMED_KEYS.get(key, key)
         if key == "q":
@@ -42,7 +47,7 @@ class Teleop(Program):
         self.publication.publish(message)
         return True
 
-    def feed(self, data):
+    def feed(self, data: bytes) -> bool:
         """Bytes as the terminal sends them, escape sequences included. Whether the program still runs: ``q`` ends it."""
         for byte in data:
             self.press(chr(byte))

@@ -11,8 +11,16 @@ from __future__ import annotations
 import math
 import struct
 
-from ..lisp.numbers.arithmetic import single
-from .measures import EXTENT
+from cramhy_runtime.ground.numbers import single
+from .dimensions import EXTENT
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .canvas import Canvas
+    from .signatures import Colour
+
 
 _five_singles = struct.Struct("<5f")
 _cos, _sin, _floor, _sqrt = math.cos, math.sin, math.floor, math.sqrt
@@ -52,40 +60,41 @@ class Turtle:
         "segment",
     )
 
-    def __init__(self, name, number, x, y, heading, canvas, warn):
+    def __init__(self, name: str, number: int, x: float, y: float, heading: float, canvas: Canvas, warn: Callable[[str], object]):
         self.name, self.number = name, number
         self.x, self.y, self.heading = x, EXTENT - y, heading
         self.forward = self.sideways = self.turn = 0.0
         self.commanded = -math.inf
-        self.pen_on, self.pen_colour, self.pen_width = True, DEFAULT_PEN, 3
-        self.teleports = []
+        self.pen_on, self.pen_width = True, 3
+        self.pen_colour: Colour = DEFAULT_PEN
+        self.teleports: list[tuple[float, float, float, bool]] = []
         self.canvas, self.warn = canvas, warn
         self.at_rest = False
-        self._pose = None
-        self.segment = None
+        self._pose: tuple[float, ...] | None = None
+        self.segment: tuple[float, float] | None = None
 
-    def command(self, forward, sideways, turn, now):
+    def command(self, forward: float, sideways: float, turn: float, now: float) -> None:
         """A velocity command received at the time ``now``; it replaces the one before."""
         self.forward, self.sideways, self.turn, self.commanded = forward, sideways, turn, now
         self.at_rest = False
 
-    def teleport_absolute(self, x, y, heading):
+    def teleport_absolute(self, x: float, y: float, heading: float) -> None:
         """To (x, y) in world coordinates, at the next update."""
         self.teleports.append((x, y, heading, True))
         self.at_rest = False
 
-    def teleport_relative(self, linear, angular):
+    def teleport_relative(self, linear: float, angular: float) -> None:
         """Turn by ``angular``, then move by ``linear``, at the next update."""
         self.teleports.append((linear, 0.0, angular, False))
         self.at_rest = False
 
-    def set_pen(self, red, green, blue, width, off):
+    def set_pen(self, red: int, green: int, blue: int, width: int, off: object) -> None:
         """With ``off`` the rest of the request does not count (turtlesim.md 7.1)."""
         self.pen_on = not off
         if not off:
             self.pen_colour, self.pen_width = (red, green, blue), width or 1
 
-    def update(self, now):
+    def update(self, now: float) -> None:
         """One tick, up to the walls; the line of this move is drawn by `draw`, after the colour was sampled."""
         if self.at_rest:
             return
@@ -114,7 +123,7 @@ class Turtle:
         elif not forward and not sideways and not self.turn and heading == old_heading:
             self.at_rest = True
 
-    def draw(self):
+    def draw(self) -> None:
         """The line of the last update."""
         segment = self.segment
         if segment is not None:
@@ -122,7 +131,7 @@ class Turtle:
             if self.pen_on:
                 self._line(segment[0], segment[1], self.x, self.y)
 
-    def pose(self):
+    def pose(self) -> tuple[float, float, float, float, float]:
         """(x, y up, heading, speed, turn) as they are published: rounded to 32 bits. The speed is never negative."""
         if self._pose is None:
             speed = _sqrt(self.forward * self.forward + self.sideways * self.sideways)
@@ -131,13 +140,13 @@ class Turtle:
                 self._pose = _five_singles.unpack(_five_singles.pack(*values))
             except OverflowError:
                 self._pose = tuple(single(value) for value in values)
-        return self._pose
+        return self._pose  # type: ignore[return-value]  # of five
 
-    def colour(self):
+    def colour(self) -> Colour:
         """The colour of the paper under the centre of the turtle."""
         return self.canvas.pixel(self.x, self.y)
 
-    def _teleport(self):
+    def _teleport(self) -> None:
         teleports, self.teleports = self.teleports, []
         for x, y, heading, absolute in teleports:
             old_x, old_y = self.x, self.y
@@ -151,11 +160,11 @@ class Turtle:
             if self.pen_on:
                 self._line(old_x, old_y, self.x, self.y)
 
-    def _line(self, old_x, old_y, x, y):
+    def _line(self, old_x: float, old_y: float, x: float, y: float) -> None:
         self.canvas.line(x, y, old_x, old_y, self.pen_colour, self.pen_width)
 
 
-def _direction(heading):
+def _direction(heading: float) -> tuple[float, float]:
     """Cosine and sine, as C++ has them: not a number where Python has an error."""
     try:
         return _cos(heading), _sin(heading)
@@ -163,7 +172,7 @@ def _direction(heading):
         return math.nan, math.nan
 
 
-def _wrap(heading):
+def _wrap(heading: float) -> float:
     if heading - heading != 0.0:
         return math.nan
     return heading - TWO_PI * _floor((heading + PI) / TWO_PI)

@@ -6,12 +6,13 @@ those who wait at it hear of it. A task that is evaporated while it waits does n
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import Error, error, type_error
-from cramhy_runtime.lisp.data import truth
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.ground.conditions import Error, error, type_error
+from cramhy_runtime.ground.data import truth
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.ground.printing import prin1_to_string
 
-from .lines import Line, need
+from .wait_queue import Line, need
 
 ERROR = keyword("ERROR")
 PASSED, BROKEN = "passed", "broken"
@@ -128,6 +129,13 @@ def decrement_barrier_threshold(barrier, n=1):
     return barrier.threshold
 
 
-define_printer(Barrier, lambda barrier, stream: print_unreadable(
-    barrier, stream, f"{barrier.kind}{' ' + prin1_to_string(barrier.name) if barrier.name is not None else ''} "
-                     f"{len(barrier.line)}/{barrier.threshold}{' broken' if barrier.broken else ''}", identity=True))
+define_printer(
+    Barrier,
+    lambda barrier, stream: print_unreadable(
+        barrier,
+        stream,
+        f"{barrier.kind}{' ' + prin1_to_string(barrier.name) if barrier.name is not None else ''} "
+        f"{len(barrier.line)}/{barrier.threshold}{' broken' if barrier.broken else ''}",
+        identity=True,
+    ),
+)

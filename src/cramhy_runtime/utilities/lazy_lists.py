@@ -11,16 +11,17 @@ a second task that asks for a tail while a first one computes it waits for the f
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.conditions import error
-from cramhy_runtime.lisp.data import UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, one, truth
-from cramhy_runtime.lisp.dynamic import binding, special
-from cramhy_runtime.lisp.evaluation.functions import function_of
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer.printer import address, define_printer, output_object, print_unreadable, write
-from cramhy_runtime.lisp.printer.standard_printers import print_slots
-from cramhy_runtime.lisp.restarts import restart_case
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, one, truth
+from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.printing import write
+from cramhy_runtime.ground.printing import address, define_printer, output_object, print_unreadable
+from cramhy_runtime.ground.printing import print_slots
+from cramhy_runtime.ground.restarts import restart_case
 
-from .lines import Line
+from .wait_queue import Line
 from .symbols import sym
 
 CONT, NEXT, FINISH, REST = map(keyword, ("CONT", "NEXT", "FINISH", "REST"))
@@ -180,9 +181,14 @@ def lazy_list(initial, body, restarts=False):
                 if not restarts:
                     return one(body(leave("cont"), again, leave("finish"), *parameters))
                 return restart_case(
-                    [(CONT, leave("cont"), None), (NEXT, again, None), (FINISH, leave("finish"), None),
-                     (REST, lambda rest=None: rest, None)],
-                    lambda: one(body(leave("cont"), again, leave("finish"), *parameters)))
+                    [
+                        (CONT, leave("cont"), None),
+                        (NEXT, again, None),
+                        (FINISH, leave("finish"), None),
+                        (REST, lambda rest=None: rest, None),
+                    ],
+                    lambda: one(body(leave("cont"), again, leave("finish"), *parameters)),
+                )
             except _Leave as left:
                 if left.token is not token:
                     raise

@@ -11,12 +11,13 @@ from __future__ import annotations
 import weakref
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.collections.hash_tables import HashTable, make_hash_table
-from cramhy_runtime.lisp.conditions import SimpleError, error
-from cramhy_runtime.lisp.faces import lispify
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.ground.hash_tables import HashTable, make_hash_table
+from cramhy_runtime.ground.conditions import SimpleError, error
+from cramhy_runtime.ground.keyword_calls import lispify
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.ground.printing import prin1_to_string
 
-from .lines import Line, need, time_limit
+from .wait_queue import Line, need, time_limit
 
 
 class Lock:
@@ -34,8 +35,10 @@ class Lock:
         me = kernel.current()
         if self.holder is me:
             if not self.recursive:
-                error(SimpleError("Recursive lock attempt ~S.", self),
-                      hint="This task has the lock already. One that its holder may take again is made with MAKE-RECURSIVE-LOCK.")
+                error(
+                    SimpleError("Recursive lock attempt ~S.", self),
+                    hint="This task has the lock already. One that its holder may take again is made with MAKE-RECURSIVE-LOCK.",
+                )
             self.depth += 1
         elif self.holder is None:
             self.holder, self.depth = me, depth

@@ -4,15 +4,18 @@ A variable is a symbol whose name starts with ``?``; ``?_`` of the package cram-
 A segment variable starts with ``!?``, stands first in a list, and takes as few elements as will do. Bindings are an
 association list of (variable . value), newest first; ``nil`` is the empty one, so whoever can fail returns a second value.
 
-This is the library that plans call. The Prolog engine has terms of its own, see ``prolog/terms.py``. Source: prolog.md sections 2, 3.
+This is the library that plans call. The Prolog engine has terms of its own, see ``prolog/terms/terms.py``. Source: prolog.md sections 2, 3.
 """
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp import equality
-from cramhy_runtime.lisp.conditions import error, type_error, warn
-from cramhy_runtime.lisp.data import Cons, Keyword, LispString, MultipleValues, Symbol, list_from, one, truth
-from cramhy_runtime.lisp.evaluation.functions import function_of
+import itertools
+
+from cramhy_runtime.ground import equality
+from cramhy_runtime.kernel.active import checkpoint
+from cramhy_runtime.ground.conditions import error, type_error, warn
+from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, list_from, one, truth
+from cramhy_runtime.ground.functions import function_of
 
 from .lazy_lists import LazyTail, lazy_cdr
 from .symbols import CUT
@@ -20,7 +23,7 @@ from .symbols import CUT
 ANONYMOUS = CUT.intern("?_")
 ANONYMOUS_SEGMENT = CUT.intern("!?_")
 
-_counter = 0
+_counter = itertools.count(1)
 
 
 def same_atom(a, b):
@@ -85,9 +88,7 @@ def var_name(var):
 
 def fresh_name(base):
     """An uninterned variable whose name is ``base`` and a number."""
-    global _counter
-    _counter += 1
-    return Symbol(f"{base}{_counter}")
+    return Symbol(f"{base}{next(_counter)}")
 
 
 def gen_var(base="?VAR-"):
@@ -229,6 +230,7 @@ def patterns_eq(pattern_1, pattern_2):
 
 def _patterns_eq(pattern_1, pattern_2):
     while isinstance(pattern_1, Cons) and isinstance(pattern_2, Cons):
+        checkpoint()
         a, b = pattern_1.car, pattern_2.car
         if isinstance(a, Cons) and isinstance(b, Cons):
             if not _patterns_eq(a, b):
@@ -304,9 +306,11 @@ def pat_match_p(pat, seq, *options):
 
 def _match(pat, seq, bdgs, test):
     while True:
+        checkpoint()
         if isinstance(pat, Cons) and segment_variable(pat.car):
-            result = match_segvar(pat, seq, bdgs, lambda p, s, b: MultipleValues(
-                (lambda r: (None, None) if r is _FAIL else (r, True))(_match(p, s, b, test))))
+            result = match_segvar(
+                pat, seq, bdgs, lambda p, s, b: MultipleValues((lambda r: (None, None) if r is _FAIL else (r, True))(_match(p, s, b, test)))
+            )
             return result[0] if result[1] else _FAIL
         if segment_variable(pat):
             return error("Segvar ~a must be car of a cons-cell.", pat)
@@ -337,6 +341,7 @@ def match_segvar(pat, seq, bdgs, continuation):
         if rest is None:  # at the end: the whole rest, which must be a proper list
             cell = seq
             while isinstance(cell, Cons):
+                checkpoint()
                 taken.append(cell.car)
                 cell = lazy_cdr(cell)
             if cell is not None:
@@ -378,6 +383,7 @@ def _shallow(term, bdgs):
 
 def _unify(lhs, rhs, bdgs):
     while True:
+        checkpoint()
         lhs, rhs = _shallow(lhs, bdgs), _shallow(rhs, bdgs)
         if isinstance(lhs, LazyTail):
             lhs = lhs.force()

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from math import hypot
 
-from cramhy_runtime.lisp.conditions import error, type_error
-from cramhy_runtime.lisp.data import list_from
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.ground.printing import prin1_to_string
 
-from .lines import need
+from .wait_queue import need
 
 FULL = 8  # points of a region that is not cut
 SMALLEST = 1e-9  # the side of a region that is not cut any more, as a part of the distance from the origin
@@ -152,5 +153,7 @@ def quad_tree_points_in_range(tree, point, radius):
 
 
 define_printer(QuadTree, lambda tree, stream: print_unreadable(tree, stream, f"QUAD-TREE of {tree.count} points", identity=True))
-define_printer(QuadTreePoint, lambda point, stream: print_unreadable(
-    point, stream, f"QUAD-TREE-POINT {prin1_to_string(point.x)} {prin1_to_string(point.y)}"))
+define_printer(
+    QuadTreePoint,
+    lambda point, stream: print_unreadable(point, stream, f"QUAD-TREE-POINT {prin1_to_string(point.x)} {prin1_to_string(point.y)}"),
+)

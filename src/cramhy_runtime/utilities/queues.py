@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections import deque
 
-from cramhy_runtime.lisp.conditions import type_error
-from cramhy_runtime.lisp.data import MultipleValues, list_from, python_list
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import MultipleValues, list_from, python_list
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.ground.printing import prin1_to_string
 
-from .lines import Line, need, time_limit
+from .wait_queue import Line, need, time_limit
 
 
 class Queue:
@@ -149,5 +150,9 @@ def _print(mailbox, stream):
 
 
 define_printer(Mailbox, _print)
-define_printer(Queue, lambda queue, stream: print_unreadable(
-    queue, stream, "QUEUE" + (f" {prin1_to_string(queue.name)}" if queue.name is not None else ""), identity=True))
+define_printer(
+    Queue,
+    lambda queue, stream: print_unreadable(
+        queue, stream, "QUEUE" + (f" {prin1_to_string(queue.name)}" if queue.name is not None else ""), identity=True
+    ),
+)

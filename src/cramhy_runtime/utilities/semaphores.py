@@ -6,10 +6,11 @@ evaporated, suspended and timed, and a semaphore that nobody signals is a deadlo
 
 from __future__ import annotations
 
-from cramhy_runtime.lisp.conditions import type_error
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.ground.printing import prin1_to_string
 
-from .lines import Line, need, time_limit
+from .wait_queue import Line, need, time_limit
 
 
 class Semaphore:

@@ -5,28 +5,24 @@ Source: prolog.md 13.2, cpl.md 13.3.
 
 from __future__ import annotations
 
-import datetime
+import os
+from copy import copy as shallow_copy
+
 import re
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp import conditions
-from cramhy_runtime.lisp.conditions import Error, SimpleStyleWarning, error, type_error, warn
-from cramhy_runtime.lisp.data import DoubleFloat, MultipleValues, Symbol, lisp_list, list_from, one, python_list, truth
-from cramhy_runtime.lisp.dynamic import binding, special
-from cramhy_runtime.lisp.equality import eql
-from cramhy_runtime.lisp.evaluation.functions import function_of, identity
-from cramhy_runtime.lisp.evaluation.universal_time import CONSTANTS, get_internal_run_time
-from cramhy_runtime.lisp.objects.protocol import protocol_function
-from cramhy_runtime.lisp.objects.structures import StructureObject, copy_structure
-from cramhy_runtime.lisp.packages import find_package, keyword
-from cramhy_runtime.lisp.printer.print_controls import PACKAGE
-from cramhy_runtime.lisp.symbols.package_functions import find_symbol
-from cramhy_runtime.lisp.symbols.symbols import fboundp
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.conditions import Error, SimpleStyleWarning, error, type_error, warn
+from cramhy_runtime.ground.data import DoubleFloat, MultipleValues, Symbol, list_from, one, python_list, truth
+from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.ground.equality import eql
+from cramhy_runtime.ground.functions import function_of, identity
+from cramhy_runtime.ground.generic_functions import protocol_function
+from cramhy_runtime.ground.packages import keyword
 
 from .symbols import sym
 
 REAL, RUN = keyword("REAL"), keyword("RUN")
-INTERNAL_UNITS = CONSTANTS["INTERNAL-TIME-UNITS-PER-SECOND"]
 
 
 def _or_default(designator, default):
@@ -55,8 +51,8 @@ def _copy_of(obj):
 
     An instance that is met again, in itself or in another slot, is copied once, so that circles and sharing are as before.
     """
-    if isinstance(obj, StructureObject):
-        return copy_structure(obj)
+    if hasattr(obj.__class__, "lisp_structure"):
+        return shallow_copy(obj)
     if not hasattr(obj, "__dict__") or isinstance(obj, type | BaseException) or callable(obj):
         return obj
     if _copies.value is None:
@@ -82,7 +78,7 @@ TIMESTAMP_FUNCTION = special(sym("CUT::*TIMESTAMP-FUNCTION*"))
 def current_timestamp(what_time=None):
     """Seconds as a double, from ``*timestamp-function*``; with ``:real`` the kernel's clock, with ``:run`` the time that was computed."""
     if what_time is RUN:
-        return DoubleFloat(get_internal_run_time() / INTERNAL_UNITS)
+        return DoubleFloat(round(os.times().user, 6))
     if what_time not in (None, REAL):
         return type_error(what_time, "(MEMBER :REAL :RUN)")
     function = TIMESTAMP_FUNCTION.value if what_time is None else None
@@ -106,6 +102,8 @@ def microsecond_timestamp_function(*, relative=None):
 
 def current_string_timestamp():
     """The date and time of day (UTC) by the kernel's clock, as 14 digits."""
+    import datetime
+
     moment = datetime.datetime.fromtimestamp(kernel.active().epoch + kernel.now(), datetime.UTC)
     return moment.strftime("%Y%m%d%H%M%S")
 
@@ -222,15 +220,3 @@ def delete_pool_value(pool, number):
 
 
 # ------------------------------------------------------------------------------------------------------------------ features
-
-
-def function_bound_feature(name, package=None):
-    """A feature expression that holds if a function ``name`` is defined: for ``#+#.(cut:function-bound-feature "F" "PKG")``.
-
-    ``name`` is a symbol, or a string and ``package`` the package in which it is looked up.
-    """
-    symbol = name
-    if not isinstance(name, Symbol):
-        home = PACKAGE.value if package is None else find_package(str(getattr(package, "name", package)))
-        symbol = one(find_symbol(str(name), home)) if home is not None else None
-    return lisp_list(keyword("OR") if symbol is None or fboundp(symbol) is None else keyword("AND"))

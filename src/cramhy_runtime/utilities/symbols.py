@@ -1,6 +1,9 @@
-"""The Lisp package of this room, made before anything interns a symbol in it; its contents are in ``package.py``."""
+"""The Lisp package of this room, made before anything interns a symbol in it.
 
-from ..lisp.packages import COMMON_LISP, ensure_package, sym
+What it contains is declared in ``languages/commonlisp/faces/utilities/package.py``.
+"""
+
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
 
 CUT = ensure_package("CRAM-UTILITIES", "CUT", use=[COMMON_LISP])
 

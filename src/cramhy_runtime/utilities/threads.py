@@ -12,13 +12,14 @@ Source: cpl.md 13.3.
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.conditions import Error, error, type_error
-from cramhy_runtime.lisp.data import NO_VALUES, Symbol, all_values, list_from, truth
-from cramhy_runtime.lisp.evaluation.functions import function_of
-from cramhy_runtime.lisp.packages import keyword
-from cramhy_runtime.lisp.printer.printer import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.ground.conditions import Error, error, type_error
+from cramhy_runtime.ground.data import NO_VALUES, Symbol, all_values, list_from, truth
+from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.ground.printing import prin1_to_string
 
-from .lines import need, time_limit
+from .wait_queue import need, time_limit
 
 ERROR, TIMEOUT = keyword("ERROR"), keyword("TIMEOUT")
 
@@ -77,8 +78,13 @@ def spawn_thread(name, fn, *arguments):
     function = function_of(fn)
     me = kernel.current()
     owner = me.owner
-    task = kernel.spawn(_begin, function, arguments, name=str(getattr(name, "name", name) or "anonymous"),
-                        parent=me if owner is not None else me.kernel.main)
+    task = kernel.spawn(
+        _begin,
+        function,
+        arguments,
+        name=str(getattr(name, "name", name) or "anonymous"),
+        parent=me if owner is not None else me.kernel.main,
+    )
     if owner is not None:
         owner.threads = [*(thread for thread in owner.threads if not thread.dead), task]
     return Thread(task)

@@ -24,8 +24,10 @@ def files():
     """What the server gives out: a dictionary from paths, such as ``"/app.js"``, to pairs of bytes and a media type."""
     from ..turtlesim.drawing import shapes
 
-    found = {f"/{file.name}": (file.read_bytes(), TYPES[file.name.rpartition(".")[2]])
-             for file in resources.files(__package__).joinpath("static").iterdir()}
+    found = {
+        f"/{file.name}": (file.read_bytes(), TYPES[file.name.rpartition(".")[2]])
+        for file in resources.files(__package__).joinpath("static").iterdir()
+    }
     found["/"] = found["/index.html"]
     found["/shapes.json"] = (json.dumps(shapes(), separators=(",", ":")).encode(), TYPES["json"])
     return found
@@ -89,9 +91,13 @@ def show(url, port, folder):
         return False
     path = way(port, folder)
     try:
-        storage.write_whole(path, '<!doctype html><meta charset="utf-8"><title>cramhy</title>'
-                                  f'<meta http-equiv="refresh" content="0; url={html.escape(url)}">\n',
-                            mode=0o600, durable=False, follow=False)
+        storage.write_whole(
+            path,
+            f'<!doctype html><meta charset="utf-8"><title>cramhy</title><meta http-equiv="refresh" content="0; url={html.escape(url)}">\n',
+            mode=0o600,
+            durable=False,
+            follow=False,
+        )
     except OSError:
         return False  # the page's address has been told, and can be opened by hand
     return webbrowser.open(path.as_uri())

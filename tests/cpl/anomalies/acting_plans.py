@@ -63,19 +63,33 @@ ENDED = ("UnknownProcessModule*", "ProcessModuleNotRunning*", "SimplePlanFailure
 """What a plan may end with when a task of a module, or of its own, was ended."""
 
 ACTING_PLANS = [
-    Plan("queue-of-requests", """
+    Plan(
+        "queue-of-requests",
+        """
         (acting (acting-drive (acting-other acting-drive))
           (handler-bind ((warning #'muffle-warning))
             (par (guarded one (ask 'acting-drive 1) (ask 'acting-other 2))
                  (guarded two (handler-bind ((warning #'muffle-warning)) (ask 'acting-drive 3)))
                  (guarded-slowly three 0.1 (pursue (handler-bind ((warning #'muffle-warning)) (ask 'acting-drive 4)) (sleep 0.4))))))
-        """, ":RIGHT", evaporated=ENDED, suspended=(":TWICE",)),
-    Plan("a-module-that-calls-another", """
+        """,
+        ":RIGHT",
+        evaporated=ENDED,
+        suspended=(":TWICE",),
+    ),
+    Plan(
+        "a-module-that-calls-another",
+        """
         (acting (acting-drive acting-arm)
           (par (guarded reach (ask 'acting-arm 1))
                (guarded drive (sleep 0.2) (handler-bind ((warning #'muffle-warning)) (ask 'acting-drive 2)))))
-        """, ":RIGHT", evaporated=(*ENDED, "*wrong*"), suspended=(":TWICE",)),
-    Plan("modules-run-by-hand", """
+        """,
+        ":RIGHT",
+        evaporated=(*ENDED, "*wrong*"),
+        suspended=(":TWICE",),
+    ),
+    Plan(
+        "modules-run-by-hand",
+        """
         (let ((events nil) (results nil))
           (flet ((ask (name goal)
                    (push (list goal (cpm:pm-execute name (request (lambda (event) (push event events)) goal))) results)))
@@ -91,8 +105,14 @@ ACTING_PLANS = [
                         (ask 'acting-by-hand 2)))
                     (guarded meddling (sleep 0.15) (with-task-suspended (module) (sleep 0.2)) (sleep 9))))))
             (if (cpm:get-running-process-module 'acting-by-hand) :still-running (judge events results nil))))
-        """, ":RIGHT", evaporated=ENDED, suspended=(":TWICE",)),
-    Plan("asynchronous-module", """
+        """,
+        ":RIGHT",
+        evaporated=ENDED,
+        suspended=(":TWICE",),
+    ),
+    Plan(
+        "asynchronous-module",
+        """
         (acting (acting-belt)
           (let ((one (request #'note 1)) (two (request #'note 2)) (jam (request #'note :jam)))
             (flet ((watch (&rest designators)
@@ -102,9 +122,15 @@ ACTING_PLANS = [
                    (guarded-slowly other 0.1 (cpm:pm-execute 'acting-belt jam))
                    (guarded first (sleep 0.1) (pursue (watch one) (sleep 5)))
                    (guarded-slowly second 0.1 (sleep 0.5) (pursue (watch two jam) (sleep 5)))))))
-        """, ":RIGHT", evaporated=(*ENDED, "SimpleError: Cannot*", '(:WRONG*was cancelled*', '(:WRONG*'), suspended=(":TWICE",),
-         failed=("SimpleError: Cannot*", "(:WRONG*", "*not running*", "UnknownProcessModule*")),
-    Plan("performing-actions", """
+        """,
+        ":RIGHT",
+        evaporated=(*ENDED, "SimpleError: Cannot*", "(:WRONG*was cancelled*", "(:WRONG*"),
+        suspended=(":TWICE",),
+        failed=("SimpleError: Cannot*", "(:WRONG*", "*not running*", "UnknownProcessModule*"),
+    ),
+    Plan(
+        "performing-actions",
+        """
         (prolog:def-fact-group acting-facts
             (cpm:matching-process-module cpm:available-process-module desig:motion-grounding desig:action-grounding)
           (prolog:<- (cpm:matching-process-module ?d acting-clumsy) (desig:desig-prop ?d (:type :acting)))
@@ -129,5 +155,9 @@ ACTING_PLANS = [
                                                                                   (:log ,(lambda (event) (push event events)))))))
                        (guarded-slowly beside 0.1 (sleep 0.3)))))))
           (judge events results nil))
-        """, ":RIGHT", evaporated=(*ENDED, "(:WRONG ((* NIL)*", "(:WRONG *NIL)))"), suspended=(":TWICE",)),
+        """,
+        ":RIGHT",
+        evaporated=(*ENDED, "(:WRONG ((* NIL)*", "(:WRONG *NIL)))"),
+        suspended=(":TWICE",),
+    ),
 ]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from cramhy_runtime import kernel
-from cramhy_runtime.lisp.faces import define_face
+from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.testing.labels import label
 
 MACROS = """
@@ -54,8 +54,9 @@ class Guards:
 
     def finish(self):
         """What went wrong, now that the run is over."""
-        return self.wrong + [f"the cleanup of {guard} did not {'run' if guard.state == 'open' else 'end'}"
-                             for guard in self.all if guard.state != "left"]
+        return self.wrong + [
+            f"the cleanup of {guard} did not {'run' if guard.state == 'open' else 'end'}" for guard in self.all if guard.state != "left"
+        ]
 
 
 current = Guards()

@@ -22,13 +22,19 @@ class Plan:
 
 
 PLANS = [
-    Plan("seq", """
+    Plan(
+        "seq",
+        """
         (top-level
           (guarded outer
             (seq (guarded one (sleep 0.1) 1)
                  (guarded-slowly two 0.1 (sleep 0.1) 2))))
-        """, "2"),
-    Plan("par", """
+        """,
+        "2",
+    ),
+    Plan(
+        "par",
+        """
         (top-level
           (guarded outer
             (par (guarded one (sleep 0.1) 1)
@@ -36,9 +42,13 @@ PLANS = [
                    (par (guarded inner-one (sleep 0.1) 2)
                         (guarded-slowly inner-two 0.1 (sleep 0.1) 3)
                         (guarded inner-three (sleep 0.2) 4))))))
-        """, "1",
-         evaporated=('no values',)),
-    Plan("pursue", """
+        """,
+        "1",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "pursue",
+        """
         (top-level
           (guarded outer
             (pursue (guarded-slowly slow 0.2 (sleep 10) 1)
@@ -46,44 +56,64 @@ PLANS = [
                     (guarded-slowly nested 0.1
                       (pursue (guarded-slowly deep 0.1 (sleep 5) 3)
                               (guarded deeper (sleep 6) 4))))))
-        """, "2",
-         evaporated=('no values',)),
-    Plan("try-all", """
+        """,
+        "2",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "try-all",
+        """
         (top-level
           (guarded outer
             (try-all (guarded-slowly failing 0.1 (sleep 0.1) (fail "first"))
                      (guarded good (sleep 0.2) 2)
                      (guarded-slowly as-good 0.1 (sleep 0.2) 3)
                      (guarded-slowly late 0.1 (sleep 1) 4))))
-        """, "2",
-         evaporated=('no values',),
-         failed=('3',)),
-    Plan("try-in-order", """
+        """,
+        "2",
+        evaporated=("no values",),
+        failed=("3",),
+    ),
+    Plan(
+        "try-in-order",
+        """
         (top-level
           (guarded outer
             (try-in-order (guarded failing (sleep 0.1) (fail "first"))
                           (guarded-slowly also 0.1 (par (sleep 0.1) (sleep 0.1) (progn (sleep 0.1) (fail "second"))))
                           (guarded good (sleep 0.1) 3)
                           4)))
-        """, "3",
-         evaporated=('NIL',),
-         failed=('4',)),
-    Plan("try-each-in-order", """
+        """,
+        "3",
+        evaporated=("NIL",),
+        failed=("4",),
+    ),
+    Plan(
+        "try-each-in-order",
+        """
         (top-level
           (guarded outer
             (try-each-in-order (n '(1 2 3))
               (guarded each (sleep 0.1) (if (= n 2) (* 10 n) (fail "not ~a" n))))))
-        """, "20"),
-    Plan("par-loop", """
+        """,
+        "20",
+    ),
+    Plan(
+        "par-loop",
+        """
         (top-level
           (guarded outer
             (let ((sum 0))
               (par-loop (n '(1 2 3))
                 (guarded-slowly each 0.1 (sleep 0.1) (setf sum (+ sum n))))
               sum)))
-        """, "6",
-         evaporated=('3', '4', '5')),
-    Plan("partial-order", """
+        """,
+        "6",
+        evaporated=("3", "4", "5"),
+    ),
+    Plan(
+        "partial-order",
+        """
         (top-level
           (let ((log nil))
             (guarded outer
@@ -94,9 +124,13 @@ PLANS = [
                   (:order b a)
                   (:order a c))))
             (reverse log)))
-        """, "(:B :A :C)",
-         evaporated=('(:B :C)', '(:A :C)', '(:B :A)')),
-    Plan("tags-and-suspension", """
+        """,
+        "(:B :A :C)",
+        evaporated=("(:B :C)", "(:A :C)", "(:B :A)"),
+    ),
+    Plan(
+        "tags-and-suspension",
+        """
         (top-level
           (let ((log nil))
             (guarded outer
@@ -109,11 +143,15 @@ PLANS = [
                        (with-task-suspended (walk)
                          (guarded while-suspended (push :stopped log) (sleep 1) (push :on log)))))))
             (reverse log)))
-        """, "(0 :STOPPED :ON 1 2 3)",
-         evaporated=('(0 1 2 3)', '(:STOPPED*)', '(0 :STOPPED*)'),
-         suspended=('(*:STOPPED*:ON*)',),
-         free=('(:STOPPED :ON 0 1 2 3)',)),
-    Plan("with-parallel-childs", """
+        """,
+        "(0 :STOPPED :ON 1 2 3)",
+        evaporated=("(0 1 2 3)", "(:STOPPED*)", "(0 :STOPPED*)"),
+        suspended=("(*:STOPPED*:ON*)",),
+        free=("(:STOPPED :ON 0 1 2 3)",),
+    ),
+    Plan(
+        "with-parallel-childs",
+        """
         (top-level
           (guarded outer
             (cpl-impl::with-parallel-childs nil (running done failed)
@@ -122,26 +160,39 @@ PLANS = [
                  (guarded-slowly three 0.1 (sleep 5) 3))
               (when failed (fail (result (first failed))))
               (when (>= (length done) 2) (return (length running))))))
-        """, "1", evaporated=("0",)),
-    Plan("with-task", """
+        """,
+        "1",
+        evaporated=("0",),
+    ),
+    Plan(
+        "with-task",
+        """
         (top-level
           (guarded outer
             (cpl-impl::with-task (:name "INNER")
               (guarded-slowly inner 0.1
                 (sleep 0.1)
                 (cpl-impl::with-task () (guarded innermost (sleep 0.1) 7))))))
-        """, "7",
-         evaporated=('no values',)),
-    Plan("timeout-policy", """
+        """,
+        "7",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "timeout-policy",
+        """
         (top-level
           (guarded outer
             (with-failure-handling
                 ((policy-check-condition-met (e) (declare (ignore e)) (return :timeout)))
               (with-policy timeout-policy (0.3)
                 (guarded-slowly body 0.1 (par (sleep 10) (guarded branch (sleep 5))))))))
-        """, ":TIMEOUT",
-         evaporated=('no values',)),
-    Plan("with-policy", """
+        """,
+        ":TIMEOUT",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "with-policy",
+        """
         (define-policy anomaly-policy (limit)
           "Watches the time."
           (:init (cpl-impl::policy-setf 'start 0) (guarded init (sleep 0.1)) t)
@@ -158,9 +209,13 @@ PLANS = [
                  (policy-init-failed (e) (declare (ignore e)) (return :not-started)))
               (with-policy anomaly-policy (0.3)
                 (guarded-slowly body 0.1 (par (sleep 10) (dotimes (n 9) (sleep 0.1))))))))
-        """, ":MET",
-         evaporated=('no values',)),
-    Plan("failure-handling", """
+        """,
+        ":MET",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "failure-handling",
+        """
         (top-level
           (guarded outer
             (with-retry-counters ((tries 2))
@@ -172,9 +227,13 @@ PLANS = [
                   (par (guarded branch (sleep 0.1) (sleep 1))
                        (guarded other (sleep 0.1))
                        (progn (sleep 0.1) (fail "again"))))))))
-        """, ":GIVEN-UP",
-         evaporated=('NIL',)),
-    Plan("whenever-and-pulses", """
+        """,
+        ":GIVEN-UP",
+        evaporated=("NIL",),
+    ),
+    Plan(
+        "whenever-and-pulses",
+        """
         (top-level
           (let ((bell (make-fluent :name 'bell :value nil)) (heard 0))
             (guarded outer
@@ -187,9 +246,13 @@ PLANS = [
                   (dotimes (n 5) (sleep 0.1) (pulse bell))
                   (sleep 1)
                   :not-heard)))))
-        """, "3",
-         evaporated=('no values',)),
-    Plan("wait-for-and-nets", """
+        """,
+        "3",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "wait-for-and-nets",
+        """
         (top-level
           (let* ((x (make-fluent :name 'x :value 0)) (y (make-fluent :name 'y :value 10))
                  (near (fl-and (< x y) (> (+ x y) 12) (fl-funcall #'evenp x)))
@@ -199,9 +262,13 @@ PLANS = [
                    (guarded-slowly waiting 0.1 (wait-for near :timeout 2) (value x))
                    (guarded-slowly in-vain 0.1 (wait-for (not (< x y)) :timeout 0.4))
                    (guarded changes (wait-for changed :timeout 2) (wait-for (pulsed y) :timeout 0.2) (value y))))))
-        """, ":MOVED",
-         evaporated=('no values',)),
-    Plan("plan-functions", """
+        """,
+        ":MOVED",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "plan-functions",
+        """
         (def-cram-function anomaly-step (n)
           (guarded-slowly step 0.1 (sleep 0.1) (* n n)))
         (def-cram-function anomaly-steps (n)
@@ -211,17 +278,25 @@ PLANS = [
         (def-top-level-cram-function anomaly-top ()
           (guarded outer (anomaly-steps 3)))
         (anomaly-top)
-        """, "9",
-         evaporated=('no values',)),
-    Plan("goals", """
+        """,
+        "9",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "goals",
+        """
         (declare-goal anomaly-at (place) (declare (ignore place)) (sleep 0.1))
         (def-goal (anomaly-at door) (guarded door (sleep 0.1) (succeed :door)))
         (def-goal (anomaly-at ?where)
           (guarded-slowly where 0.1 (par (sleep 0.1) (sleep 0.1) (anomaly-at 'door)) (list :at ?where)))
         (top-level (guarded outer (anomaly-at 'table)))
-        """, "(:AT TESTING-USER::TABLE)",
-         evaporated=('no values',)),
-    Plan("on-suspension", """
+        """,
+        "(:AT TESTING-USER::TABLE)",
+        evaporated=("no values",),
+    ),
+    Plan(
+        "on-suspension",
+        """
         (top-level
           (let ((tries 0) (stops 0))
             (guarded outer
@@ -235,9 +310,13 @@ PLANS = [
                        (sleep 0.1)
                        (with-task-suspended (work :reason "a break") (sleep 0.3))))))
             (list (>= tries 1) (>= stops 0))))
-        """, "(T T)",
-         evaporated=('(NIL T)',)),
-    Plan("without-scheduling", """
+        """,
+        "(T T)",
+        evaporated=("(NIL T)",),
+    ),
+    Plan(
+        "without-scheduling",
+        """
         (top-level
           (let ((halves 0))
             (guarded outer
@@ -249,8 +328,12 @@ PLANS = [
                               (with-scheduling (sleep 0.1)))))
                         (guarded meddling (sleep 0.1) (suspend work :sync nil) (sleep 0.3) (wake-up work) (sleep 9)))))
             (evenp halves)))
-        """, "T"),
-    Plan("callbacks", """
+        """,
+        "T",
+    ),
+    Plan(
+        "callbacks",
+        """
         (top-level
           (let ((x (make-fluent :name 'x :value 0)) (seen nil))
             (guarded outer
@@ -261,9 +344,13 @@ PLANS = [
                      (guarded two (wait-for (= x 2) :timeout 1) (setf (value x) 7)))
                 (remove-update-callback x 'note)))
             (list (first (last seen)) (value (> x 0)))))
-        """, "(1 T)",
-         evaporated=('(7 T)',)),
-    Plan("evaporating-others", """
+        """,
+        "(1 T)",
+        evaporated=("(7 T)",),
+    ),
+    Plan(
+        "evaporating-others",
+        """
         (top-level
           (guarded outer
             (with-tags
@@ -278,9 +365,13 @@ PLANS = [
                      (wait-for (task-dead two) :timeout 5)
                      :ended)))
             :all-ended))
-        """, ":ALL-ENDED",
-         evaporated=('Deadlock*',)),
-    Plan("process-modules", """
+        """,
+        ":ALL-ENDED",
+        evaporated=("Deadlock*",),
+    ),
+    Plan(
+        "process-modules",
+        """
         (cpm:def-process-module anomaly-driving (motion)
           (guarded-slowly driving 0.1 (par (sleep 0.2) (guarded wheel (sleep 0.1))) (desig:desig-prop-value motion :goal)))
         (guarded around
@@ -291,10 +382,14 @@ PLANS = [
                   (par (guarded first-drive (drive 1))
                        (guarded second-drive (sleep 0.1) (drive 2))
                        (pursue (drive 3) (sleep 0.3))))))))
-        """, "1",
-         evaporated=('UnknownProcessModule*', 'ProcessModuleNotRunning*', 'SimplePlanFailure: The execution of*', 'no values'),
-         failed=('SimplePlanFailure: The execution of*',)),
-    Plan("perform", """
+        """,
+        "1",
+        evaporated=("UnknownProcessModule*", "ProcessModuleNotRunning*", "SimplePlanFailure: The execution of*", "no values"),
+        failed=("SimplePlanFailure: The execution of*",),
+    ),
+    Plan(
+        "perform",
+        """
         (cpm:def-process-module anomaly-drawing (motion)
           (guarded drawing (sleep 0.1) (desig:desig-prop-value motion :shape)))
         (prolog:def-fact-group anomaly-matching (cpm:matching-process-module cpm:available-process-module desig:motion-grounding)
@@ -308,10 +403,14 @@ PLANS = [
               (with-failure-handling ((simple-plan-failure (e) (declare (ignore e)) (return :failed)))
                 (par (exe:perform (desig:a motion (type anomaly-drawing) (shape house)))
                      (guarded beside (sleep 0.1)) (guarded-slowly besides 0.1 (sleep 0.1)))))))
-        """, ":HOUSE",
-         evaporated=(':FAILED', 'no values', 'ProcessModuleNotRunning*'),
-         failed=(':FAILED',)),
-    Plan("everything-at-once", """
+        """,
+        ":HOUSE",
+        evaporated=(":FAILED", "no values", "ProcessModuleNotRunning*"),
+        failed=(":FAILED",),
+    ),
+    Plan(
+        "everything-at-once",
+        """
         (def-cram-function anomaly-reach (goal)
           (with-failure-handling ((simple-plan-failure (e) (declare (ignore e)) (return :missed)))
             (guarded-slowly reach 0.1
@@ -327,7 +426,9 @@ PLANS = [
                      (guarded pauses
                        (sleep 0.2)
                        (with-task-suspended (reach) (par-loop (n '(0.1 0.2)) (guarded pause (sleep n))))))))))
-        """, ":REACHED",
-         evaporated=('no values',),
-         failed=(':MISSED',)),
+        """,
+        ":REACHED",
+        evaporated=("no values",),
+        failed=(":MISSED",),
+    ),
 ]

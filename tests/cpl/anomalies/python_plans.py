@@ -58,6 +58,7 @@ def fluents():
     bumper = cpl.make_fluent(name="bumper", value=False)
     distance = cpl.make_fluent(name="distance", value=3)
     with guarded("outer"), cpl.pursue() as race:
+
         def approach():
             while distance.value > 0:
                 wait("step", 0.1)

@@ -1,4 +1,4 @@
-"""Whatever happens to a branch, wherever it waits: the laws hold (design.md section 2).
+"""Whatever happens to a branch, wherever it waits: the laws hold.
 
 For each plan of ``plans.py``, each of its tasks, each park point until the plan ends by itself: the task is evaporated there, fails,
 raises an error, or is suspended for a while. Cleanup runs once and in order, no task lives on, nothing observes, no timer and no
@@ -30,7 +30,7 @@ BACKENDS = ["threads", "greenlet"]
 def unheard(monkeypatch):
     """What the kernel reports as lost: nothing may be."""
     heard = []
-    monkeypatch.setattr(kernel, "unhandled", lambda task, exception: heard.append((str(task.name), exception)))
+    monkeypatch.setattr(kernel.reports.installed.reporter, "unhandled", lambda task, exception: heard.append((str(task.name), exception)))
     yield heard
     assert not heard
 
@@ -68,9 +68,16 @@ def test_several_faults_in_one_run(plan, backend, record_property):
     points = check_run(plan, backend=backend)[0].points
     happened = 0
     for seed in range(RANDOM):
-        several = [faults.at(point.task, nth=point.number + lots.choice((0, 0, 1, 2)), action=lots.choice(faults.ACTIONS),
-                             seconds=lots.choice((0, 0.1, 0.25)), entering=lots.random() < 0.5)
-                   for point in lots.choices(points, k=lots.choice((2, 2, 3, 4)))]
+        several = [
+            faults.at(
+                point.task,
+                nth=point.number + lots.choice((0, 0, 1, 2)),
+                action=lots.choice(faults.ACTIONS),
+                seconds=lots.choice((0, 0.1, 0.25)),
+                entering=lots.random() < 0.5,
+            )
+            for point in lots.choices(points, k=lots.choice((2, 2, 3, 4)))
+        ]
         _, wrong = check_run(plan, faults=several, backend=backend, seed=seed or None)
         assert not wrong, f"{plan.name}, {several}, seed {seed or None}, {backend}:\n  " + "\n  ".join(wrong)
         happened += sum(fault.happened is not None for fault in several)

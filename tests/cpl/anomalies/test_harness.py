@@ -14,13 +14,15 @@ def wrong_with(text, value="NIL", **options):
 
 
 def test_a_cleanup_form_that_runs_twice():
-    assert wrong_with("(let ((guard (anomalies:enter 'it))) (anomalies:leave guard) (anomalies:leave guard) (anomalies:left guard))") \
-        == ["the cleanup of it in main ran again"]
+    assert wrong_with("(let ((guard (anomalies:enter 'it))) (anomalies:leave guard) (anomalies:leave guard) (anomalies:left guard))") == [
+        "the cleanup of it in main ran again"
+    ]
 
 
 def test_cleanup_in_the_wrong_order_and_cleanup_that_never_runs():
-    assert wrong_with("(let ((outer (anomalies:enter 'outer))) (anomalies:enter 'inner) (anomalies:leave outer) (anomalies:left outer))") \
-        == ["the cleanup of outer in main began before that of inner in main was over", "the cleanup of inner in main did not run"]
+    assert wrong_with(
+        "(let ((outer (anomalies:enter 'outer))) (anomalies:enter 'inner) (anomalies:leave outer) (anomalies:left outer))"
+    ) == ["the cleanup of outer in main began before that of inner in main was over", "the cleanup of inner in main did not run"]
 
 
 def test_a_result_that_nobody_allows():
@@ -42,7 +44,10 @@ def test_a_plan_that_does_not_get_through_a_fault():
     careless = Plan("careless", "(top-level (par (sleep 1) (handler-case (sleep 2) (plan-failure () 5))) :done)", ":DONE")
     found = [(fault.action, wrong) for fault, _, wrong in faults_of(careless, "threads", ["fail", "evaporate"]) if wrong]
     assert not found
-    wrong_value = Plan("wrong-value", "(top-level (with-failure-handling ((plan-failure (e) (declare (ignore e)) (return :oops))) "
-                       "(par (sleep 1) (sleep 2)) :done))", ":DONE")
+    wrong_value = Plan(
+        "wrong-value",
+        "(top-level (with-failure-handling ((plan-failure (e) (declare (ignore e)) (return :oops))) (par (sleep 1) (sleep 2)) :done))",
+        ":DONE",
+    )
     found = {(fault.action, *wrong) for fault, _, wrong in faults_of(wrong_value, "threads", faults.ACTIONS) if wrong}
     assert ("fail", "the outcome is :OOPS") in found

@@ -4,9 +4,10 @@ import itertools
 import re
 
 import pytest
+from not_in_hy import NOT_IN_HY
+from plain_hy import PlainHy
 
-from cramhy_runtime.cpl import task_variables
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.repl.session import Session, condition_of
 
 PRELUDE = """
@@ -42,17 +43,42 @@ class Lisp:
         return re.sub(r"\{[0-9A-F]+\}", "{}", " ".join(princ_to_string(condition_of(problem.value)).split()))
 
 
-@pytest.fixture(autouse=True)
-def task_variables_of_its_own(monkeypatch):
-    """Task variables that a test declares are forgotten, for they would be bound in all tasks of later tests."""
-    monkeypatch.setattr(task_variables, "_declared", dict(task_variables._declared))
+IN_HY = """
+(setv *notes* None)
+(defn note [#* things]
+  (global *notes*)
+  (setv *notes* (cl.append *notes* (cl.list (if (= (len things) 1) (get things 0) (cl.list #* things)))))
+  *notes*)
+(defn start [function [name "child"]] (cl.make-instance (lisp task) (lisp :name) name (lisp :thread-fun) function))
+(defn later [task] (value (status task)))
+(defmacro in-child [#* body] `(start (fn [] ~@body)))
+"""
 
 
-@pytest.fixture
+def pytest_collection_modifyitems(items):
+    for item in items:
+        parameters = getattr(getattr(item, "callspec", None), "params", {})
+        if "hy" in (parameters.get("lisp"), parameters.get("plan_text")) and item.originalname in NOT_IN_HY:
+            item.add_marker(pytest.mark.skip(f"not in plain Hy: {NOT_IN_HY[item.originalname]}"))
+
+
+@pytest.fixture(params=["lisp", "hy"])
 def lisp(request):
-    return Lisp(request.getfixturevalue("fresh_kernel").backend.name)
+    made = Lisp(request.getfixturevalue("fresh_kernel").backend.name)
+    return made if request.param == "lisp" else PlainHy(made.session, IN_HY, ["note", "start", "later", "in-child"])
 
 
 @pytest.fixture
 def lisp_for_ten_seconds(request):
     return Lisp(request.getfixturevalue("fresh_kernel").backend.name, time_limit=10)
+
+
+@pytest.fixture(params=["lisp", "hy"])
+def plan_text(request, plan_text):
+    if request.param == "lisp":
+        return plan_text
+    prelude = """
+    (setv *notes* None)
+    (defn note [thing] (global *notes*) (setv *notes* (cl.append *notes* (cl.list thing))) thing)
+    """
+    return PlainHy(plan_text.session, prelude, ["note"])

@@ -31,7 +31,10 @@ waits = pytest.mark.parametrize("wait", WAITS.values(), ids=WAITS)
 @pytest.mark.law(53, 54)
 @waits
 def test_a_second_request_ends_the_wait_and_the_outer_cleanup_runs_completely(lisp, wait):
-    assert lisp(NEVER + f"""
+    assert (
+        lisp(
+            NEVER
+            + f"""
         (defvar *stranger* (make-instance 'toplevel-task :thread-fun (lambda () (wait-for *never*))))
         (top-level
           (let ((task (in-child
@@ -44,14 +47,20 @@ def test_a_second_request_ends_the_wait_and_the_outer_cleanup_runs_completely(li
             (note (later task))
             (evaporate task)
             (note (later task))))
-        (remove :inner *notes*)""") == "(:BEGINS :RUNNING :OUTER :EVAPORATED)"
+        (remove :inner *notes*)"""
+        )
+        == "(:BEGINS :RUNNING :OUTER :EVAPORATED)"
+    )
     assert kernel.now() == 6.5
 
 
 @pytest.mark.law(53, 54)
 @waits
 def test_the_limit_ends_the_wait_with_a_warning(lisp, wait):
-    assert lisp(NEVER + f"""
+    assert (
+        lisp(
+            NEVER
+            + f"""
         (defvar *stranger* (make-instance 'toplevel-task :thread-fun (lambda () (wait-for *never*))))
         (let ((*cleanup-time-limit* 5))
           (top-level
@@ -64,13 +73,19 @@ def test_the_limit_ends_the_wait_with_a_warning(lisp, wait):
         (let ((said (first *notes*)))
           (note (and (search "The cleanup of [PURSUE-CHILD-#1/2]" said) (search "<repl" said)
                      (search "The time of *CLEANUP-TIME-LIMIT*, 5 s, is over" said) t)))
-        (rest (remove :inner *notes*))""") == "(:OUTER T)"
+        (rest (remove :inner *notes*))"""
+        )
+        == "(:OUTER T)"
+    )
     assert kernel.now() == 7
 
 
 @pytest.mark.law(54)
 def test_the_request_goes_down_to_the_task_whose_cleanup_is_stuck(lisp):
-    assert lisp(NEVER + """
+    assert (
+        lisp(
+            NEVER
+            + """
         (let (deepest)
           (top-level
             (let ((task (in-child
@@ -85,12 +100,16 @@ def test_the_request_goes_down_to_the_task_whose_cleanup_is_stuck(lisp):
               (note (later deepest) (later task))
               (evaporate task)
               (note (later deepest) (later task)))))
-        *notes*""") == "((:RUNNING :RUNNING) :PARENT (:EVAPORATED :EVAPORATED))"
+        *notes*"""
+        )
+        == "((:RUNNING :RUNNING) :PARENT (:EVAPORATED :EVAPORATED))"
+    )
 
 
 @pytest.mark.law(54)
 def test_one_explicit_request_and_any_number_from_forms_leave_waiting_cleanup_alone(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (top-level
           (pursue
             (pursue
@@ -99,69 +118,96 @@ def test_one_explicit_request_and_any_number_from_forms_leave_waiting_cleanup_al
                 (evaporate task))
               (sleep 2))
             (sleep 3)))
-        *notes*""") == "(:COMPLETE)"
+        *notes*""")
+        == "(:COMPLETE)"
+    )
 
 
 @pytest.mark.law(54)
 def test_a_second_request_leaves_a_protected_region_outside_of_cleanup_alone(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (top-level
           (let ((task (in-child (without-scheduling (sleep 5) (note :complete)) (note :never))))
             (sleep 1) (evaporate task :sync nil) (sleep 1) (evaporate task :sync nil) (evaporate task)))
-        *notes*""") == "(:COMPLETE)"
+        *notes*""")
+        == "(:COMPLETE)"
+    )
 
 
 @pytest.mark.law(53)
 @pytest.mark.parametrize(
     "way_in, then",
-    [('(fail "why")', "why"), ('(error "why")', "why"), ("(values 1 2)", "(1 2)"), ("(return-from out :left)", "(:LEFT)"),
-     ("(throw :out (values 3 4))", "(3 4)")],
+    [
+        ('(fail "why")', "why"),
+        ('(error "why")', "why"),
+        ("(values 1 2)", "(1 2)"),
+        ("(return-from out :left)", "(:LEFT)"),
+        ("(throw :out (values 3 4))", "(3 4)"),
+    ],
 )
 def test_what_led_into_the_cleanup_goes_on_when_the_limit_has_ended_it(lisp, way_in, then):
-    text = NEVER + f"""
+    text = (
+        NEVER
+        + f"""
         (let ((*cleanup-time-limit* 5))
           (top-level (multiple-value-list (catch :out (block out
             (unwind-protect {way_in} (wait-for *never*) (note :not-reached)))))))"""
+    )
     assert (lisp.error(text) if then == "why" else lisp(text)) == then
     assert kernel.now() == 5 and lisp("*notes*") == "NIL"
 
 
 @pytest.mark.law(53)
 def test_a_limit_that_is_not_reached_changes_nothing_and_each_cleanup_form_has_all_of_it(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (let ((*cleanup-time-limit* 5))
           (top-level (pursue (unwind-protect (unwind-protect (sleep 1000) (sleep 4) (note 1)) (sleep 4) (note 2)) (sleep 1))))
-        *notes*""") == "(1 2)"
+        *notes*""")
+        == "(1 2)"
+    )
     assert kernel.now() == 9 and not [task for task in kernel.active().tasks if task is not kernel.active().main]
 
 
 def test_the_limit_does_not_count_the_time_that_branches_of_the_cleanup_need_to_die(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (let ((*cleanup-time-limit* 5))
           (top-level
             (unwind-protect 1
               (pursue (unwind-protect (sleep 1000) (sleep 4) (note :branch)) (sleep 4))
               (note :parent))))
-        *notes*""") == "(:BRANCH :PARENT)"
+        *notes*""")
+        == "(:BRANCH :PARENT)"
+    )
 
 
 def test_a_limit_that_can_end_nothing_does_not_hide_a_deadlock(lisp):
-    assert "Nothing can happen any more" in lisp.error(NEVER + """
+    assert "Nothing can happen any more" in lisp.error(
+        NEVER
+        + """
         (let ((*cleanup-time-limit* 5))
           (top-level
             (unwind-protect 1
-              (pursue (without-scheduling (wait-for *never*)) (sleep 1)))))""")
+              (pursue (without-scheduling (wait-for *never*)) (sleep 1)))))"""
+    )
     assert kernel.active().tasks == [kernel.active().main]
 
 
 def test_a_limit_that_makes_no_sense_is_none(lisp):
-    assert lisp("(dolist (x '(:a -1 \"5\")) (let ((*cleanup-time-limit* x)) (top-level (unwind-protect 1 (sleep 9))))) 1") == "1"
+    assert lisp('(dolist (x \'(:a -1 "5")) (let ((*cleanup-time-limit* x)) (top-level (unwind-protect 1 (sleep 9))))) 1') == "1"
 
 
-@pytest.mark.parametrize("plan", ["(unwind-protect (wait-for *never*) (note :a) (wait-for *never*) (note :not-reached))",
-                                  "(par (unwind-protect (unwind-protect (wait-for *never*) (wait-for *never*)) (wait-for *never*)))",
-                                  "(without-scheduling (wait-for *never*))",
-                                  "(unwind-protect (wait-for *never*) (loop (unwind-protect nil (wait-for *never*))))"])
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "(unwind-protect (wait-for *never*) (note :a) (wait-for *never*) (note :not-reached))",
+        "(par (unwind-protect (unwind-protect (wait-for *never*) (wait-for *never*)) (wait-for *never*)))",
+        "(without-scheduling (wait-for *never*))",
+        "(unwind-protect (wait-for *never*) (loop (unwind-protect nil (wait-for *never*))))",
+    ],
+)
 def test_a_plan_that_can_go_nowhere_is_brought_down_whole(lisp, plan):
     """Law 1 holds for the deadlock report as well: when it is shown, no task of the plan is left."""
     assert "Nothing can happen any more" in lisp.error(NEVER + f"(top-level (unwind-protect {plan} (note :outer)))")
@@ -270,5 +316,7 @@ def test_a_finally_of_an_evaporated_task_is_limited_as_well():
 def test_the_warning_says_whose_cleanup_waited_for_what_and_where(lisp, capsys):
     lisp(NEVER + "(let ((*cleanup-time-limit* 5)) (top-level (unwind-protect 1 (wait-for *never*))))")
     said = re.sub(r"-\d+ ", "-N ", " ".join(capsys.readouterr().err.split()))
-    assert ("WARNING: The cleanup of [TOP-LEVEL]-N waited for the fluent #<FLUENT NEVER [NIL]>, at <repl 2>:2:62. "
-            "The time of *CLEANUP-TIME-LIMIT*, 5 s, is over: the rest of this cleanup form is left out, and outer ones run.") in said
+    assert (
+        "WARNING: The cleanup of [TOP-LEVEL]-N waited for the fluent #<FLUENT NEVER [NIL]>, at <repl 2>:2:62. "
+        "The time of *CLEANUP-TIME-LIMIT*, 5 s, is over: the rest of this cleanup form is left out, and outer ones run."
+    ) in said

@@ -12,7 +12,7 @@ NOTED = {
     "cpl-impl::on-begin-execute-tag-task": "(task) (note :tag (task-path task)) 2",
     "cpl-impl::on-finish-execute-tag-task": "(id) (note :tag-over id)",
     "cpl-impl::on-preparing-task-execution": "(name log-parameters pattern lambda-list parameters) "
-                                             "(note :task name log-parameters pattern lambda-list parameters) 3",
+    "(note :task name log-parameters pattern lambda-list parameters) 3",
     "cpl-impl::on-finishing-task-execution": "(id) (note :task-over id)",
 }
 
@@ -37,7 +37,8 @@ def test_a_plan_calls_the_hooks_at_their_moments_with_their_arguments(noted):
     assert noted("(setf *notes* nil) (tidy 'cup)") == "(CUP 5)"
     assert noted("*notes*") == (
         '((:PREPARING TIDY) (:SETUP TIDY T) (:TASK "REPLACEABLE-FUNCTION-TIDY" NIL NIL (THING) (CUP)) '
-        "(:TAG ((TAGGED GRASP) (TOP-LEVEL TIDY))) (:FLUENT HAND T NIL) (:TAG-OVER 2) (:TASK-OVER 3) (:FINISHING 1) (:CLEANUP TIDY 5))")
+        "(:TAG ((TAGGED GRASP) (TOP-LEVEL TIDY))) (:FLUENT HAND T NIL) (:TAG-OVER 2) (:TASK-OVER 3) (:FINISHING 1) (:CLEANUP TIDY 5))"
+    )
 
 
 def test_a_goal_tells_its_arguments_and_its_pattern(noted):
@@ -47,7 +48,7 @@ def test_a_goal_tells_its_arguments_and_its_pattern(noted):
 
 
 def test_a_failing_plan_ends_what_its_hooks_began(noted):
-    noted("(def-cram-function drop () (:tag a (fail \"dropped\")))")
+    noted('(def-cram-function drop () (:tag a (fail "dropped")))')
     assert noted.error("(top-level (drop))") == "dropped"
     assert noted("(mapcar #'first *notes*)") == "(:PREPARING :SETUP :TASK :TAG :TAG-OVER :TASK-OVER :FINISHING :CLEANUP)"
 

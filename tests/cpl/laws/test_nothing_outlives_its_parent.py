@@ -68,8 +68,11 @@ def test_ended_because_a_sibling_of_the_form_has_won(lisp, form):
 def test_interrupted(lisp, form, time):
     lisp(BRANCHES)
     kernel.call_at(kernel.now() + time, kernel.interrupt)
-    lisp.error(f"(top-level (unwind-protect (progn (sleep 1/8) {form}) (note :parent)))" if time
-               else f"(top-level (unwind-protect {form} (note :parent)))")
+    lisp.error(
+        f"(top-level (unwind-protect (progn (sleep 1/8) {form}) (note :parent)))"
+        if time
+        else f"(top-level (unwind-protect {form} (note :parent)))"
+    )
     if time:
         check(lisp)
     assert kernel.active().tasks == [kernel.active().main]
@@ -118,22 +121,30 @@ def test_left_by_a_handler_of_its_failure(lisp, form, handler):
     notes = lisp("*notes*")
     unwound_first = handler.startswith("(handler-case")
     ends = "(:PARENT :HANDLER (:AFTER NIL))" if unwound_first else "(:HANDLER :PARENT (:AFTER NIL))"
-    assert notes.endswith(ends[1:]) and set(notes[:-len(ends)].strip("( ").split()) == {":BRANCH"}
+    assert notes.endswith(ends[1:]) and set(notes[: -len(ends)].strip("( ").split()) == {":BRANCH"}
 
 
 @pytest.mark.law(72)
 def test_tried_again_by_retry_one_attempt_is_over_before_the_next_begins(lisp):
-    assert lisp(BRANCHES + """
+    assert (
+        lisp(
+            BRANCHES
+            + """
         (top-level
           (with-retry-counters ((attempts 2))
             (with-failure-handling ((plan-failure (e) (declare (ignore e)) (do-retry attempts (retry)) (return)))
               (note :attempt)
               (par (slow) (trigger)))))
-        *notes*""") == "(:ATTEMPT :BRANCH :ATTEMPT :BRANCH :ATTEMPT :BRANCH)"
+        *notes*"""
+        )
+        == "(:ATTEMPT :BRANCH :ATTEMPT :BRANCH :ATTEMPT :BRANCH)"
+    )
 
 
 def test_a_form_whose_later_branch_cannot_be_started_ends_the_earlier_ones(lisp):
-    assert lisp(BRANCHES + """
+    assert lisp(
+        BRANCHES
+        + """
         (define-task-variable *broken* 0 "Fails for the third task." :init-function
           (lambda (task parent value) (declare (ignore task parent)) (if (= value 2) (error "no third") value)))
         (top-level
@@ -142,4 +153,5 @@ def test_a_form_whose_later_branch_cannot_be_started_ends_the_earlier_ones(lisp)
             (setf *broken* 2)
             (note (nth-value 1 (ignore-errors (par (slow) (slow))))))
           (note (child-tasks (current-task)))
-          (mapcar (lambda (x) (if (typep x 'condition) (princ-to-string x) x)) *notes*))""").endswith('"no third" NIL)')
+          (mapcar (lambda (x) (if (typep x 'condition) (princ-to-string x) x)) *notes*))"""
+    ).endswith('"no third" NIL)')

@@ -26,44 +26,58 @@ def test_a_body_that_ends_first_gives_its_values(guarded):
 
 @pytest.mark.law(108)
 def test_when_the_check_is_met_the_body_is_dead_before_recovery_and_the_condition_comes_last(guarded):
-    assert guarded("""(top-level
+    assert (
+        guarded("""(top-level
                         (with-failure-handling ((policy-check-condition-met (c)
                                                   (note :handler (parameters c))
                                                   (return (princ-to-string c))))
                           (with-policy guard ((+ 2 3))
                             (unwind-protect (par (progn (sleep 1) (setf (value *load*) 7) (sleep 9))
                                                  (unwind-protect (sleep 9) (sleep 1) (note :branch-dead)))
-                              (note :body-dead)))))""") == '"Policy check condition met for policy GUARD. Parameters: ((+ 2 3)). "'
+                              (note :body-dead)))))""")
+        == '"Policy check condition met for policy GUARD. Parameters: ((+ 2 3)). "'
+    )
     assert guarded("*notes*") == "(:INIT :BRANCH-DEAD :BODY-DEAD :RECOVER :CLEAN-UP (:HANDLER ((+ 2 3))))"
 
 
 @pytest.mark.law(109)
 def test_an_init_that_gives_nil_starts_nothing(lisp):
     lisp("(define-policy never (x) (:init (note x) nil) (:check (note :check)) (:clean-up (note :clean-up)))")
-    assert lisp("""(handler-case (top-level (with-policy never (3) (note :body)))
-                     (policy-init-failed (c) (princ-to-string c)))""") == '"Initialization of policy NEVER failed. Parameters: (3) "'
+    assert (
+        lisp("""(handler-case (top-level (with-policy never (3) (note :body)))
+                     (policy-init-failed (c) (princ-to-string c)))""")
+        == '"Initialization of policy NEVER failed. Parameters: (3) "'
+    )
     assert lisp("*notes*") == "(3)"
 
 
 @pytest.mark.law(110)
 def test_a_timeout_ends_a_longer_body_and_leaves_a_shorter_one_alone(lisp):
     assert lisp("(top-level (with-policy timeout-policy (2) (sleep 1) :in-time))") == ":IN-TIME"
-    assert lisp("""(top-level (with-failure-handling ((policy-check-condition-met (c) (return (princ-to-string c))))
-                     (unwind-protect (with-policy timeout-policy (0.2) (sleep 10)) (note :after))))""") == \
-        '"Policy check condition met for policy TIMEOUT-POLICY. Parameters: (0.2). "'
+    assert (
+        lisp("""(top-level (with-failure-handling ((policy-check-condition-met (c) (return (princ-to-string c))))
+                     (unwind-protect (with-policy timeout-policy (0.2) (sleep 10)) (note :after))))""")
+        == '"Policy check condition met for policy TIMEOUT-POLICY. Parameters: (0.2). "'
+    )
 
 
 @pytest.mark.law(111)
 def test_a_failing_body_cleans_up_and_its_failure_is_unchanged(guarded):
-    guarded("(defvar *failure* (make-condition 'simple-plan-failure :format-control \"x\"))")
-    assert guarded("""(top-level (with-failure-handling ((plan-failure (f) (note :handler) (return (eq f *failure*))))
-                        (with-policy guard (5) (fail *failure*))))""") == "T"
+    guarded('(defvar *failure* (make-condition \'simple-plan-failure :format-control "x"))')
+    assert (
+        guarded("""(top-level (with-failure-handling ((plan-failure (f) (note :handler) (return (eq f *failure*))))
+                        (with-policy guard (5) (fail *failure*))))""")
+        == "T"
+    )
     assert guarded("*notes*") == "(:INIT :HANDLER :CLEAN-UP)"
 
 
 def test_a_policy_condition_reaches_the_handlers_of_parents(guarded):
-    assert guarded("""(top-level (with-failure-handling ((policy-check-condition-met (c) (return (cpl-impl:name c))))
-                        (par (sleep 9) (with-policy timeout-policy (1) (sleep 9)))))""") == "TIMEOUT-POLICY"
+    assert (
+        guarded("""(top-level (with-failure-handling ((policy-check-condition-met (c) (return (cpl-impl:name c))))
+                        (par (sleep 9) (with-policy timeout-policy (1) (sleep 9)))))""")
+        == "TIMEOUT-POLICY"
+    )
 
 
 def test_a_policy_without_check_runs_its_body_and_a_failing_recovery_cleans_up(lisp):
@@ -90,17 +104,23 @@ def test_several_policies_nest_the_first_outermost_and_none_is_only_the_body(lis
 
 
 def test_a_policy_can_be_read_and_found_by_its_name(guarded):
-    assert guarded("""(list (eq (named-policy 'guard) guard) (parameters guard) (cpl-impl:name guard) (cpl-impl:policy-name guard)
-                            (functionp (cpl-impl::policy-check guard)))""") == "(T (LIMIT) GUARD GUARD T)"
+    assert (
+        guarded("""(list (eq (named-policy 'guard) guard) (parameters guard) (cpl-impl:name guard) (cpl-impl:policy-name guard)
+                            (functionp (cpl-impl::policy-check guard)))""")
+        == "(T (LIMIT) GUARD GUARD T)"
+    )
     assert guarded.error("(named-policy 'no-such)") == "Policy NO-SUCH not found."
 
 
-@pytest.mark.parametrize("form, why", [
-    ("(define-policy p () (:chek t))", "(:CHEK T) is malformed: it is none of the clauses :INIT :CHECK :RECOVER :CLEAN-UP."),
-    ("(define-policy p () (:check t) (:check t))", "(:CHECK T) is malformed: there is a clause of this name already."),
-    ("(define-policy p t (:check t))", "T is malformed: after the name comes the list of its parameters."),
-    ('(define-policy "p" ())', '"p" is malformed: its name must be a symbol.'),
-])
+@pytest.mark.parametrize(
+    "form, why",
+    [
+        ("(define-policy p () (:chek t))", "(:CHEK T) is malformed: it is none of the clauses :INIT :CHECK :RECOVER :CLEAN-UP."),
+        ("(define-policy p () (:check t) (:check t))", "(:CHECK T) is malformed: there is a clause of this name already."),
+        ("(define-policy p t (:check t))", "T is malformed: after the name comes the list of its parameters."),
+        ('(define-policy "p" ())', '"p" is malformed: its name must be a symbol.'),
+    ],
+)
 def test_a_broken_clause_is_refused_when_the_policy_is_compiled(lisp, form, why):
     assert lisp.error(form) == f"DEFINE-POLICY: {why}"
 

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.cpl import failures
+from cramhy_runtime.cpl.failures import handling as failures
 from cramhy_runtime.cpl.statuses import CREATED, DEAD, EVAPORATED, FAILED, NEXT, RUNNING, SUSPENDED
 
 pytest.importorskip("greenlet")

@@ -14,42 +14,55 @@ def test_a_task_has_the_constructor_keywords_of_the_original(lisp):
                 (run (make-instance 'task :name "run" :thread-fun (lambda () (values 1 2))))
                 (empty (make-instance 'task :name "empty")))
             (list (later made) (task-path made) (later empty) (multiple-value-list (join-task run)) *notes*)))""") == (
-        "(:CREATED ((A) (B)) :CREATED (1 2) NIL)")
+        "(:CREATED ((A) (B)) :CREATED (1 2) NIL)"
+    )
 
 
 def test_the_path_of_a_task_is_by_default_that_of_the_form_that_starts_it(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (def-cram-function step-one () (task-path (let ((task (in-child 1))) (join-task task) task)))
-        (top-level (step-one))""") == "((STEP-ONE))"
+        (top-level (step-one))""")
+        == "((STEP-ONE))"
+    )
 
 
 def test_task_and_toplevel_task_have_a_common_parent_and_are_not_of_each_others_type(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (let ((task (make-instance 'task)) (root (make-instance 'toplevel-task)))
           (list (typep task 'task) (typep task 'toplevel-task) (typep root 'task) (typep root 'toplevel-task)
                 (typep task 'cpl-impl::abstract-task) (typep root 'cpl-impl::abstract-task)
-                (subtypep 'task 'cpl-impl::abstract-task)))""") == "(T NIL NIL T T T T)"
+                (subtypep 'task 'cpl-impl::abstract-task)))""")
+        == "(T NIL NIL T T T T)"
+    )
 
 
 def test_a_program_may_make_subclasses_of_task(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (defclass named-task (task) ((purpose :initarg :purpose :initform :none :reader purpose)))
         (defmethod evaporate :before ((task named-task) &key reason sync) (declare (ignore reason sync)) (note (purpose task)))
         (top-level
           (let ((task (make-instance 'named-task :name "n" :purpose :fun :thread-fun (lambda () (sleep 10)))))
             (sleep 1)
             (evaporate task)
-            (list (type-of task) (purpose task) (later task) *notes*)))""") == "(NAMED-TASK :FUN :EVAPORATED (:FUN))"
+            (list (type-of task) (purpose task) (later task) *notes*)))""")
+        == "(NAMED-TASK :FUN :EVAPORATED (:FUN))"
+    )
 
 
 def test_the_requests_are_generic_functions_and_say_what_they_cannot_be_called_with(lisp):
     for function in ("evaporate", "suspend", "wake-up", "join-task", "status", "result"):
         assert lisp(f"(typep #'{function} 'generic-function)") == "T"
         assert "no applicable method for the generic function" in lisp.error(f"({function} 5)")
-    assert lisp("""
+    assert (
+        lisp("""
         (defclass robot () ())
         (defmethod suspend ((robot robot) &key reason sync) (list :held reason sync))
-        (suspend (make-instance 'robot) :reason "why" :sync nil)""") == '(:HELD "why" NIL)'
+        (suspend (make-instance 'robot) :reason "why" :sync nil)""")
+        == '(:HELD "why" NIL)'
+    )
 
 
 @pytest.mark.parametrize("request_", ["evaporate", "suspend", "wake-up"])
@@ -58,26 +71,37 @@ def test_a_reason_is_nil_or_a_string(lisp, request_):
 
 
 def test_a_task_prints_its_name_and_with_verbosity_its_status(lisp):
-    assert re.fullmatch(r'#<TASK "A" \{[0-9A-F]+\}>', lisp("(make-instance 'task :name \"A\")"))
-    assert re.fullmatch(r'#<TOPLEVEL-TASK "A" \{[0-9A-F]+\}>', lisp("(make-instance 'toplevel-task :name \"A\")"))
-    assert re.fullmatch(r'"#<TASK \\"A\\" :CREATED \{[0-9A-F]+\}>"',
-                        lisp("(let ((*task-pprint-verbosity* 1)) (prin1-to-string (make-instance 'task :name \"A\")))"))
+    assert re.fullmatch(r'#<TASK "A" \{[0-9A-F]+\}>', lisp('(make-instance \'task :name "A")'))
+    assert re.fullmatch(r'#<TOPLEVEL-TASK "A" \{[0-9A-F]+\}>', lisp('(make-instance \'toplevel-task :name "A")'))
+    assert re.fullmatch(
+        r'"#<TASK \\"A\\" :CREATED \{[0-9A-F]+\}>"',
+        lisp('(let ((*task-pprint-verbosity* 1)) (prin1-to-string (make-instance \'task :name "A")))'),
+    )
     assert re.fullmatch(r'"UNKNOWN-\d+"', lisp("(name (make-instance 'task))"))
 
 
 @pytest.mark.law(40)
 def test_the_status_is_a_value_fluent_named_after_the_task(lisp):
-    assert re.fullmatch(r'\(T T :CREATED "WORK-STATUS\d+" NIL\)', lisp("""
+    assert re.fullmatch(
+        r'\(T T :CREATED "WORK-STATUS\d+" NIL\)',
+        lisp("""
         (let* ((task (make-instance 'task :name "WORK")) (fluent (status task)))
           (list (typep fluent 'value-fluent) (cl:eq fluent (status task)) (value fluent) (princ-to-string (name fluent))
-                (symbol-package (name fluent))))"""))
+                (symbol-package (name fluent))))"""),
+    )
 
 
 def test_the_lists_of_statuses_and_the_type(lisp):
     assert lisp("(list +alive+ +dead+ +done+)") == (
-        "((:CREATED :RUNNING :WAITING :SUSPENDED) (:FAILED :SUCCEEDED :EVAPORATED) (:SUCCEEDED :EVAPORATED))")
-    assert lisp("(mapcar (lambda (status) (typep status 'status-indicator)) '(:created :running :suspended :succeeded :failed "
-                ":evaporated :waiting nil))") == "(T T T T T T NIL NIL)"
+        "((:CREATED :RUNNING :WAITING :SUSPENDED) (:FAILED :SUCCEEDED :EVAPORATED) (:SUCCEEDED :EVAPORATED))"
+    )
+    assert (
+        lisp(
+            "(mapcar (lambda (status) (typep status 'status-indicator)) '(:created :running :suspended :succeeded :failed "
+            ":evaporated :waiting nil))"
+        )
+        == "(T T T T T T NIL NIL)"
+    )
 
 
 def test_the_readers_answer_for_created_running_and_dead_tasks(lisp):
@@ -87,16 +111,21 @@ def test_the_readers_answer_for_created_running_and_dead_tasks(lisp):
     assert lisp(asks + " (ask (make-instance 'task)))") == "((:CREATED :RUNNING :WAITING :SUSPENDED) NIL T NIL NIL NIL NIL)"
     assert lisp(asks + " (top-level (ask (current-task))))") == "((:RUNNING :WAITING :SUSPENDED) NIL T NIL NIL NIL NIL)"
     assert lisp(asks + " (top-level (let ((task (in-child 7))) (join-task task) (ask task))))") == (
-        "(NIL (:SUCCEEDED :EVAPORATED) NIL T T NIL (7))")
+        "(NIL (:SUCCEEDED :EVAPORATED) NIL T T NIL (7))"
+    )
     assert lisp(asks + " (let ((task (make-instance 'task))) (evaporate task) (ask task)))") == "(NIL (:EVAPORATED) NIL T T NIL NIL)"
     assert lisp(asks + ' (top-level (let ((task (in-child (fail "x")))) (sleep 1) (butlast (ask task)))))') == (
-        "(NIL (:FAILED :SUCCEEDED :EVAPORATED) NIL T NIL T)")
+        "(NIL (:FAILED :SUCCEEDED :EVAPORATED) NIL T NIL T)"
+    )
 
 
 def test_outside_of_plans_current_task_is_a_fresh_dummy_that_is_running(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (list *current-task* *current-path* *task-tree* (later (current-task)) (name (current-task)) (type-of (current-task))
-              (eq (current-task) (current-task)))""") == '(NIL NIL NIL :RUNNING "main" TOPLEVEL-TASK NIL)'
+              (eq (current-task) (current-task)))""")
+        == '(NIL NIL NIL :RUNNING "main" TOPLEVEL-TASK NIL)'
+    )
 
 
 def test_executed_tasks_are_saved_in_order_while_the_variable_says_so(lisp):
@@ -107,36 +136,50 @@ def test_executed_tasks_are_saved_in_order_while_the_variable_says_so(lisp):
         (let ((names (mapcar #'name (list-saved-tasks))) (same (equal *tasks* (list-saved-tasks))))
           (setf *tasks* nil)
           (list (mapcar (lambda (name) (subseq name 0 (position #\\- name :from-end t))) names) same (list-saved-tasks)))""") == (
-        '(("[TOP-LEVEL]" "[PAR-CHILD-#1/2]" "[PAR-CHILD-#2/2]" "[PAR-CHILD-#1/1]") T NIL)')
+        '(("[TOP-LEVEL]" "[PAR-CHILD-#1/2]" "[PAR-CHILD-#2/2]" "[PAR-CHILD-#1/1]") T NIL)'
+    )
 
 
 def test_tv_closure_binds_the_task_variables_as_they_are_seen_when_it_is_made(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (define-task-variable *v* :global)
         (let ((closure (let ((*v* :bound)) (tv-closure (make-instance 'task) nil (lambda (&rest all) (list* *v* all))))))
-          (list (funcall closure 1 2) *v*))""") == "((:BOUND 1 2) :GLOBAL)"
+          (list (funcall closure 1 2) *v*))""")
+        == "((:BOUND 1 2) :GLOBAL)"
+    )
 
 
 @pytest.mark.law(62)
 def test_define_task_variable_has_all_its_keywords(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (define-task-variable *depth* 0 "How deep." :type integer :init-function (lambda (task parent value)
                                                                                    (declare (ignore task parent)) (1+ value)))
-        (list *depth* (documentation '*depth* 'variable) (top-level (par (par *depth*))))""") == '(0 "How deep." 3)'
+        (list *depth* (documentation '*depth* 'variable) (top-level (par (par *depth*))))""")
+        == '(0 "How deep." 3)'
+    )
     assert lisp.error("(setf *depth* :a)") == "The value :A is not of type INTEGER"
     assert lisp.error("(define-task-variable *d* 0 nil :colour :red)") == (
-        "DEFINE-TASK-VARIABLE has no option :COLOUR: it has :TYPE, :INIT-FUNCTION, :IGNORE-PACKAGE-LOCKS.")
-    assert lisp("""
+        "DEFINE-TASK-VARIABLE has no option :COLOUR: it has :TYPE, :INIT-FUNCTION, :IGNORE-PACKAGE-LOCKS."
+    )
+    assert (
+        lisp("""
         (define-task-variable cl:*print-base* 10 nil :ignore-package-locks t)
-        (let ((*print-base* 2)) (top-level (prin1-to-string 5)))""") == '"101"'
+        (let ((*print-base* 2)) (top-level (prin1-to-string 5)))""")
+        == '"101"'
+    )
 
 
 def test_an_init_function_gets_the_task_its_parent_and_the_value_that_the_parent_sees(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (defun seen (task parent value) (note (later task) (if parent (later parent) parent) value) value)
         (define-task-variable *w* 1 nil :init-function 'seen)
         (top-level (setf *w* 2) (par 1))
-        *notes*""") == "((:CREATED NIL 1) (:CREATED :RUNNING 2))"
+        *notes*""")
+        == "((:CREATED NIL 1) (:CREATED :RUNNING 2))"
+    )
 
 
 @pytest.mark.law(55)
@@ -165,7 +208,8 @@ def test_no_call_on_a_dead_task_hangs_or_changes_anything(lisp, end, status, whe
 
 
 def test_a_request_to_suspend_a_task_that_is_not_started_is_obeyed_at_its_first_waiting_point(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (let ((task (make-instance 'task :run-thread nil :thread-fun (lambda () (note :begins) (sleep 1) (note :goes-on)))))
           (suspend task)
           (note (later task))
@@ -175,7 +219,9 @@ def test_a_request_to_suspend_a_task_that_is_not_started_is_obeyed_at_its_first_
             (note (later task))
             (wake-up task)
             (join-task task))
-          *notes*)""") == "(:CREATED :BEGINS :SUSPENDED :GOES-ON)"
+          *notes*)""")
+        == "(:CREATED :BEGINS :SUSPENDED :GOES-ON)"
+    )
 
 
 def test_a_request_that_was_taken_back_before_the_start_is_forgotten(lisp):
@@ -187,7 +233,8 @@ def test_a_request_that_was_taken_back_before_the_start_is_forgotten(lisp):
 
 
 def test_a_task_evaporated_before_it_is_executed_never_runs_and_whoever_executes_it_goes_on(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (let ((task (make-instance 'task :run-thread nil :thread-fun (lambda () (note :ran)))))
           (evaporate task)
           (note (later task))
@@ -197,19 +244,25 @@ def test_a_task_evaporated_before_it_is_executed_never_runs_and_whoever_executes
               (evaporate step)
               (note (multiple-value-list (:tag step (note :ran) 1)))
               (note (multiple-value-list (:tag step (note :again) 2)))))
-          *notes*)""") == "(:EVAPORATED NIL NIL :AGAIN (2))"
+          *notes*)""")
+        == "(:EVAPORATED NIL NIL :AGAIN (2))"
+    )
 
 
 def test_a_task_that_suspends_itself_stops_at_its_next_waiting_point(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (top-level
           (let ((task (in-child (suspend (current-task) :sync nil) (note :before) (sleep 1) (note :after))))
             (sleep 5)
             (note (later task))
             (wake-up task)
             (join-task task)))
-        *notes*""") == "(:BEFORE :SUSPENDED :AFTER)"
-    assert lisp("""
+        *notes*""")
+        == "(:BEFORE :SUSPENDED :AFTER)"
+    )
+    assert (
+        lisp("""
         (setf *notes* nil)
         (top-level
           (let ((task (in-child (suspend (current-task)) (note :after))))
@@ -217,11 +270,14 @@ def test_a_task_that_suspends_itself_stops_at_its_next_waiting_point(lisp):
             (note (later task))
             (wake-up task)
             (join-task task)))
-        *notes*""") == "(:SUSPENDED :AFTER)"
+        *notes*""")
+        == "(:SUSPENDED :AFTER)"
+    )
 
 
 def test_an_endless_loop_without_waits_can_be_suspended_and_evaporated(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (top-level
           (let* ((count 0) (task (in-child (loop (incf count)))) (before 0))
             (sleep 1)
@@ -233,12 +289,15 @@ def test_an_endless_loop_without_waits_can_be_suspended_and_evaporated(lisp):
             (sleep 1)
             (evaporate task)
             (note (> count before) (later task))))
-        *notes*""") == "((T T) (T :EVAPORATED))"
+        *notes*""")
+        == "((T T) (T :EVAPORATED))"
+    )
 
 
 @pytest.mark.parametrize("sync", ["t", "nil"])
 def test_requests_work_from_callbacks_of_fluents_and_from_outside_of_plans(lisp, sync):
-    assert lisp(f"""
+    assert (
+        lisp(f"""
         (defvar *door* (make-fluent))
         (defvar *task* (make-instance 'toplevel-task :name "aside" :thread-fun
                          (lambda () (unwind-protect (sleep 100) (sleep 1) (note :cleanup)))))
@@ -247,16 +306,21 @@ def test_requests_work_from_callbacks_of_fluents_and_from_outside_of_plans(lisp,
         (setf (value *door*) #'suspend) (sleep 1) (note (later *task*))
         (setf (value *door*) #'wake-up) (sleep 1) (note (later *task*))
         (setf (value *door*) #'evaporate) (sleep 2) (note (later *task*))
-        *notes*""") == "(:SUSPENDED :RUNNING :CLEANUP :EVAPORATED)"
+        *notes*""")
+        == "(:SUSPENDED :RUNNING :CLEANUP :EVAPORATED)"
+    )
 
 
 def test_a_failure_inside_of_without_scheduling_or_of_a_callback_is_a_failure(lisp):
     """Repaired: in the original it can become none (defect 23)."""
     assert lisp.error('(top-level (par (without-scheduling (fail "protected"))))') == "protected"
-    assert lisp.error("""
+    assert (
+        lisp.error("""
         (let ((door (make-fluent)))
           (register-update-callback door 'guard (lambda (value) (declare (ignore value)) (fail "guarded")))
-          (top-level (par (setf (value door) 1))))""") == "guarded"
+          (top-level (par (setf (value door) 1))))""")
+        == "guarded"
+    )
 
 
 def test_the_same_plan_function_may_be_called_twice_at_once(lisp):

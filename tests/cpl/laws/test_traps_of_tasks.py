@@ -27,7 +27,8 @@ def test_a_bare_except_that_swallows_an_evaporation_gets_it_again_where_it_waits
 
 
 def test_a_cleanup_form_that_leaves_by_an_exit_of_its_own_does_not_escape_the_evaporation(lisp):
-    assert lisp("""
+    assert (
+        lisp("""
         (let ((order nil))
           (top-level
             (pursue
@@ -40,7 +41,9 @@ def test_a_cleanup_form_that_leaves_by_an_exit_of_its_own_does_not_escape_the_ev
                 (sleep 1000)
                 (push :never order))
               (sleep 1)))
-          (reverse order))""") == "(:CLEANUP :ON)"
+          (reverse order))""")
+        == "(:CLEANUP :ON)"
+    )
 
 
 def test_except_exception_does_not_see_an_evaporation():
@@ -60,11 +63,14 @@ def test_except_exception_does_not_see_an_evaporation():
 @pytest.mark.law(62)
 def test_dynamic_bindings_of_the_caller_are_not_seen_in_a_plan_function(lisp):
     """Traps 16 and 17: a plan function runs in a task of its own, on a stack of its own."""
-    assert lisp("""
+    assert (
+        lisp("""
         (defvar *x* :global)
         (define-task-variable *tv* :global)
         (def-cram-function f () (list *x* *tv* (later (parent-task (current-task))) (typep (current-task) 'task)))
-        (let ((*tv* :bound)) (top-level (let ((*x* :bound)) (f))))""") == "(:GLOBAL :BOUND :RUNNING T)"
+        (let ((*tv* :bound)) (top-level (let ((*x* :bound)) (f))))""")
+        == "(:GLOBAL :BOUND :RUNNING T)"
+    )
 
 
 @pytest.mark.law(97)
@@ -101,11 +107,14 @@ def test_a_task_that_waits_is_not_woken_while_nothing_happens_that_it_waits_for(
 
 def test_two_executions_of_one_form_have_two_names(lisp):
     """Trap 43; in the original the number belongs to the form."""
-    assert lisp("""
+    assert (
+        lisp("""
         (flet ((run () (top-level (par (name (current-task))))))
           (let ((first (run)) (second (run)))
             (list (string= first second) (mismatch first second :end1 (length "[PAR-CHILD-#1/1]") :end2 (length "[PAR-CHILD-#1/1]")))))
-        """) == "(NIL NIL)"
+        """)
+        == "(NIL NIL)"
+    )
 
 
 def test_an_exit_out_of_a_branch_is_an_error_that_says_what_to_do(lisp):

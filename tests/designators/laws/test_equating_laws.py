@@ -99,10 +99,13 @@ def test_the_youngest_that_is_effective(things):
 
 @pytest.mark.law("designators", 50)
 def test_a_task_that_waits_for_the_fluent_wakes_when_the_chain_is_equated(things):
-    assert things("""(cpl:top-level
+    assert (
+        things("""(cpl:top-level
                        (cpl:par (with-equate-fluent (*a* equated)
                                   (note (list (cpl:value equated) (cpl-impl:name equated)))
                                   (cpl:wait-for (cpl:pulsed equated))
                                   (note (cut:current-timestamp)))
                                 (progn (cpl:sleep 3) (equate *a* *b*))))
-                     *notes*""") == "((NIL EQUATED) 3.0d0)"
+                     *notes*""")
+        == "((NIL EQUATED) 3.0d0)"
+    )

@@ -11,16 +11,20 @@ def test_definitions_are_sequential_and_create_functions_may_decline(lisp):
     assert lisp("""(cpl:top-level (with-designators ((there :location '((:n 1))) (cup :object nil)
                                                       (go :motion `((:to ,there) (:with ,cup))))
                                     (list (eq there (desig-prop-value go :to)) (props cup) (type-of go))))""") == (
-        "(T ((:MADE :BY-HAND)) MOTION-DESIGNATOR)")
+        "(T ((:MADE :BY-HAND)) MOTION-DESIGNATOR)"
+    )
     assert lisp("(mapcar #'first *notes*)") == "(THERE CUP GO)"
     lisp("(register-designator-create-function 'making)")  # to the front again
     assert lisp("(setf *notes* nil) (cpl:top-level (with-designators ((cup :object nil)) *notes*))") == "NIL"
 
 
 def test_the_form_is_a_node_of_the_task_tree(lisp):
-    assert lisp("""(cpl:top-level (with-designators ((a :motion nil))
+    assert (
+        lisp("""(cpl:top-level (with-designators ((a :motion nil))
                                     (with-designators ((b :motion nil)) (note (rest (first cpl:*current-path*))))))
-                   *notes*""") == "(((WITH-DESIGNATORS (B))))"
+                   *notes*""")
+        == "(((WITH-DESIGNATORS (B))))"
+    )
     assert lisp.error("(with-designators ((a :motion nil)) a)").startswith("The value NIL is not of type TASK-TREE-NODE")
 
 
@@ -28,7 +32,8 @@ def test_the_hook_sees_each_designator(lisp):
     lisp("(defmethod cpl::on-with-designator laws (designator) (note (type-of designator)))")
     try:
         assert lisp("(cpl:top-level (with-designators ((a :motion nil) (b :object nil)) *notes*))") == (
-            "(MOTION-DESIGNATOR OBJECT-DESIGNATOR)")
+            "(MOTION-DESIGNATOR OBJECT-DESIGNATOR)"
+        )
     finally:
         lisp("""(let ((hook #'cpl::on-with-designator))
                   (dolist (method (sb-mop:generic-function-methods hook))

@@ -26,7 +26,8 @@ def places(lisp):
 def test_without_a_generator_there_is_no_place(places):
     assert places("(try (reference (place)))") == ":NOTHING"
     assert places.hint("(reference (place))") == (
-        "None of the location generators gave a candidate: cram-designators::location-prolog-generator.")
+        "None of the location generators gave a candidate: cram-designators::location-prolog-generator."
+    )
     places("(delete-location-generator-function 'desig::location-prolog-generator)")
     assert places("(list (list-location-generators) (try (reference (place))))") == "(NIL :NOTHING)"
     assert places.hint("(reference (place))") == "No location generator is registered."
@@ -49,7 +50,8 @@ def test_solutions_in_the_order_of_priorities_and_one_object_for_each(places):
     places("(register-location-generator 2 gen-b) (register-location-generator 1 gen-a) (defvar *d* (place))")
     assert places("(reference *d*)") == ":A"
     assert places("(let ((n (next-solution *d*))) (list (eq n (next-solution *d*)) (effective n) (reference n) (next-solution n)))") == (
-        "(T NIL :B NIL)")
+        "(T NIL :B NIL)"
+    )
     assert places("(force-ll (designator-solutions (current-desig *d*) t))") == "(:A :B)"
 
 
@@ -91,11 +93,13 @@ def test_so_many_candidates_are_drawn_before_the_search_ends(places):
     for retries in (0, 3, 50):
         assert places(f"""(setf *drawn* 0)
                           (let ((*location-generator-max-retries* {retries})) (list (try (reference (place))) *drawn*))""") == (
-            f"(:NOTHING {retries + 1})")
+            f"(:NOTHING {retries + 1})"
+        )
     assert places("(setf *drawn* 0) (let ((*location-generator-max-retries* 51)) (list (reference (place)) *drawn*))") == "(52 52)"
     assert places.hint("(reference (place))") == (
         "31 candidates were refused, from endless (31). The last one, 31, was refused by from-52, which returned :reject. The search ends "
-        "after 31, since *location-generator-max-retries* is 30.")
+        "after 31, since *location-generator-max-retries* is 30."
+    )
 
 
 @pytest.mark.law("designators", 28)
@@ -132,9 +136,13 @@ def test_any_other_verdict_ends_the_questions(places, verdict):
                (register-location-validation-function 1 v1) (register-location-validation-function 2 v2)
                (register-location-generator 1 gen-a)""")
     assert places("(list (try (reference (place))) *notes*)") == "(:NOTHING NIL)"
-    why = {"t": "was refused by v1: t is no verdict, :accept is one", "nil": "was refused by v1, which returned nil",
-           ":reject": "was refused by v1, which returned :reject", "'accept": "was refused by v1, which returned accept",
-           '"accept"': 'was refused by v1, which returned "accept"'}[verdict]
+    why = {
+        "t": "was refused by v1: t is not a verdict, :accept is one",
+        "nil": "was refused by v1, which returned nil",
+        ":reject": "was refused by v1, which returned :reject",
+        "'accept": "was refused by v1, which returned accept",
+        '"accept"': 'was refused by v1, which returned "accept"',
+    }[verdict]
     assert places.hint("(reference (place))") == f"1 candidate was refused, from gen-a (1). The last one, :a, {why}."
 
 
@@ -144,13 +152,17 @@ def test_restarts_decide_where_a_validator_fails(places):
               (register-location-validation-function 1 broken) (register-location-generator 1 gen-a)
               (register-location-generator 2 gen-b)""")
     for restart, solution in (("accept-solution", ":A"), ("reject-solution", ":B")):
-        assert places(f"""(handler-bind ((error (lambda (e) (declare (ignore e)) (invoke-restart '{restart}))))
-                            (reference (place)))""") == solution
+        assert (
+            places(f"""(handler-bind ((error (lambda (e) (declare (ignore e)) (invoke-restart '{restart}))))
+                            (reference (place)))""")
+            == solution
+        )
     assert places("""(block shown (handler-bind ((error (lambda (e)
                        (return-from shown (loop for r in (compute-restarts e) repeat 2
                                                 collect (list (restart-name r) (princ-to-string r)))))))
                        (reference (place))))""") == (
-        '((ACCEPT-SOLUTION "Accept this designator solution") (REJECT-SOLUTION "Refuse this designator solution"))')
+        '((ACCEPT-SOLUTION "Accept this designator solution") (REJECT-SOLUTION "Refuse this designator solution"))'
+    )
     assert places.error("(reference (place))") == "no map"
 
 
@@ -163,8 +175,13 @@ def test_what_is_disabled_is_skipped_and_still_listed(places):
     assert places("(not (null (member #'none (list-location-validation-functions))))") == "T"
     assert places("(enable-location-generator-function 'gen-a) (solutions (place))") == "(:A :B)"
     assert places("(enable-location-validation-function 'none) (try (reference (place)))") == ":NOTHING"
-    assert places("(disable-location-generator-function 'gen-a) (delete-location-generator-function 'gen-a) "
-                  "(delete-location-validation-function 'none) (register-location-generator 1 gen-a) (solutions (place))") == "(:A :B)"
+    assert (
+        places(
+            "(disable-location-generator-function 'gen-a) (delete-location-generator-function 'gen-a) "
+            "(delete-location-validation-function 'none) (register-location-generator 1 gen-a) (solutions (place))"
+        )
+        == "(:A :B)"
+    )
 
 
 @pytest.mark.law("designators", 34)
@@ -178,13 +195,17 @@ def test_registering_again_moves_and_equal_priorities_put_the_newest_first(place
 @pytest.mark.law("designators", 35)
 def test_filters_hold_in_their_extent(places):
     places("(register-location-generator 1 numbers) (defvar *d* (place))")
-    assert places("""(with-designator-solution-filter #'evenp
-                       (with-designator-solution-filter (lambda (s) (> s 3)) (reference (place))))""") == "4"
+    assert (
+        places("""(with-designator-solution-filter #'evenp
+                       (with-designator-solution-filter (lambda (s) (> s 3)) (reference (place))))""")
+        == "4"
+    )
     assert places("(list (reference (place)) (reference *d*))") == "(1 1)"
     assert places("(reference (next-filtered-designator-solution *d* (lambda (s) (zerop (mod s 7)))))") == "7"
     assert places("""(let ((e (place)))
                        (list (reference e) (next-filtered-designator-solution e (lambda (s) (> s 200))) (next-solution e)))""") == (
-        "(1 NIL NIL)")
+        "(1 NIL NIL)"
+    )
 
 
 @pytest.mark.law("designators", 48)
@@ -202,6 +223,7 @@ def test_what_prolog_knows_keeps_other_samples_out(places):
     assert places("(list (solutions (place)) (solutions (a location (name there))))") == "((:B :B) (:A :B))"
     assert places.hint("(let ((*location-generator-max-retries* 0)) (reference (place)))") == (
         "1 candidate was refused, from gen-a (1). The last one, :a, was accepted by no validator, and :maybe-reject came from one. The "
-        "search ends after 1, since *location-generator-max-retries* is 0.")
+        "search ends after 1, since *location-generator-max-retries* is 0."
+    )
     places("(defun lenient (d s) (declare (ignore d s)) :accept) (register-location-validation-function 5 lenient)")
     assert places("(solutions (place))") == "(:A :B :B)"

@@ -6,13 +6,14 @@ import pytest
 @pytest.mark.law("designators", 1)
 def test_the_words_of_a_description_become_keywords(lisp):
     assert lisp("(props (a motion (type driving)))") == "((:TYPE :DRIVING))"
-    assert lisp("(props (a motion (|type| Driving) (\"s\" |driving|)))") == '((:TYPE :DRIVING) ("s" :DRIVING))'
+    assert lisp('(props (a motion (|type| Driving) ("s" |driving|)))') == '((:TYPE :DRIVING) ("s" :DRIVING))'
 
 
 @pytest.mark.law("designators", 2)
 def test_numbers_and_strings_stay_as_they_are(lisp):
-    assert lisp("(props (an action (n 5) (x 1.5) (r 1/2) (d 1d0) (s \"Text\") (c #\\a)))") == (
-        '((:N 5) (:X 1.5) (:R 1/2) (:D 1.0d0) (:S "Text") (:C #\\a))')
+    assert lisp('(props (an action (n 5) (x 1.5) (r 1/2) (d 1d0) (s "Text") (c #\\a)))') == (
+        '((:N 5) (:X 1.5) (:R 1/2) (:D 1.0d0) (:S "Text") (:C #\\a))'
+    )
 
 
 @pytest.mark.law("designators", 3)
@@ -20,7 +21,8 @@ def test_a_variable_has_the_value_that_it_has_where_and_when_the_form_runs(lisp)
     assert lisp("(let ((?x 3)) (props (a motion (speed ?x))))") == "((:SPEED 3))"
     assert lisp("""(mapcar (lambda (make) (props (funcall make)))
                            (loop for i from 1 to 3 collect (let ((?i i)) (lambda () (a motion (n ?i))))))""") == (
-        "(((:N 1)) ((:N 2)) ((:N 3)))")
+        "(((:N 1)) ((:N 2)) ((:N 3)))"
+    )
     assert lisp.error("(a motion (speed ?nowhere))") == "The variable ?NOWHERE is unbound."
 
 
@@ -54,7 +56,8 @@ def test_nil_is_a_value_and_no_entry(lisp):
 def test_quantifiers(lisp):
     assert lisp("""(mapcar (lambda (d) (list (quantifier d) (type-of d)))
                            (list (a motion) (an object) (all objects (type cup)) (all object) (all motionssS)))""") == (
-        "((:A MOTION-DESIGNATOR) (:A OBJECT-DESIGNATOR) (:ALL OBJECT-DESIGNATOR) (:ALL OBJECT-DESIGNATOR) (:ALL MOTION-DESIGNATOR))")
+        "((:A MOTION-DESIGNATOR) (:A OBJECT-DESIGNATOR) (:ALL OBJECT-DESIGNATOR) (:ALL OBJECT-DESIGNATOR) (:ALL MOTION-DESIGNATOR))"
+    )
 
 
 @pytest.mark.law("designators", 9)
@@ -62,12 +65,18 @@ def test_quantifiers(lisp):
     "form, text, hint",
     [
         ("(a motoin (type driving))", "Designator type `MOTOIN' undefined", "Did you mean motion?"),
-        ("(make-designator :place nil)", "Designator type `PLACE' undefined",
-         "The types of designators are action, human, location, motion and object."),
+        (
+            "(make-designator :place nil)",
+            "Designator type `PLACE' undefined",
+            "The types of designators are action, human, location, motion and object.",
+        ),
         ("(all buss)", "Designator type `BU' undefined", "The types of designators are action, human, location, motion and object."),
         ("(make-designator 'location nil)", "Designator type `LOCATION' undefined", "The type is a keyword: write :location."),
-        ("(make-designator 5 nil)", "Designator type `5' undefined",
-         "The types of designators are action, human, location, motion and object."),
+        (
+            "(make-designator 5 nil)",
+            "Designator type `5' undefined",
+            "The types of designators are action, human, location, motion and object.",
+        ),
     ],
 )
 def test_an_unknown_type_is_an_error(lisp, form, text, hint):
@@ -78,14 +87,15 @@ def test_an_unknown_type_is_an_error(lisp, form, text, hint):
 
 @pytest.mark.law("designators", 10)
 def test_a_property_a_line_and_the_bracket_behind_the_last(lisp):
-    assert lisp.text("(prin1-to-string (an object (type bottle) (at (a location (name \"x\"))) (l (1 (two)))))") == (
-        '#<A OBJECT\n    (TYPE BOTTLE)\n    (AT #<A LOCATION\n    (NAME "x")>)\n    (L (1 (:TWO)))>')
+    assert lisp.text('(prin1-to-string (an object (type bottle) (at (a location (name "x"))) (l (1 (two)))))') == (
+        '#<A OBJECT\n    (TYPE BOTTLE)\n    (AT #<A LOCATION\n    (NAME "x")>)\n    (L (1 (:TWO)))>'
+    )
     assert lisp.text("(princ-to-string (a location))") == "#<A LOCATION>"
 
 
 @pytest.mark.law("designators", 11)
 def test_princ_leaves_out_the_quotes_and_nothing_else(lisp):
-    lisp("(defvar *d* (make-designator :motion '((:s \"x\") (:m :|mixed|) (:l (\"y\" :k)))))")
+    lisp('(defvar *d* (make-designator :motion \'((:s "x") (:m :|mixed|) (:l ("y" :k)))))')
     assert lisp.text('(format nil "~s" *d*)') == '#<A MOTION\n    (S "x")\n    (M |mixed|)\n    (L ("y" :K))>'
     assert lisp.text('(format nil "~a" *d*)') == "#<A MOTION\n    (S x)\n    (M mixed)\n    (L (y K))>"
 
@@ -101,9 +111,11 @@ def test_an_effective_designator_is_equated_to_nothing(lisp):
             (defvar *seen* (make-effective-designator *parent* :data-object 'the-cup :timestamp 3))
             (defvar *other* (make-effective-designator *parent* :new-properties '((:type :plate)) :data-object 1))""")
     assert lisp("(list (effective *seen*) (timestamp *seen*) (reference *seen*) (props *seen*) (desig-equal *parent* *seen*))") == (
-        "(T 3 THE-CUP ((:TYPE :CUP)) NIL)")
+        "(T 3 THE-CUP ((:TYPE :CUP)) NIL)"
+    )
     assert lisp("(list (type-of *other*) (props *other*) (timestamp *other*) (effective *parent*))") == (
-        "(OBJECT-DESIGNATOR ((:TYPE :PLATE)) 0.0d0 NIL)")
+        "(OBJECT-DESIGNATOR ((:TYPE :PLATE)) 0.0d0 NIL)"
+    )
 
 
 @pytest.mark.law("designators", 42)
@@ -111,9 +123,9 @@ def test_a_copy_has_the_new_description_and_what_it_lacks_of_the_old(lisp):
     lisp("""(defvar *old* (make-designator :motion '((:a 1) (:b 2) (:c 3) (:a 4))))
             (defvar *copy* (copy-designator *old* :new-description '((:b 9) (:d 4))))""")
     assert lisp("(list (props *copy*) (type-of *copy*) (desig-equal *old* *copy*))") == (
-        "(((:C 3) (:A 1) (:B 9) (:D 4)) MOTION-DESIGNATOR NIL)")
-    assert lisp("(list (props *old*) (props (copy-designator *old*)))") == (
-        "(((:A 1) (:B 2) (:C 3) (:A 4)) ((:C 3) (:B 2) (:A 1)))")
+        "(((:C 3) (:A 1) (:B 9) (:D 4)) MOTION-DESIGNATOR NIL)"
+    )
+    assert lisp("(list (props *old*) (props (copy-designator *old*)))") == ("(((:A 1) (:B 2) (:C 3) (:A 4)) ((:C 3) (:B 2) (:A 1)))")
 
 
 @pytest.mark.law("designators", 43)

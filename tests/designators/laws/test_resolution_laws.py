@@ -38,8 +38,10 @@ def test_what_cannot_be_resolved_says_so(lisp, kind):
 
 
 def test_a_plan_may_go_on_after_a_designator_error(lisp):
-    assert lisp("(list (typep (nth-value 1 (ignore-errors (reference (an object)))) 'error) "
-                "(subtypep 'designator-error 'cpl:plan-failure))") == "(T NIL)"
+    assert (
+        lisp("(list (typep (nth-value 1 (ignore-errors (reference (an object)))) 'error) (subtypep 'designator-error 'cpl:plan-failure))")
+        == "(T NIL)"
+    )
 
 
 @pytest.mark.law("designators", 15, 16)
@@ -55,27 +57,35 @@ def test_tasks_that_need_one_designator_resolve_it_once(lisp):
     lisp("""(defun look (d) (declare (ignore d)) (note :looking) (cpl:sleep 1) (list (list 'pose)))
             (register-location-generator 5 look)
             (defvar *d* (a location (name here)))""")
-    assert lisp("""(let (found)
+    assert (
+        lisp("""(let (found)
                      (cpl:top-level (cpl:par (push (reference *d*) found) (push (reference *d*) found) (push (reference *d*) found)))
-                     (list *notes* (length found) (length (remove-duplicates found))))""") == "((:LOOKING) 3 1)"
+                     (list *notes* (length found) (length (remove-duplicates found))))""")
+        == "((:LOOKING) 3 1)"
+    )
 
 
 def test_when_the_task_that_resolves_is_evaporated_the_next_one_resolves(lisp):
     lisp("""(defun look (d) (declare (ignore d)) (note :looking) (cpl:sleep 2) (list 'pose))
             (register-location-generator 5 look)
             (defvar *d* (a location (name here)))""")
-    assert lisp("""(cpl:top-level
+    assert (
+        lisp("""(cpl:top-level
                      (cpl:par (cpl:pursue (reference *d*) (cpl:sleep 1))
                               (progn (cpl:sleep 0.5) (note (list (reference *d*) (cut:current-timestamp))))))
-                   *notes*""") == "(:LOOKING :LOOKING (POSE 3.0d0))"
+                   *notes*""")
+        == "(:LOOKING :LOOKING (POSE 3.0d0))"
+    )
 
 
 def test_a_designator_that_its_own_resolution_needs(lisp):
     lisp("(defun look (d) (list (reference d))) (register-location-generator 5 look)")
     assert lisp.error("(reference (a location (n 1)))") == (
-        "Recursive lock attempt: designator #<A LOCATION (N 1)> is needed to resolve itself.")
+        "Recursive lock attempt: designator #<A LOCATION (N 1)> is needed to resolve itself."
+    )
     assert lisp.hint("(reference (a location (n 1)))").endswith(
-        "A clause, generator or validator asks for the designator that it is to resolve: look at its properties with desig-prop instead.")
+        "A clause, generator or validator asks for the designator that it is to resolve: look at its properties with desig-prop instead."
+    )
 
 
 def test_two_tasks_that_need_what_the_other_resolves_are_told(lisp):
@@ -90,13 +100,13 @@ def test_two_tasks_that_need_what_the_other_resolves_are_told(lisp):
 
 @pytest.mark.law("designators", 45)
 def test_properties_in_prolog(lisp):
-    lisp("(defvar *d* (make-designator :motion '((:k 1) (:l \"x\") (:k (2 3)) (:m) (:n 1 2))))")
+    lisp('(defvar *d* (make-designator :motion \'((:k 1) (:l "x") (:k (2 3)) (:m) (:n 1 2))))')
     assert lisp("(answers `(desig-prop ,*d* (:k ?v)))") == "(((?V . 1)) ((?V 2 3)))"
-    assert lisp("(answers `(desig-prop ,*d* (?k ?v)))") == (
-        '(((?K . :K) (?V . 1)) ((?K . :L) (?V . "x")) ((?K . :K) (?V 2 3)))')
+    assert lisp("(answers `(desig-prop ,*d* (?k ?v)))") == ('(((?K . :K) (?V . 1)) ((?K . :L) (?V . "x")) ((?K . :K) (?V 2 3)))')
     assert lisp("(answers `(desig-prop ,*d* (:k (?a . ?b))))") == "(((?A . 2) (?B 3)))"
     assert lisp("(list (answers `(desig-prop ,*d* (:k 1))) (answers `(desig-prop ,*d* (:k 9))) (answers `(desig-prop ,*d* (:m ?v))))") == (
-        "((NIL) NIL NIL)")
+        "((NIL) NIL NIL)"
+    )
     assert lisp("(list (answers '(desig-prop ?d (?k ?v))) (answers '(desig-prop 5 (?k ?v))))") == "(NIL NIL)"
 
 
@@ -108,7 +118,8 @@ def test_solutions_in_the_order_of_the_clauses(driving):
     assert driving("(list (reference *e*) (effective *next*) (reference *next*) (next-solution *next*))") == "((DRIVE 1) NIL (TURN 2) NIL)"
     assert driving("(list (desig-equal *e* *next*) (eq (props *e*) (props *next*)))") == "(T T)"
     assert driving("(list (force-ll (designator-solutions *next*)) (force-ll (designator-solutions *next* t)))") == (
-        "(((TURN 2)) ((DRIVE 1) (TURN 2)))")
+        "(((TURN 2)) ((DRIVE 1) (TURN 2)))"
+    )
     assert driving("(designator-solutions (a motion (type flying)))") == "NIL"
 
 
@@ -123,9 +134,12 @@ def test_an_action_without_solution_stays_without(lisp):
 
 @pytest.mark.law("designators", 49)
 def test_equal_solutions(lisp):
-    assert lisp("""(mapcar (lambda (pair) (designator-solutions-equal (first pair) (second pair)))
+    assert (
+        lisp("""(mapcar (lambda (pair) (designator-solutions-equal (first pair) (second pair)))
                            (list '("a" "A") '(("a") ("A")) '((1 (2)) (1 (2))) (list (vector 1 "a") (vector 1.0 "A")) '(1 1) '(1 1.0)
-                                 '("a" a) '(nil nil)))""") == "(T NIL T T T NIL NIL T)"
+                                 '("a" a) '(nil nil)))""")
+        == "(T NIL T T T NIL NIL T)"
+    )
 
 
 @pytest.mark.parametrize("kind", ["action", "motion"])
@@ -144,8 +158,10 @@ def test_a_role_has_its_own_way_of_resolving_and_the_first_answer_stays(driving)
         assert driving("(let ((*default-role* 'dream)) (reference (a motion (type driving) (speed 5))))") == "(FLY DREAM)"
         assert driving("(reference (a motion (type driving) (speed 5)))") == "(DRIVE 5)"
     finally:
-        driving("(remove-method #'resolve-designator (find-method #'resolve-designator nil (list (find-class 'motion-designator) "
-                "'(eql dream))))")
+        driving(
+            "(remove-method #'resolve-designator (find-method #'resolve-designator nil (list (find-class 'motion-designator) "
+            "'(eql dream))))"
+        )
 
 
 def test_methods_on_reference_are_called_each_time(driving):
@@ -156,7 +172,8 @@ def test_methods_on_reference_are_called_each_time(driving):
     try:
         assert driving("(list (reference *d*) (reference *d* 5) *notes*)") == "(AROUND AROUND (NIL (DRIVE 5) 5 (DRIVE 5)))"
         assert driving("(setf *notes* nil) (desig-prop-value (first (list *d*)) :speed) (answers `(desig-reference ,*d* ?r))") == (
-            "(((?R . AROUND)))")
+            "(((?R . AROUND)))"
+        )
     finally:
         driving("""(remove-method #'reference (find-method #'reference '(:around) (list (find-class 'motion-designator))))
                    (remove-method #'reference (find-method #'reference '(:before) (list (find-class 'designator))))""")
@@ -166,10 +183,12 @@ def test_methods_on_reference_are_called_each_time(driving):
 def test_next_solutions_of_what_has_none(lisp):
     assert lisp.error("(next-solution (an object (n 1)))") == (
         "There is no applicable method for the generic function #<STANDARD-GENERIC-FUNCTION CRAM-DESIGNATORS:NEXT-SOLUTION (4)> when "
-        "called with arguments (#<A OBJECT (N 1)>). See also: The ANSI Standard, Section 7.6.6")
+        "called with arguments (#<A OBJECT (N 1)>). See also: The ANSI Standard, Section 7.6.6"
+    )
     assert lisp.hint("(next-solution (an object (n 1)))") == (
         "Only actions, motions and locations have further solutions. An object or a human stands for what perception put into its data; "
-        "perceive again for another one.")
+        "perceive again for another one."
+    )
     assert lisp("(next-solution (make-effective-designator (an action (n 1)) :data-object '(go)))") == "NIL"
 
 
@@ -177,4 +196,5 @@ def test_grounding_without_any_clause_warns_of_nothing(lisp, capsys):
     lisp("(mapcar (lambda (d) (ignore-errors (reference d))) (list (a motion) (an action) (a location)))")
     assert "undefined functor" not in "".join(capsys.readouterr())
     assert lisp.error("(let ((*break-on-lisp-errors* t)) (prolog '(motion-grounding 5 ?x)))") == (
-        "[default motion-grounding]: 5 had to be of type MOTION-DESIGNATOR")
+        "[default motion-grounding]: 5 had to be of type MOTION-DESIGNATOR"
+    )

@@ -41,18 +41,22 @@ def test_two_inputs_are_processed_one_after_the_other_and_monitoring_all_waits_f
 @pytest.mark.law("process-modules", 26)
 @pytest.mark.parametrize("which", ["first", "(list second first)"])
 def test_monitoring_one_designator_returns_before_a_slower_one_is_finished(text, which):
-    assert text(f"""(plan (belt)
+    assert (
+        text(f"""(plan (belt)
                       (let ((first (motion 1)) (second (motion 2)))
                         (pm-execute 'belt first)
                         (pm-execute 'belt second)
                         (par (progn (monitor-process-module 'belt :designators {which}) (note :first-over) (value (pm-status 'belt)))
-                             (progn (sleep 5) (finish first) (sleep 5) (note :slow-over) (finish second)))))""") == ":RUNNING"
+                             (progn (sleep 5) (finish first) (sleep 5) (note :slow-over) (finish second)))))""")
+        == ":RUNNING"
+    )
     assert text("(last *notes* 3)") == "(:FIRST-OVER :SLOW-OVER :RUN-UNWOUND)"
 
 
 @pytest.mark.law("process-modules", 27)
 def test_a_failure_reaches_exactly_the_monitors_of_its_designator(text):
-    assert text("""(let ((jammed (make-condition 'simple-error :format-control "jammed")))
+    assert (
+        text("""(let ((jammed (make-condition 'simple-error :format-control "jammed")))
                      (plan (belt)
                        (let ((first (motion 1)) (second (motion 2)))
                          (flet ((watch (designators)
@@ -70,19 +74,24 @@ def test_a_failure_reaches_exactly_the_monitors_of_its_designator(text):
                              (sleep 3)
                              (fail-process-module (belt) jammed)
                              (push (list :any (watch nil) (watch nil)) results)
-                             (reverse results))))))""") == "((1 :JAMMED) (2 :FINE) (:ANY :JAMMED :FINE))"
+                             (reverse results))))))""")
+        == "((1 :JAMMED) (2 :FINE) (:ANY :JAMMED :FINE))"
+    )
 
 
 @pytest.mark.law("process-modules", 28)
 def test_finishing_or_failing_what_is_not_being_done_is_an_error(text):
-    assert text("""(plan (belt)
+    assert (
+        text("""(plan (belt)
                      (let ((sent (motion 1)) (other (motion 2)))
                        (note (text-of (finish-process-module (belt))))
                        (pm-execute 'belt sent)
                        (sleep 1)
                        (note (text-of (finish other)))
                        (note (text-of (fail-process-module (belt) (make-condition 'simple-error) :designator other)))
-                       (finish sent)))""") == "NIL"
+                       (finish sent)))""")
+        == "NIL"
+    )
     first, _, foreign, failing, *_ = text.session.evaluate_text("*notes*")[0]
     shown = "#<A MOTION\n    (TYPE DRIVING)\n    (GOAL 2)>"
     assert first == "Cannot finish an already stopped process module."

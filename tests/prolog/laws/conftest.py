@@ -6,8 +6,8 @@ import re
 import pytest
 from prolog_text import RegisteredWarnings
 
-from cramhy_runtime.lisp.printer.printer import prin1_to_string, princ_to_string
-from cramhy_runtime.prolog import productions, rete
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.prolog.builtins import productions, rete
 from cramhy_runtime.repl.session import Session, condition_of
 
 PRELUDE = """

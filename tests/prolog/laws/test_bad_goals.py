@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from cramhy_runtime.lisp.evaluation.places_in_source import locate
-from cramhy_runtime.lisp.tools.advice import hint_for
+from cramhy_runtime.ground.source_places import locate
+from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.repl.session import condition_of
 
 RULES = """(in-package {package})
@@ -50,45 +50,72 @@ def printed(lisp, tmp_path, monkeypatch):
 
 def test_a_goal_that_nobody_defined_in_a_rule(printed):
     told = re.sub(r"\?V-\d+", "?V", printed("(ancestor ?x ann)"))  # the number counts on, and with it the width of the line
-    assert re.sub(r"^WARNING:\s+", "WARNING: ", told) == """\
+    assert (
+        re.sub(r"^WARNING:\s+", "WARNING: ", told)
+        == """\
 WARNING: Trying to prove goal (ANCESTR ?V ANN) with undefined functor ANCESTR.
   at family.lisp:9:9
   It is a goal of clause 2 of family.
   Nobody defines ancestr; did you mean ancestor?
 """
+    )
 
 
 def test_a_goal_that_nobody_defined_in_a_query(printed):
-    assert printed("(parnt ?x ?y)") == """\
+    assert (
+        printed("(parnt ?x ?y)")
+        == """\
 WARNING: Trying to prove goal (PARNT ?X ?Y) with undefined functor PARNT.
   Nobody defines parnt; did you mean parent?
 """
+    )
 
 
 def test_a_goal_whose_name_is_that_of_another_package(printed):
-    assert printed("(cpl:not (parent ?x ?y))") == """\
+    assert (
+        printed("(cpl:not (parent ?x ?y))")
+        == """\
 WARNING:
    Trying to prove goal (NOT
                          (PARENT ?X
                           ?Y)) with undefined functor CRAM-LANGUAGE:NOT.
   Nobody defines cram-language:not; there is cl:not, another symbol of that name: write it so, or import it.
 """
+    )
 
 
-@pytest.mark.parametrize("query, text", [
-    ("(oddp 3)", "Trying to prove goal (ODDP 3) with undefined functor ODDP.\n"
-                 "  Oddp is a Lisp function: (lisp-fun oddp ...) is a goal that calls it, (lisp-pred oddp ...) asks whether it is true.\n"),
-    ("(and (== ?f true) (?f))", "Trying to prove goal (?F) with undefined functor ?F.\n"
-                                "  ?f is no functor; (call ?goal) proves a goal that is the value of a variable.\n"),
-    ("nil", "Trying to prove goal NIL with undefined functor NIL.\n  Nil is no goal.\n"),
-    ("(and nil)", "Trying to prove goal NIL with undefined functor NIL.\n  Nil is no goal.\n"),
-    ("(5 6)", "Trying to prove goal (5 6) with undefined functor 5.\n"
-              "  5 is no functor; (call ?goal) proves a goal that is the value of a variable.\n"),
-    ("((parent) tom)", "Trying to prove goal ((PARENT) TOM) with undefined functor (PARENT).\n"
-                       "  (parent) is no functor; (call ?goal) proves a goal that is the value of a variable.\n"),
-    ('("parent" tom)', 'Trying to prove goal (parent TOM) with undefined functor "parent".\n'
-                       '  "parent" is no functor; (call ?goal) proves a goal that is the value of a variable.\n'),
-])
+@pytest.mark.parametrize(
+    "query, text",
+    [
+        (
+            "(oddp 3)",
+            "Trying to prove goal (ODDP 3) with undefined functor ODDP.\n"
+            "  Oddp is a Lisp function: (lisp-fun oddp ...) is a goal that calls it, (lisp-pred oddp ...) asks whether it is true.\n",
+        ),
+        (
+            "(and (== ?f true) (?f))",
+            "Trying to prove goal (?F) with undefined functor ?F.\n"
+            "  ?f is not a functor; (call ?goal) proves a goal that is the value of a variable.\n",
+        ),
+        ("nil", "Trying to prove goal NIL with undefined functor NIL.\n  Nil is not a goal.\n"),
+        ("(and nil)", "Trying to prove goal NIL with undefined functor NIL.\n  Nil is not a goal.\n"),
+        (
+            "(5 6)",
+            "Trying to prove goal (5 6) with undefined functor 5.\n"
+            "  5 is not a functor; (call ?goal) proves a goal that is the value of a variable.\n",
+        ),
+        (
+            "((parent) tom)",
+            "Trying to prove goal ((PARENT) TOM) with undefined functor (PARENT).\n"
+            "  (parent) is not a functor; (call ?goal) proves a goal that is the value of a variable.\n",
+        ),
+        (
+            '("parent" tom)',
+            'Trying to prove goal (parent TOM) with undefined functor "parent".\n'
+            '  "parent" is not a functor; (call ?goal) proves a goal that is the value of a variable.\n',
+        ),
+    ],
+)
 def test_what_is_no_functor(printed, query, text):
     assert printed(query).lower() == f"WARNING: {text}".lower()
 
@@ -100,57 +127,78 @@ def test_each_place_is_warned_of_once_in_a_proof_however_often_it_comes_there(pr
 
 
 def test_arithmetic_with_a_variable_that_has_no_value(printed):
-    assert printed("(older ?a ?b)") == """\
+    assert (
+        printed("(older ?a ?b)")
+        == """\
 WARNING:
    An error occurred while executing the lisp function `+': `The value ?A is not of type NUMBER'
   at family.lisp:11:5
   It is called by clause 1 of family.
   ?age has no value.
 """
-    assert printed("(and (parent tom ?x) (lisp-fun + ?n 1 ?m))") == """\
+    )
+    assert (
+        printed("(and (parent tom ?x) (lisp-fun + ?n 1 ?m))")
+        == """\
 WARNING:
    An error occurred while executing the lisp function `+': `The value ?N is not of type NUMBER'
   ?n has no value.
 """
+    )
 
 
 def test_a_comparison_with_a_variable_that_has_no_value(printed):
-    assert printed("(once (young ?a))") == 2 * """\
+    assert (
+        printed("(once (young ?a))")
+        == 2
+        * """\
 WARNING:
    An error occurred while executing the lisp predicate `<': `The value ?A is not of type REAL'
   at family.lisp:14:5
   It is called by clause 1 of family.
   ?age has no value.
 """
-    assert printed("(< ?x 3)") == """\
+    )
+    assert (
+        printed("(< ?x 3)")
+        == """\
 WARNING:
    An error occurred while executing the lisp predicate `<': `The value ?X is not of type REAL'
   ?x has no value.
 """
+    )
 
 
 def test_a_lisp_function_that_is_not_there(printed):
     text = re.sub(r"PROLOG-LAW-\d+", "LAW", printed("(spelled (1 2 3))"))
-    assert " ".join(text.split()) == " ".join("""\
+    assert " ".join(text.split()) == " ".join(
+        """\
 WARNING: An error occurred while executing the lisp function `LENGHT': `The function LAW::LENGHT is undefined.'
   at family.lisp:17:5
   It is called by clause 1 of family.
-  Did you mean LENGTH?""".split())
+  Did you mean LENGTH?""".split()
+    )
 
 
-@pytest.mark.parametrize("query, text, hint", [
-    ("(call 5)", "The value\n  5\nis not of type\n  LIST", None),
-    ('(and "string")', 'The value\n  "string"\nis not of type\n  LIST', None),
-    ("(and (== ?g a) (call ?g))", "The value\n  A\nis not of type\n  LIST", None),
-    ("(call ?g)", "The value\n  ?G\nis not of type\n  LIST", None),
-    ("(bound)", "invalid number of arguments: 0", "A goal with the functor bound has 1 argument."),
-    ("(not (fail) (fail))", "invalid number of arguments: 2", "A goal with the functor not has 1 argument."),
-    ("(-> (true))", "invalid number of arguments: 1", "A goal with the functor -> has 2 to 3 arguments."),
-    ("(take 1)", "invalid number of arguments: 1", "A goal with the functor take has 3 arguments."),
-    ("(cut 1)", "invalid number of arguments: 1", "A goal with the functor cut has no arguments."),
-    ("(uneven 1)", "invalid number of arguments: 2",
-     "in clause 1 of family at family.lisp:18:3\nA goal with the functor bound has 1 argument."),
-])
+@pytest.mark.parametrize(
+    "query, text, hint",
+    [
+        ("(call 5)", "The value\n  5\nis not of type\n  LIST", None),
+        ('(and "string")', 'The value\n  "string"\nis not of type\n  LIST', None),
+        ("(and (== ?g a) (call ?g))", "The value\n  A\nis not of type\n  LIST", None),
+        ("(call ?g)", "The value\n  ?G\nis not of type\n  LIST", None),
+        ("(bound)", "invalid number of arguments: 0", "A goal with the functor bound has 1 argument."),
+        ("(not (fail) (fail))", "invalid number of arguments: 2", "A goal with the functor not has 1 argument."),
+        ("(-> (true))", "invalid number of arguments: 1", "A goal with the functor -> has 2 to 3 arguments."),
+        ("(take 1)", "invalid number of arguments: 1", "A goal with the functor take has 3 arguments."),
+        ("(cut 1)", "invalid number of arguments: 1", "A goal with the functor cut has no arguments."),
+        (
+            "(uneven 1)",
+            "invalid number of arguments: 2",
+            "in clause 1 of family at family.lisp:18:3\nA goal with the functor bound has 1 argument.",
+        ),
+    ],
+)
 def test_what_is_an_error(printed, lisp, query, text, hint):
     with pytest.raises(BaseException) as problem:
         lisp.session.evaluate_text(f"(all '{query})")
@@ -174,17 +222,23 @@ def defining(lisp, form):
 
 
 def test_a_group_that_extends_a_misspelled_predicate(lisp):
-    assert defining(lisp, "(def-fact-group own (matchng-process-module) (<- (matchng-process-module ?d nav)))") == """\
+    assert (
+        defining(lisp, "(def-fact-group own (matchng-process-module) (<- (matchng-process-module ?d nav)))")
+        == """\
 STYLE-WARNING: Fact group OWN extends MATCHNG-PROCESS-MODULE, which no other group defines.
   Did you mean cpm:matching-process-module?
 """
+    )
 
 
 def test_a_group_with_clauses_of_a_symbol_of_the_wrong_package(lisp):
-    assert defining(lisp, "(def-fact-group own () (<- (motion-grounding ?d (drive 1))))") == """\
+    assert (
+        defining(lisp, "(def-fact-group own () (<- (motion-grounding ?d (drive 1))))")
+        == """\
 STYLE-WARNING: Fact group OWN has clauses of MOTION-GROUNDING, which no other group defines.
   Did you mean desig:motion-grounding?
 """
+    )
 
 
 def test_a_group_may_list_what_nobody_has_defined_yet(lisp):

@@ -2,22 +2,32 @@
 
 import pytest
 
-from cramhy_runtime.lisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.lisp.objects.generic import GenericFunction
-from cramhy_runtime.lisp.packages import COMMON_LISP, find_package
-from cramhy_runtime.lisp.printer.printer import princ_to_string
-from cramhy_runtime.prolog import control, database
+from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
+from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.languages.commonlisp.printer.printer import princ_to_string
+from cramhy_runtime.prolog.builtins import control
+from cramhy_runtime.prolog.engine import database
 
 HANDLERS = """and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof setof every forall
     take filter-bindings generate-values rete-holds"""
 FACTS = """== equal length append sort reduce max string-concat format warn error slot-value get-slot-value instance-of lisp-type
     symbol-value set-symbol-value < > <= >= member"""
 FUNCTIONS = {
-    "unify": "(LHS RHS &OPTIONAL BDGS)", "unify-p": "(LHS RHS &OPTIONAL BDGS)", "query-var": "(VAR FUNCTION QUERY &REST ARGS)",
-    "filter-bindings": "(FORM BDGS &OPTIONAL INITIAL-BDGS)", "clear-alpha-network": "NIL", "rete-assert": "(FACT)",
-    "rete-retract": "(FACT)", "rete-holds": "(FACT-PATTERN &OPTIONAL TEST PROCESSED NODE)", "alpha-network-size": "(&OPTIONAL NODE)",
-    "register-production": "(NAME DEFINITION)", "clear-productions": "NIL", "remove-production": "(NAME)",
-    "register-production-handler": "(PRODUCTION-NAME CALLBACK)", "remove-production-handler": "(PRODUCTION-NAME CALLBACK)",
+    "unify": "(LHS RHS &OPTIONAL BDGS)",
+    "unify-p": "(LHS RHS &OPTIONAL BDGS)",
+    "query-var": "(VAR FUNCTION QUERY &REST ARGS)",
+    "filter-bindings": "(FORM BDGS &OPTIONAL INITIAL-BDGS)",
+    "clear-alpha-network": "NIL",
+    "rete-assert": "(FACT)",
+    "rete-retract": "(FACT)",
+    "rete-holds": "(FACT-PATTERN &OPTIONAL TEST PROCESSED NODE)",
+    "alpha-network-size": "(&OPTIONAL NODE)",
+    "register-production": "(NAME DEFINITION)",
+    "clear-productions": "NIL",
+    "remove-production": "(NAME)",
+    "register-production-handler": "(PRODUCTION-NAME CALLBACK)",
+    "remove-production-handler": "(PRODUCTION-NAME CALLBACK)",
     "rete-prove": "(EXPR &OPTIONAL BDGS)",
 }
 GENERIC = {"prolog": "(QUERY &OPTIONAL BINDS)", "object-id": "(OBJ)"}
@@ -26,9 +36,12 @@ OTHERS = "?_ *break-on-lisp-errors*"
 OURS = "*prolog-depth-limit* explain trace-prolog untrace-prolog"
 """More than the original has: watching proofs."""
 GROUPS = {
-    "misc-utils": "== equal", "list-utils": "member length append sort reduce", "math-utils": "max < > <= >=",
+    "misc-utils": "== equal",
+    "list-utils": "member length append sort reduce",
+    "math-utils": "max < > <= >=",
     "string-utils": "string-concat",
-    "debugging": "format warn error", "lisp-data-structs": "slot-value get-slot-value symbol-value set-symbol-value",
+    "debugging": "format warn error",
+    "lisp-data-structs": "slot-value get-slot-value symbol-value set-symbol-value",
     "lisp-types": "lisp-type instance-of",
 }
 
@@ -89,7 +102,10 @@ def test_there_is_no_such_predicate(lisp, name):
 
 
 def test_methods_of_prolog_see_every_query(lisp):
-    assert lisp("""(defmethod prolog :around (query &optional binds) (note query) (call-next-method))
+    assert (
+        lisp("""(defmethod prolog :around (query &optional binds) (note query) (call-next-method))
                    (unwind-protect (all '(and (== ?x 1) (not (== ?x 2))))
-                     (remove-method #'prolog (find-method #'prolog '(:around) (list (find-class t)))))""") == "(((?X . 1)))"
+                     (remove-method #'prolog (find-method #'prolog '(:around) (list (find-class t)))))""")
+        == "(((?X . 1)))"
+    )
     assert lisp("(all '(true)) *notes*") == "((AND (== ?X 1) (NOT (== ?X 2))))"

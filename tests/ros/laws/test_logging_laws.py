@@ -43,7 +43,7 @@ def test_a_condition_that_is_false_prints_nothing(lisp):
 def test_a_level_becomes_a_parameter_of_the_node(node):
     assert node("(set-debug-level '(foo bar) :debug)") == "0"
     assert node('(list (get-param "~debug/foo/bar/level") (list-params "~debug"))') == '("debug" ("/n/debug/foo/bar/level"))'
-    assert node("(set-debug-level nil :warn) (get-param \"~debug/level\")") == '"warn"'
+    assert node('(set-debug-level nil :warn) (get-param "~debug/level")') == '"warn"'
 
 
 @pytest.mark.law("roslisp", 19)
@@ -51,8 +51,10 @@ def test_levels_are_read_again_on_request(node):
     node("""(set-param "~debug/foo/level" "bogus") (set-param "~debug/bar/level" "debug") (set-param "~debug/other" 3)
             (call-service "~reset_debug_levels" 'std_srvs-srv:Empty)
             (ros-debug (bar) "heard")""")
-    assert node.printed() == ["[(ROSLISP ROSOUT) WARN] T: Skipping setting debug level of /n/debug/foo/level to unknown level BOGUS",
-                              "[(BAR) DEBUG] T: heard"]
+    assert node.printed() == [
+        "[(ROSLISP ROSOUT) WARN] T: Skipping setting debug level of /n/debug/foo/level to unknown level BOGUS",
+        "[(BAR) DEBUG] T: heard",
+    ]
 
 
 @pytest.mark.law("roslisp", 20)
@@ -61,7 +63,8 @@ def test_rosout_carries_level_name_and_text(node):
     graph.active().node("listener").subscribe("/rosout", message_class("rosgraph_msgs/Log"), received.append)
     node('(ros-debug (a) "no") (ros-info (a) "i") (ros-warn (a) "w") (ros-error (a) "e") (ros-fatal (a) "f ~a" 1)')
     assert [(log.level, log.name, log.msg, log.header.stamp, log.file, log.line, log.topics) for log in received] == [
-        (level, "/n", text, 0, "", 0, []) for level, text in ((2, "i"), (4, "w"), (8, "e"), (16, "f 1"))]
+        (level, "/n", text, 0, "", 0, []) for level, text in ((2, "i"), (4, "w"), (8, "e"), (16, "f 1"))
+    ]
 
 
 def test_a_text_beyond_latin_leaves_as_it_was_logged(node):
@@ -149,5 +152,6 @@ class TestLogFile:
     def test_one_that_cannot_be_written_is_told(self, lisp, tmp_path):
         (tmp_path / "file").touch()
         assert lisp.error(f'(start-ros-node "n" :cmd-line-args "__log:={tmp_path}/file/x.log")') == (
-            f"Could not open the log file {tmp_path}/file/x.log: File exists. Choose another one with __log:=FILE.")
+            f"Could not open the log file {tmp_path}/file/x.log: File exists. Choose another one with __log:=FILE."
+        )
         assert lisp("(node-status)") == ":SHUTDOWN"

@@ -25,8 +25,13 @@ def shown(lisp, text):
 
 @pytest.mark.law("roslisp", 21)
 def test_fresh_messages_have_the_defaults_of_their_fields(lisp):
-    assert lisp('(with-fields (x y theta linear_velocity angular_velocity) (make-msg "turtlesim/Pose")'
-                "  (every (lambda (v) (eql v 0.0)) (list x y theta linear_velocity angular_velocity)))") == "T"
+    assert (
+        lisp(
+            '(with-fields (x y theta linear_velocity angular_velocity) (make-msg "turtlesim/Pose")'
+            "  (every (lambda (v) (eql v 0.0)) (list x y theta linear_velocity angular_velocity)))"
+        )
+        == "T"
+    )
     assert lisp("(turtlesim-srv:name (make-request turtlesim-srv:spawn))") == '""'
     assert lisp('(with-fields (seq stamp frame_id) (make-msg "std_msgs/Header") (list seq stamp frame_id))') == '(0 0 "")'
     assert lisp('(std_msgs-msg:data (make-msg "std_msgs/Bool"))') == "NIL"
@@ -36,15 +41,25 @@ def test_fresh_messages_have_the_defaults_of_their_fields(lisp):
 
 @pytest.mark.law("roslisp", 22)
 def test_field_paths_are_read_inside_out(lisp):
-    assert lisp('(with-fields ((a (x linear)) (b (y linear)) (c (z linear)) (d (x angular)) (e (y angular)) (f (z angular)))'
-                '    (make-msg "geometry_msgs/Twist" (:x :linear) 1 (:z :angular) 2.5) (list a b c d e f))') == "(1 0.0 0.0 0.0 0.0 2.5)"
+    assert (
+        lisp(
+            "(with-fields ((a (x linear)) (b (y linear)) (c (z linear)) (d (x angular)) (e (y angular)) (f (z angular)))"
+            '    (make-msg "geometry_msgs/Twist" (:x :linear) 1 (:z :angular) 2.5) (list a b c d e f))'
+        )
+        == "(1 0.0 0.0 0.0 0.0 2.5)"
+    )
 
 
 @pytest.mark.law("roslisp", 23)
 def test_of_two_values_for_a_field_the_first_counts(lisp):
     assert lisp('(turtlesim-msg:x (make-msg "turtlesim/Pose" :x 1 :x 2))') == "1"
-    assert lisp('(let ((v (make-msg "geometry_msgs/Vector3" :y 7)))'
-                '  (eq v (geometry_msgs-msg:linear (make-msg "geometry_msgs/Twist" :linear v (:x :linear) 5))))') == "T"
+    assert (
+        lisp(
+            '(let ((v (make-msg "geometry_msgs/Vector3" :y 7)))'
+            '  (eq v (geometry_msgs-msg:linear (make-msg "geometry_msgs/Twist" :linear v (:x :linear) 5))))'
+        )
+        == "T"
+    )
 
 
 @pytest.mark.law("roslisp", 24)
@@ -57,17 +72,27 @@ def test_make_msg_folds_case_and_advertise_does_not(lisp):
 
 @pytest.mark.law("roslisp", 25)
 def test_with_fields_binds_plain_variables(lisp):
-    assert lisp('(let ((m (make-msg "geometry_msgs/Twist" (:x :linear) 1 (:z :angular) 2)))'
-                "  (list (with-fields ((a (x linear)) (b (:z :angular))) m (setf a 10) (list a b))"
-                "        (with-fields ((a (x linear)) linear) m (list a (geometry_msgs-msg:x linear)))))") == "((10 2) (1 1))"
+    assert (
+        lisp(
+            '(let ((m (make-msg "geometry_msgs/Twist" (:x :linear) 1 (:z :angular) 2)))'
+            "  (list (with-fields ((a (x linear)) (b (:z :angular))) m (setf a 10) (list a b))"
+            "        (with-fields ((a (x linear)) linear) m (list a (geometry_msgs-msg:x linear)))))"
+        )
+        == "((10 2) (1 1))"
+    )
 
 
 @pytest.mark.law("roslisp", 26)
 def test_a_modified_copy_shares_what_is_untouched(lisp):
-    assert lisp('(let* ((m (make-msg "geometry_msgs/Twist" (:x :linear) 1)) (before (format nil "~s" m))'
-                "       (n (modify-message-copy m (:y :linear) 2)))"
-                '  (list (eq m n) (string= before (format nil "~s" m)) (eq (geometry_msgs-msg:angular m) (geometry_msgs-msg:angular n))'
-                "        (with-fields ((a (x linear)) (b (y linear))) n (list a b))))") == "(NIL T T (1 2))"
+    assert (
+        lisp(
+            '(let* ((m (make-msg "geometry_msgs/Twist" (:x :linear) 1)) (before (format nil "~s" m))'
+            "       (n (modify-message-copy m (:y :linear) 2)))"
+            '  (list (eq m n) (string= before (format nil "~s" m)) (eq (geometry_msgs-msg:angular m) (geometry_msgs-msg:angular n))'
+            "        (with-fields ((a (x linear)) (b (y linear))) n (list a b))))"
+        )
+        == "(NIL T T (1 2))"
+    )
 
 
 def test_setf_msg_replaces_what_a_place_holds(lisp):
@@ -207,6 +232,12 @@ def test_what_cannot_be_sent(lisp, type_name, value, text):
 
 def test_messages_are_read_in_their_list_form(lisp):
     assert lisp('(ros-message-to-list (make-msg "turtlesim/Color" :r 7))'.replace("ros-m", "roslisp-msg-protocol:ros-m")) == (
-        "(TURTLESIM-MSG:COLOR (:R . 7) (:G . 0) (:B . 0))")
-    assert lisp('(with-fields ((a (x linear))) (with-input-from-string (in "(geometry_msgs-msg:twist (:linear . (geometry_msgs-msg:vector3 '
-                '(:x . 3))))") (read-ros-message in)) a)') == "3"
+        "(TURTLESIM-MSG:COLOR (:R . 7) (:G . 0) (:B . 0))"
+    )
+    assert (
+        lisp(
+            '(with-fields ((a (x linear))) (with-input-from-string (in "(geometry_msgs-msg:twist (:linear . (geometry_msgs-msg:vector3 '
+            '(:x . 3))))") (read-ros-message in)) a)'
+        )
+        == "3"
+    )

@@ -18,8 +18,15 @@ A carrier has `ident`, the operating system's thread that it runs on.
 A third back end (a browser, where neither threads nor greenlets exist) implements these seven and is named in `make_backend`.
 """
 
+from __future__ import annotations
 
-def make_backend(backend):
+from ..typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..signatures import Backend, BackendName
+
+
+def make_backend(backend: BackendName | Backend) -> Backend:
     """A fresh back end for "threads" or "greenlet"; an object with the interface above is taken as it is."""
     if backend == "threads":
         from .threads import ThreadBackend

@@ -10,7 +10,6 @@ A task may recurse as deep as the main thread: `depth` says how large a stack is
 """
 
 import _thread
-import os
 import sys
 import threading
 from collections import deque
@@ -19,15 +18,15 @@ from .. import signals
 from ..clocks import LONGEST_WAIT
 from ..depth import STACK_SIZE
 from ..errors import NoStack, Terminated
-from .nearness import nearness
+from ..images import in_forked_child
+from .affinity import affinity
 
 KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
 
-_native_id = getattr(_thread, "get_native_id", _thread.get_ident)  # only `nearness` asks, where there is such a thing
+_native_id = getattr(_thread, "get_native_id", _thread.get_ident)  # only `affinity` asks, where there is such a thing
 _idle = deque()
-_near = None  # see `nearness`; asked for when the first kernel starts
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_idle.clear)  # threads do not come along into a forked child
+_affinity = None  # see `affinity`; asked for when the first kernel starts
+in_forked_child(_idle.clear)  # threads do not come along
 
 
 class ThreadCarrier:
@@ -71,7 +70,7 @@ def borrow_unless_leaving(job):
     try:
         return borrow(job)
     except NoStack:
-        if not signals.leaving:
+        if not signals.leaving.is_set():
             raise
         return None
 
@@ -90,8 +89,8 @@ def _carry_on(carrier):
     lock = carrier.lock
     lock.acquire()
     while True:
-        if _near is not None:
-            _near.let_go()
+        if _affinity is not None:
+            _affinity.let_go()
         job, carrier.job = carrier.job, None
         successor = job(carrier)
         job = None
@@ -108,8 +107,8 @@ def _carry_on(carrier):
 
 def _wake(carrier):
     """Give the baton to CARRIER, as the last thing before going to sleep."""
-    if _near is not None and carrier.tid is not None:
-        _near.bring(carrier.tid)
+    if _affinity is not None and carrier.tid is not None:
+        _affinity.bring(carrier.tid)
     carrier.lock.release()
 
 
@@ -124,9 +123,9 @@ class ThreadBackend:
 
     def adopt(self, kernel):
         self._kernel = kernel
-        global _near
-        if _near is None:
-            _near = nearness()
+        global _affinity
+        if _affinity is None:
+            _affinity = affinity()
         self._root = carrier = ThreadCarrier()
         carrier.ident = _thread.get_ident()
         carrier.tid = _native_id()
@@ -138,8 +137,8 @@ class ThreadBackend:
     def transfer(self, mine, other):
         _wake(other)
         self._wait(mine)
-        if _near is not None:
-            _near.let_go()
+        if _affinity is not None:
+            _affinity.let_go()
 
     def _wait(self, mine):
         """Wait for the baton. In the main thread Python runs signal handlers meanwhile, and one may raise."""
@@ -183,8 +182,8 @@ class ThreadBackend:
         finally:
             kernel.post(lambda: kernel.comes_back(task))
             self._wait(task.carrier)
-            if _near is not None:
-                _near.let_go()
+            if _affinity is not None:
+                _affinity.let_go()
 
     def frame(self, carrier):
         return sys._current_frames().get(carrier.ident)

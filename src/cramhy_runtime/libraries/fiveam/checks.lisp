@@ -17,7 +17,8 @@
    (place :initarg :place :initform nil :reader place)))
 
 (defclass test-passed (test-result) ())
-(defclass test-failure (test-result) ())
+(defclass test-failure (test-result)
+  ((values-text :initarg :values-text :initform nil :reader values-text)))
 (defclass unexpected-test-failure (test-failure)
   ((condition :initarg :condition :reader actual-condition)))
 (defclass test-skipped (test-result) ())
@@ -49,16 +50,20 @@
   (add-result 'test-passed :test-expr expression)
   t)
 
-(defun process-failure (expression reason)
-  "Note a failed check, unless somebody who handles CHECK-FAILURE does something else."
+(defun process-failure (expression reason &optional values-text)
+  "Note a failed check, unless somebody who handles CHECK-FAILURE does something else. VALUES-TEXT: what REASON does not tell of the values."
   (let ((place (cramhy::source-position)))
     (with-simple-restart (ignore-failure "Continue the test run.")
       (error 'check-failure :test-expr expression :reason reason :test-case *current-test*))
-    (add-result 'test-failure :test-expr expression :reason reason :place place)))
+    (add-result 'test-failure :test-expr expression :reason reason :values-text values-text :place place)))
 
 (defun reason-form (arguments default)
   "The form of a reason: the user's FORMAT arguments, or DEFAULT."
   (if arguments `(format nil ,@arguments) default))
+
+(defun reason-forms (arguments default)
+  "The forms of a reason and, if that is the user's, of what it does not tell."
+  (if arguments (list (reason-form arguments default) default) (list default)))
 
 (defun call-p (form)
   "Whether FORM is a call of a function."
@@ -81,7 +86,7 @@
                    (process-pass ',test)
                    (process-failure
                     ',test
-                    ,(reason-form
+                    ,@(reason-forms
                       reason-args
                       `(format nil
                                ,(cond ((and negated second-p)
@@ -92,13 +97,13 @@
                                ',(if second-p second first) ,actual ',predicate ,@(when second-p (list expected)))))))))
         `(if ,test
              (process-pass ',test)
-             (process-failure ',test ,(reason-form reason-args `(format nil "~2&~S~2% was NIL." ',test)))))))
+             (process-failure ',test ,@(reason-forms reason-args `(format nil "~2&~S~2% was NIL." ',test)))))))
 
 (defmacro is-true (condition &rest reason-args)
   "Check that the value of CONDITION is true."
   `(if ,condition
        (process-pass ',condition)
-       (process-failure ',condition ,(reason-form reason-args `(format nil "~S did not return a true value" ',condition)))))
+       (process-failure ',condition ,@(reason-forms reason-args `(format nil "~S did not return a true value" ',condition)))))
 
 (defmacro is-false (condition &rest reason-args)
   "Check that the value of CONDITION is NIL."
@@ -106,7 +111,7 @@
     `(let ((,value ,condition))
        (if ,value
            (process-failure ',condition
-                            ,(reason-form reason-args
+                            ,@(reason-forms reason-args
                                           `(format nil "~S returned the value ~S, which is true" ',condition ,value)))
            (process-pass ',condition)))))
 

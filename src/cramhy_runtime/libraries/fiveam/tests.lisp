@@ -134,12 +134,12 @@
   (let* ((description (if (stringp (first body)) (pop body) ""))
          (fixture-list (if (listp fixture) fixture (list fixture)))
          (body (if fixture `((with-fixture ,(first fixture-list) ,(rest fixture-list) ,@body)) body)))
-    `(progn
+    ;; not PROGN, whose parts are top-level forms without the place of the call
+    `(prog1 ',name
        (define-test ',name ,description ',depends-on ,(if suite-p `',suite '*suite*)
          (lambda () ,@(if (eq compile-at :run-time) `((eval '(progn ,@body))) body))
          (cramhy::source-position))
-       (when *run-test-when-defined* (run! ',name))
-       ',name)))
+       (when *run-test-when-defined* (run! ',name)))))
 
 (defun define-test (name description depends-on suite function place)
   (enter-test (make-instance 'test-case :name name :description description :depends-on depends-on :suite (find-suite suite)

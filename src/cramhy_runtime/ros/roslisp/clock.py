@@ -6,11 +6,11 @@ stamps every time. Source: roslisp.md 9.
 
 from __future__ import annotations
 
-from ...lisp.data import DoubleFloat
+from cramhy_runtime.ground.data import DoubleFloat
 from .. import graph
 
 
-def ros_time():
+def ros_time() -> float:
     """Seconds since the epoch, a double; under simulated time the last ``/clock``, or single 0.0 before the first."""
     here = graph.active()
     node = here.lisp_node

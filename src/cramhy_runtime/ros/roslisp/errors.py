@@ -7,13 +7,19 @@ they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the 
 
 from __future__ import annotations
 
-from ...lisp import conditions
-from ...lisp.condition_types import Condition, Error, SimpleError
-from ...lisp.format.format import format_to_string
-from ...lisp.packages import near_names
-from ...lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError
+from cramhy_runtime.ground.printing import format_to_string
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.printing import princ_to_string
 from . import logging
 from .master import master_uri
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from .master import Uri
 
 
 class RosRpcError(Condition):
@@ -21,14 +27,16 @@ class RosRpcError(Condition):
 
     lisp_name = "ROSLISP::ROS-RPC-ERROR"
 
-    def __init__(self, call="", uri=None, code=-1, message="", result="", **slots):
+    def __init__(self, call: str = "", uri: Uri | None = None, code: int = -1, message: str = "", result: object = "", **slots: object):
         super().__init__(**slots)
         self.call, self.uri, self.code, self.message, self.result = call, uri, code, message, result
         if message == "no provider":
-            self.hint = ('No node offers this service. rosservice list, typed at the prompt, shows those that there are; '
-                         "(wait-for-service name) waits for one.")
+            self.hint = (
+                "No node offers this service. rosservice list, typed at the prompt, shows those that there are; "
+                "(wait-for-service name) waits for one."
+            )
 
-    def report(self):
+    def report(self) -> str:
         return (
             f"ros-rpc call ({self.call}) to {princ_to_string(self.uri)} failed with code {self.code}, "
             f"message {self.message}, values {self.result}"
@@ -48,26 +56,26 @@ class ServiceCallError(Error):
     initargs = {"MESSAGE": "message"}
     message = ""
 
-    def report(self):
+    def report(self) -> str:
         return f"service-call-error: {self.message}"
 
 
-def ros_error(control, *arguments, hint=None):
+def ros_error(control: str, *arguments: object, hint: str | Callable[[], str] | None = None) -> NoReturn:
     """Log the format control at level ERROR on the root topic, then signal it as a simple error.
 
     hint: what to try, or a function that gives it; it is shown below the error and is no part of its text.
     """
     logging.log_text(logging.ERROR, None, format_to_string(control, *arguments))
-    return conditions.error(SimpleError(control, *arguments), hint=hint)
+    conditions.error(SimpleError(control, *arguments), hint=hint)
 
 
-def close_names(name, names, otherwise):
+def close_names(name: str, names: Iterable[str], otherwise: str) -> str:
     """The hint for a name that is not there: those of ``names`` that look like it, or the sentence ``otherwise``."""
     close = near_names(name, names)
     return f"Did you mean {' or '.join(close)}?" if close else otherwise
 
 
-def rpc_error(call, code, message, result="", hint=None):
+def rpc_error(call: str, code: int, message: str, result: object = "", hint: str | None = None) -> None:
     """Signal the master's refusal of ``call``, with the restart ``Ignore and continue``. hint: what to try, when it is not the usual."""
     problem = RosRpcError(call, master_uri(), code, message, result)
     if hint is not None:

@@ -5,12 +5,20 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from cramhy_runtime.kernel.images import Cell
 from ... import storage
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
-_file = None
+if TYPE_CHECKING:
+    from typing import TextIO
+
+    from ..names import Naming
 
 
-def place(naming, now):
+_file: Cell[TextIO | None] = Cell(None, fresh=True)
+
+
+def place(naming: Naming, now: float) -> Path | None:
     """The path of the log file of a node with that `Naming`, or ``None``: ``__log:=``, or below ``$ROS_LOG_DIR``."""
     if naming.log_file is not None:
         return Path(naming.log_file)
@@ -19,33 +27,30 @@ def place(naming, now):
     return None
 
 
-def start(path):
+def start(path: Path) -> None:
     """Write to ``path`` from now on; folders are made. `OSError` when it cannot be written."""
-    global _file
     stop()
     path.parent.mkdir(parents=True, exist_ok=True)
-    _file = open(path, "a", encoding="utf-8", errors="backslashreplace")
+    _file.value = open(path, "a", encoding="utf-8", errors="backslashreplace")
 
 
-def write(line):
+def write(line: str) -> str | None:
     """Add a line, if there is a log file. Returns why that is the end of the log, a text, or ``None`` when all is well."""
-    global _file
-    if _file is None:
+    if _file.value is None:
         return None
     try:
-        _file.write(line)
-        _file.flush()
+        _file.value.write(line)
+        _file.value.flush()
     except OSError as problem:
-        name = _file.name
+        name = _file.value.name
         stop()
         return f"The log file {name} ends here: {storage.why(problem)} The program goes on."
     return None
 
 
-def stop():
+def stop() -> None:
     """Close it."""
-    global _file
-    file, _file = _file, None
+    file, _file.value = _file.value, None
     if file is not None:
         try:
             file.close()

@@ -7,23 +7,30 @@ Source: roslisp.md 4. The macros evaluate their arguments only when `enabled` sa
 
 from __future__ import annotations
 
-from ...lisp import conditions
-from ...lisp.condition_types import SimpleError, SimpleWarning
-from ...lisp.data import Cons, LispString, Symbol, lisp_list, list_from
-from ...lisp.format.format import format_to_string
-from ...lisp.packages import intern, string_designator, sym, symbol_name
-from ...lisp.printer.printer import princ_to_string
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError, SimpleWarning
+from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.printing import format_to_string
+from cramhy_runtime.ground.packages import intern, string_designator, sym, symbol_name
+from cramhy_runtime.ground.printing import princ_to_string
 from .. import graph, rosout, wire
 from ..rosout import DEBUG, ERROR, FATAL, INFO, LEVEL_CODES, LEVEL_NAMES, WARN
 from . import log_file
 from .clock import ros_time
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..graph import Node
+
+    Path = tuple[str, ...]
+
 
 __all__ = ["DEBUG", "ERROR", "FATAL", "INFO", "WARN"]
 
 _standard_output = sym("*STANDARD-OUTPUT*")
 
 
-def topic_path(topic):
+def topic_path(topic: Any) -> Path:
     """A topic as a tuple of upper-case names: a list, one symbol or string, nil for the root, or a tuple."""
     if topic is None:
         return ()
@@ -32,11 +39,11 @@ def topic_path(topic):
     return (string_designator(topic).upper(),)
 
 
-def _levels():
+def _levels() -> dict[Path, int]:
     return graph.active().debug_levels
 
 
-def level_of(path):
+def level_of(path: Path) -> int:
     """The level in force for the topic ``path``, a tuple of names."""
     levels = _levels()
     if not levels:
@@ -48,19 +55,19 @@ def level_of(path):
     return levels.get((), INFO)
 
 
-def enabled(level, topic):
+def enabled(level: int, topic: object) -> bool:
     """Whether a message of ``level`` (1, 2, 4, 8, 16) on ``topic`` (list, symbol or nil) is printed."""
     return level >= level_of(topic_path(topic))
 
 
-def ros_log(level, topic, control, *arguments):
+def ros_log(level: int, topic: object, control: str, *arguments: object) -> int | None:
     """Log the format control with its arguments, if the level passes; the number of ``/rosout`` subscribers, or nil."""
     if not enabled(level, topic):
         return None
     return _print(level, topic, format_to_string(control, *arguments))
 
 
-def log_text(level, topic, text):
+def log_text(level: int, topic: object, text: str) -> int | None:
     """Log a finished text from the runtime itself. ``topic``: a tuple of symbol names (taken from ROSLISP), or nil."""
     if not enabled(level, topic):
         return None
@@ -69,7 +76,7 @@ def log_text(level, topic, text):
     return _print(level, topic, text)
 
 
-def _print(level, topic, text):
+def _print(level: int, topic: Any, text: str) -> int | None:
     shown_topic = princ_to_string(topic if topic is None or isinstance(topic, Cons) else lisp_list(topic))
     stream = _standard_output.value
     stream.fresh_line()
@@ -90,7 +97,7 @@ def _print(level, topic, text):
 # -------------------------------------------------------------------------------------------------------------- the levels
 
 
-def level_code(level):
+def level_code(level: int | Symbol | str) -> int:
     """The number of a level given as keyword, number, or upper-case string."""
     if level.__class__ is int:
         return level
@@ -105,7 +112,7 @@ def level_code(level):
     return code
 
 
-def set_debug_level(name, level):
+def set_debug_level(name: object, level: int | Symbol | str) -> int | None:
     """Set the level of a topic (list or symbol). With a node running the parameter ``~debug/…/level`` is set too: 0."""
     path, code = topic_path(name), level_code(level)
     _levels()[path] = code
@@ -113,13 +120,12 @@ def set_debug_level(name, level):
     if here is None:
         return None
     here.graph.parameters.set(
-        here.resolve("~debug/" + "".join(part.lower() + "/" for part in path) + "level"),
-        LEVEL_NAMES.get(code, str(code)).lower(),
+        here.resolve("~debug/" + "".join(part.lower() + "/" for part in path) + "level"), LEVEL_NAMES.get(code, str(code)).lower()
     )
     return 0
 
 
-def set_debug_levels(*names_and_levels):
+def set_debug_levels(*names_and_levels: Any) -> int | None:
     """``NAME1 LEVEL1 …``, what the macro ``set-debug-levels`` calls with quoted names."""
     result = None
     for index in range(0, len(names_and_levels), 2):
@@ -127,14 +133,14 @@ def set_debug_levels(*names_and_levels):
     return result
 
 
-def debug_level(name):
+def debug_level(name: object) -> int:
     """The number of the level in force; the topic is given as a reversed list of keywords, ``(:tcp :roslisp)``."""
     if isinstance(name, Cons):
         return level_of(tuple(reversed(topic_path(name))))
     return level_of(())
 
 
-def print_debug_levels():
+def print_debug_levels() -> None:
     """Print the table of levels; topics appear reversed, as in the original."""
     levels = {(): INFO, **_levels()}
     lines = []
@@ -145,7 +151,7 @@ def print_debug_levels():
     stream.write("[" + "\n ".join(lines) + "]")
 
 
-def read_levels(here):
+def read_levels(here: Node) -> None:
     """Take over the levels that stand as parameters below ``~debug/`` (at node start, and by ``~reset_debug_levels``)."""
     prefix = here.resolve("~debug/").rstrip("/") + "/"
     for name in here.graph.parameters.names():

@@ -12,10 +12,15 @@ import errno
 import os
 
 from ... import kernel
-from ...lisp import conditions
-from ...lisp.condition_types import SimpleError
-from ...lisp.data import LispString
-from ...lisp.dynamic import special
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import LispString
+from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..signatures import Text
+
 
 LOOPBACK, DEFAULT_PORT = "127.0.0.1", 11311
 DEFAULT = f"http://{LOOPBACK}:{DEFAULT_PORT}"
@@ -30,21 +35,21 @@ class Uri:
     lisp_name = "ROSLISP::URI"
     __slots__ = ("address", "port")
 
-    def __init__(self, address, port):
+    def __init__(self, address: str, port: int):
         self.address, self.port = address, port
 
 
-def make_uri(address, port):
+def make_uri(address: str, port: int) -> Uri:
     """An address as ``start-ros-node`` takes it."""
     return Uri(address, port)
 
 
-def master_uri():
+def master_uri() -> Uri | None:
     """The `Uri` in use, or ``None`` before the first node."""
     return MASTER_URI.value
 
 
-def chosen_uri(given=None):
+def chosen_uri(given: Text | Uri | None = None) -> Uri:
     """The `Uri` that a node starts with: ``given`` (text, a `Uri`, or ``None``), else the user's default, else the environment's."""
     if isinstance(given, Uri):
         return Uri(_dotted(given.address), given.port)
@@ -62,23 +67,23 @@ def chosen_uri(given=None):
     return _parsed(str(given)) or conditions.error(SimpleError("~a", f"Malformed URI {given}"))
 
 
-def _parsed(text):
+def _parsed(text: str) -> Uri | None:
     scheme, separator, rest = text.rstrip("/").partition("://")
     host, colon, port = rest.partition(":")
     return Uri(_dotted(host), int(port)) if scheme == "http" and separator and host and port.isdecimal() else None
 
 
-def _dotted(host):
+def _dotted(host: str) -> str:
     return LOOPBACK if host == "localhost" else host
 
 
-def is_here(uri):
+def is_here(uri: Uri | None) -> bool:
     """Whether ``uri`` is the address of the master in this process."""
     own = _parsed(os.environ.get("ROS_MASTER_URI") or DEFAULT)
     return uri is not None and (uri.address, uri.port) in {(LOOPBACK, DEFAULT_PORT), *([(own.address, own.port)] if own else [])}
 
 
-def connection_problem(uri):
+def connection_problem(uri: Uri | None) -> str | None:
     """Why the master at ``uri`` cannot be worked with, as text, or ``None`` when it is the one in this process.
 
     Somewhere else a connection is tried, for a second at most.
@@ -86,7 +91,7 @@ def connection_problem(uri):
     return None if is_here(uri) else kernel.run_blocking(_try_to_connect, str(uri.address), uri.port)
 
 
-def _try_to_connect(host, port):
+def _try_to_connect(host: str, port: int) -> str:
     import socket  # few programs ever need it
 
     try:
@@ -99,5 +104,7 @@ def _try_to_connect(host, port):
         number = getattr(problem, "errno", None)
         text = os.strerror(number) if number else str(problem)
         return f'Socket error in "connect": {errno.errorcode.get(number, "EINVAL")} ({text})'
-    return (f"a master outside of this process answers there. Start the session with --ros ws://{host}:9090 to work with its nodes, "
-            "through the rosbridge server on that machine; without :master-uri the node is started here.")
+    return (
+        f"a master outside of this process answers there. Start the session with --ros ws://{host}:9090 to work with its nodes, "
+        "through the rosbridge server on that machine; without :master-uri the node is started here."
+    )

@@ -9,19 +9,27 @@ from __future__ import annotations
 import os
 
 from ... import kernel
-from ...lisp import conditions
-from ...lisp.condition_types import SimpleError
-from ...lisp.data import Cons, LispString, python_list, truth
-from ...lisp.dynamic import special
-from ...lisp.packages import sym
-from ...lisp.printer.printer import princ_to_string
-from ...utilities.lines import need
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import Cons, LispString, python_list, truth
+from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.utilities.wait_queue import need
 from .. import graph, messages, names, rosout
 from . import log_file, logging, master
 from .errors import ros_error
 from .master import MASTER_URI
 from .parameter_values import encode
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cramhy_runtime.ground.data import Keyword
+    from ..signatures import Text
+
+T = TypeVar("T")
 STARTUP_SECONDS = 1.094
 """What starting a node took when the golden transcript was recorded."""
 SHUTDOWN_SECONDS = 3.5
@@ -33,12 +41,12 @@ NODE_NAME = special("ROSLISP::*ROS-NODE-NAME*")
 RUNNING_FROM_COMMAND_LINE = special("ROSLISP::*RUNNING-FROM-COMMAND-LINE*")
 
 
-def node_status():
+def node_status() -> Keyword:
     """``:running`` or ``:shutdown``."""
     return sym(":SHUTDOWN") if graph.active().lisp_node is None else sym(":RUNNING")
 
 
-def require_node():
+def require_node() -> graph.Node:
     """The node of the Lisp program. Without one: the continuable error that offers to start a dummy."""
     here = graph.active().lisp_node
     while here is None:
@@ -50,7 +58,7 @@ def require_node():
     return here
 
 
-def fully_qualified_name(name):
+def fully_qualified_name(name: Text) -> str:
     """The global name that ``name`` means to the node; works without a node too."""
     here = graph.active().lisp_node
     if not isinstance(name, (str, LispString)):
@@ -60,7 +68,9 @@ def fully_qualified_name(name):
     return names.qualify(str(name), names.as_namespace(os.environ.get("ROS_NAMESPACE")), NODE_NAME.value)
 
 
-def start_ros_node(name, *, master_uri=None, anonymous=None, cmd_line_args=None, **others):
+def start_ros_node(
+    name: Text, *, master_uri: Text | master.Uri | None = None, anonymous: bool | None = None, cmd_line_args: Any = None, **others: object
+) -> int | None:
     """Start the node ``name``. Returns the number of ``/rosout`` subscribers, usually 0.
 
     anonymous: append microseconds and seconds. cmd_line_args: a list of strings, or one string. master_uri: a string or a
@@ -103,7 +113,7 @@ def start_ros_node(name, *, master_uri=None, anonymous=None, cmd_line_args=None,
         raise
 
 
-def _contact_master(naming, address):
+def _contact_master(naming: names.Naming, address: master.Uri) -> None:
     problem = master.connection_problem(address)
     if problem is None:
         return
@@ -113,7 +123,7 @@ def _contact_master(naming, address):
     ros_error("Could not contact master at ~a when getting param list: ~a", address, problem, hint=hint)
 
 
-def _naming(here, name, anonymous, arguments):
+def _naming(here: graph.Graph, name: str, anonymous: object, arguments: Any) -> names.Naming:
     if anonymous is not None and anonymous is not False:
         now = here.now()
         name = f"{name}_{int(now % 1 * 1e6)}_{int(now)}"
@@ -123,13 +133,12 @@ def _naming(here, name, anonymous, arguments):
     if arguments is not None and not isinstance(arguments, (str, LispString)):
         arguments = python_list(need(arguments, (Cons, list, tuple), "LIST"))
     naming.apply_arguments(
-        names.split_arguments(str(arguments) if isinstance(arguments, LispString) else arguments),
-        names.read_private_value,
+        names.split_arguments(str(arguments) if isinstance(arguments, LispString) else arguments), names.read_private_value
     )
     return naming
 
 
-def _announce(node, address):
+def _announce(node: graph.Node, address: master.Uri) -> None:
     naming = node.naming
     _top(f"Node name is {naming.node_name}")
     _top(f"Namespace is {naming.namespace}")
@@ -139,11 +148,11 @@ def _announce(node, address):
     _top(f"master URI is {address.address}:{address.port}")
 
 
-def _top(text):
+def _top(text: str) -> int | None:
     return logging.log_text(logging.INFO, ("ROSLISP", "TOP"), text)
 
 
-def _connect_services(node):
+def _connect_services(node: graph.Node) -> None:
     rosout.join(node, ROSOUT_DELAY)
     tree = node.graph.parameters
     if tree.has("/use_sim_time") and tree.get("/use_sim_time") in (True, 1, "true", "T"):
@@ -162,13 +171,13 @@ def _connect_services(node):
     node.serve("~reset_debug_levels", empty, reset_levels)
 
 
-def _upload_parameters(node):
+def _upload_parameters(node: graph.Node) -> None:
     """Set the private parameters of the node's command line."""
     for name, value, _ in reversed(node.naming.private_parameters):
         node.graph.parameters.set(names.qualify(name, node.naming.namespace, node.name), encode(value))
 
 
-def _open_log_file(naming):
+def _open_log_file(naming: names.Naming) -> None:
     path = log_file.place(naming, graph.active().now())
     if path is None:
         return
@@ -178,7 +187,7 @@ def _open_log_file(naming):
         ros_error("Could not open the log file ~a: ~a. Choose another one with __log:=FILE.", str(path), problem.strerror)
 
 
-def shutdown_ros_node():
+def shutdown_ros_node() -> None:
     """Shut the node down: its topics, services and tasks end. NIL when none is running. An executable ends with its node."""
     here = graph.active().lisp_node
     if here is None:
@@ -193,16 +202,16 @@ def shutdown_ros_node():
         raise SystemExit(0)
 
 
-def _entries(table):
+def _entries(table: dict[str, list[Any]]) -> list[Any]:
     return [entry for entries in table.values() for entry in entries]
 
 
-def _ended():
+def _ended() -> None:
     _top("Shutdown complete")
     log_file.stop()
 
 
-def with_ros_node(name, body, *, spin=None, **options):
+def with_ros_node(name: Text, body: Callable[[], T], *, spin: bool | None = None, **options: Any) -> T:
     """Run ``body`` with a node, and shut it down on every way out. With ``spin`` wait for ever after the body."""
 
     def shut_down(condition=None):
@@ -223,13 +232,13 @@ def with_ros_node(name, body, *, spin=None, **options):
             shutdown_ros_node()
 
 
-def standalone_exec_debug_hook(condition, hook=None):
+def standalone_exec_debug_hook(condition: BaseException, hook: object = None) -> None:
     """Debugger hook of executables: ends the node when one is running."""
     if graph.active().lisp_node is not None:
         conditions.invoke_restart(sym("ROSLISP::SHUTDOWN-ROS-NODE"), condition)
 
 
-def print_status():
+def print_status() -> None:
     """Print the node's name, state, master, and what it publishes and subscribes to."""
     here = graph.active().lisp_node
     stream = sym("*STANDARD-OUTPUT*").value

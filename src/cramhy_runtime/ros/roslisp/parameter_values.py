@@ -8,24 +8,35 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ...lisp import conditions
-from ...lisp.condition_types import SimpleError, shown
-from ...lisp.data import Cons, LispString, Symbol, list_from
-from ...lisp.packages import symbol_name
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError, shown
+from cramhy_runtime.ground.data import Cons, LispString, Symbol, list_from
+from cramhy_runtime.ground.packages import symbol_name
 from .structs import Struct
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from ..signatures import Parameter
+
 
 LEAST, MOST = -(2**31), 2**31 - 1
 
 
-def encode(value):
+def encode(value: object) -> Parameter:
     """A Lisp value as the master keeps it."""
     if value is None or value is False:
         return False
     if value is True or isinstance(value, str):
         return value
     if isinstance(value, int):
-        return value if LEAST <= value <= MOST else _refuse(
-            f"The integer {value} does not fit into a parameter: those have 32 bits, from {LEAST} to {MOST}. A float or a string holds it.")
+        return (
+            value
+            if LEAST <= value <= MOST
+            else _refuse(
+                f"The integer {value} does not fit into a parameter: those have 32 bits, from {LEAST} to {MOST}. "
+                "A float or a string holds it."
+            )
+        )
     if isinstance(value, LispString):
         return str(value)
     if isinstance(value, (float, Fraction)):
@@ -41,17 +52,17 @@ def encode(value):
     return _refuse(f"A parameter can be a string, number, boolean, list or vector of these, but not {shown(value)}.")
 
 
-def _last(cell):
+def _last(cell: Cons) -> Cons:
     while isinstance(cell.cdr, Cons):
         cell = cell.cdr
     return cell
 
 
-def _refuse(text):
-    return conditions.error(SimpleError("~a", text))
+def _refuse(text: str) -> NoReturn:
+    conditions.error(SimpleError("~a", text))
 
 
-def decode(value):
+def decode(value: Parameter) -> Any:
     """A value of the master as Lisp sees it."""
     if value is False:
         return None

@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
-from ...lisp import conditions
-from ...lisp.condition_types import SimpleError
-from ...lisp.data import UNSUPPLIED, Cons, LispString, list_from
-from ...lisp.packages import is_symbol, symbol_name
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, list_from
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from .. import graph
 from . import master, node
 from .errors import close_names, ros_error, rpc_error
 from .parameter_values import decode, encode
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..signatures import Text
+    from ..parameter_tree import ParameterTree
 
 
-def _full_name(key):
+def _full_name(key: object) -> str:
     if not isinstance(key, (str, LispString)):
         return conditions.type_error(key, "STRING", "\nwhen binding ROSLISP::KEY")
     _require_master()
     return node.fully_qualified_name(str(key))
 
 
-def _require_master():
+def _require_master() -> None:
     if master.master_uri() is None:
         conditions.error(SimpleError("Master uri not set"))
 
 
-def _tree(control, *arguments):
+def _tree(control: str, *arguments: object) -> ParameterTree:
     """The master's parameters; when the master is another one, the error ``control`` with its address, ``arguments`` and the reason."""
     uri = master.master_uri()
     problem = master.connection_problem(uri)
@@ -33,11 +38,11 @@ def _tree(control, *arguments):
     return graph.active().parameters
 
 
-def _symbol_name(thing):
+def _symbol_name(thing: object) -> str:
     return symbol_name(thing) if is_symbol(thing) else conditions.type_error(thing, "SYMBOL")
 
 
-def get_param(key, default=UNSUPPLIED):
+def get_param(key: Text, default: object = UNSUPPLIED) -> Any:
     """The value of the parameter; ``default`` (nil counts) when it is not set; else an error that is logged too."""
     name = _full_name(key)
     try:
@@ -45,11 +50,18 @@ def get_param(key, default=UNSUPPLIED):
     except KeyError:
         if default is not UNSUPPLIED:
             return default
-    return ros_error("Param ~a does not exist, and no default supplied", name, hint=lambda: close_names(
-        name, graph.active().parameters.names(), "(list-params) shows those that there are; a second argument of get-param is a default."))
+    return ros_error(
+        "Param ~a does not exist, and no default supplied",
+        name,
+        hint=lambda: close_names(
+            name,
+            graph.active().parameters.names(),
+            "(list-params) shows those that there are; a second argument of get-param is a default.",
+        ),
+    )
 
 
-def set_param(key, val):
+def set_param(key: Text, val: object) -> int:
     """Set the parameter; 0."""
     name = _full_name(key)
     tree = _tree("Could not contact master at ~a when setting param ~a", name)
@@ -60,13 +72,13 @@ def set_param(key, val):
     return 0
 
 
-def has_param(key):
+def has_param(key: Text) -> bool | None:
     """T when the parameter is set, even to false."""
     name = _full_name(key)
     return True if _tree("Could not contact master at ~a for call to hasParam ~a: ~a", name).has(name) else None
 
 
-def delete_param(key):
+def delete_param(key: Text) -> int:
     """Remove the parameter; 0. One that is not set is a ``ros-rpc-error``."""
     name = _full_name(key)
     try:
@@ -76,7 +88,7 @@ def delete_param(key):
     return 0
 
 
-def list_params(namespace=None):
+def list_params(namespace: Text | Cons | None = None) -> Cons | None:
     """The list of the names below a namespace: a string, or a list of symbols ``(foo bar)`` for ``/foo/bar/``."""
     _require_master()
     if namespace is None:

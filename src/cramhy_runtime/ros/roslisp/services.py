@@ -9,20 +9,26 @@ from __future__ import annotations
 from collections import deque
 
 from ... import kernel
-from ...lisp import conditions
-from ...lisp.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
-from ...lisp.data import LispString, Symbol
-from ...lisp.evaluation.control import fdefinition
-from ...lisp.objects.generic_errors import no_applicable_method
-from ...lisp.packages import sym, symbol_name
-from ...lisp.printer.printer import princ_to_string
-from ...utilities.lines import need, time_limit
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
+from cramhy_runtime.ground.data import LispString, Symbol
+from cramhy_runtime.ground.functions import function_named
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.packages import sym, symbol_name
+from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.utilities.wait_queue import need, time_limit
 from .. import messages, wire
 from ..message_building import get_field, instance
 from ..messages import RosMessage
 from ..services import Service, exchange
 from . import logging, node
 from .errors import ServiceCallError, ServiceError, ros_error, rpc_error
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..graph import Node
+    from ..services import Call
+    from ..signatures import Handler, ServiceName, Text
 
 
 NAMED_BY_STRINGS = 'A service is named by a string, such as "/clear". Has the variable been set that holds it?'
@@ -31,7 +37,7 @@ NAMED_BY_STRINGS = 'A service is named by a string, such as "/clear". Has the va
 class LispService(Service):
     """A service of the Lisp program. Requests are handled one after the other in the node's event loop task."""
 
-    def submit(self, call):
+    def submit(self, call: Call) -> None:
         if self.closed:
             call.finish(lost=True)
             return
@@ -43,8 +49,9 @@ class LispService(Service):
             loop.queue.append((self, call))
             kernel.unpark(loop.task)
 
-    def answer(self, call):
+    def answer(self, call: Call) -> None:
         """Run the callback and finish ``call``, whatever the callback does."""
+
         def refuse(condition):
             call.finish(failure=f"service cannot process request: {condition.report()}")
 
@@ -81,13 +88,13 @@ class LispService(Service):
 class EventLoop:
     """The task that serves the services of the Lisp program."""
 
-    def __init__(self, node):
-        self.queue = deque()
+    def __init__(self, node: Node):
+        self.queue: deque[tuple[LispService, Call]] = deque()
         owner = node.graph.kernel
-        self.task = owner.spawn(self._run, name="ROSLisp event loop", parent=owner.main)
+        self.task: kernel.Task[object] = owner.spawn(self._run, name="ROSLisp event loop", parent=owner.main)
         node.on_shutdown.append(lambda: self.task.cancel("the node was shut down"))
 
-    def _run(self):
+    def _run(self) -> None:
         while True:
             while self.queue:
                 service, call = self.queue.popleft()
@@ -95,7 +102,7 @@ class EventLoop:
             kernel.park("a request for a service of the node")
 
 
-def event_loop(node):
+def event_loop(node: Any) -> EventLoop:
     """The event loop of the Lisp program's node; started by its first service."""
     found = getattr(node, "event_loop", None)
     if found is None:
@@ -106,21 +113,30 @@ def event_loop(node):
 # ------------------------------------------------------------------------------------------------------------------ clients
 
 
-def call(service, request):
+def call(service: Service, request: RosMessage) -> RosMessage | None:
     """Send ``request`` to the `Service` and wait; the response, or the client's error."""
     if request.ros_type != service.type.request.ros_type:
-        return ros_error("service-call to ~a with request ~a failed.", service.node.address, request,
-                         hint=f"The service {service.name} is of type {service.type.name}, which has another request.")
+        return ros_error(
+            "service-call to ~a with request ~a failed.",
+            service.node.address,
+            request,
+            hint=f"The service {service.name} is of type {service.type.name}, which has another request.",
+        )
     answer = exchange(service, request)
     if answer.lost:
         return ros_error("service-call to ~a with request ~a failed.", service.node.address, request)
     if answer.failure is not None:
-        return ros_error("service-call to ~a with request ~a failed with message: ~a", service.node.address, request, answer.failure,
-                         hint=None if answer.failure else lambda: _reason(service))
+        return ros_error(
+            "service-call to ~a with request ~a failed with message: ~a",
+            service.node.address,
+            request,
+            answer.failure,
+            hint=None if answer.failure else lambda: _reason(service),
+        )
     return answer.response
 
 
-def _reason(service):
+def _reason(service: Service) -> str:
     """What to say of a refusal without a text: the error that the server logged last, which may tell."""
     server = service.node
     said = next((text for level, name, text in reversed(server.graph.log) if name == server.name and level >= logging.ERROR), None)
@@ -128,7 +144,7 @@ def _reason(service):
     return f"{server.name} refused to do {service.name}, and gave no reason. {told}"
 
 
-def lookup(here, name):
+def lookup(here: Node, name: str) -> Service | None:
     """The offered `Service` with the global name ``name``; with none, the master's ``ros-rpc-error``.
 
     Whoever has that ignored gets the service if there is one by now, else ``None``.
@@ -136,8 +152,12 @@ def lookup(here, name):
     services = here.graph.services
     if name not in services:
         cut_off = here.graph.cut_off
-        rpc_error(f"lookupService {name}", -1, f"no provider: {cut_off}" if cut_off else "no provider",
-                  hint=f'(wait-for-service "{name}") waits until the service is there again.' if cut_off else None)
+        rpc_error(
+            f"lookupService {name}",
+            -1,
+            f"no provider: {cut_off}" if cut_off else "no provider",
+            hint=f'(wait-for-service "{name}") waits until the service is there again.' if cut_off else None,
+        )
     return services.get(name)
 
 
@@ -146,11 +166,11 @@ class ServiceClient:
 
     lisp_name = "ROSLISP::SERVICE-CLIENT"
 
-    def __init__(self, name, service_type):
+    def __init__(self, name: str, service_type: messages.ServiceType):
         self.name, self.type = name, service_type
 
 
-def make_service_client(service_name, service_type):
+def make_service_client(service_name: Text, service_type: Text) -> ServiceClient:
     """A client for `call_service` and `wait_for_service`; both arguments are strings."""
     for name, value in (("SERVICE-NAME", service_name), ("SERVICE-TYPE", service_type)):
         if not isinstance(value, (str, LispString)):
@@ -165,7 +185,7 @@ def make_service_client(service_name, service_type):
     return ServiceClient(str(service_name), messages.service_type(service_type))
 
 
-def call_service(service, *rest_args):
+def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessage | None:
     """Call a service: ``name type . request`` or ``client . request``; returns the response.
 
     The request is keywords and values, or exactly one request object.
@@ -190,13 +210,13 @@ def call_service(service, *rest_args):
     return None if found is None else call(found, request)
 
 
-def _request(service_type, arguments):
+def _request(service_type: messages.ServiceType, arguments: tuple[Any, ...]) -> RosMessage:
     if len(arguments) == 1 and isinstance(arguments[0], RosMessage):
         return arguments[0]
     return instance(service_type.request, arguments)
 
 
-def wait_for_service(service, timeout=None):
+def wait_for_service(service: ServiceClient | Text, timeout: float | None = None) -> bool | None:
     """T as soon as the service is offered, NIL when ``timeout`` seconds have passed; asks every 0.1 s."""
     here = node.require_node()
     if isinstance(service, ServiceClient):
@@ -219,7 +239,7 @@ def wait_for_service(service, timeout=None):
 # ------------------------------------------------------------------------------------------------------------------ servers
 
 
-def register_service_fn(service_name, function, service_type):
+def register_service_fn(service_name: Text, function: Handler | Symbol, service_type: ServiceName) -> int:
     """Offer a service: ``function`` gets the request and returns the response; 1."""
     here = node.require_node()
     kind = messages.service_type(service_type)
@@ -230,7 +250,7 @@ def register_service_fn(service_name, function, service_type):
     if existing is not None:
         return ros_error("Cannot create service ~a as it already exists with info ~a", name, existing)
     if isinstance(function, Symbol):
-        function = fdefinition(function)
+        function = function_named(function)
     if not callable(function):
         return conditions.type_error(function, "FUNCTION", "\nwhen binding FUNCTION")
     here.add_service(LispService(here, name, kind, function))
@@ -238,7 +258,7 @@ def register_service_fn(service_name, function, service_type):
     return 1
 
 
-def register_service(service_name, symbol):
+def register_service(service_name: Text, symbol: Symbol) -> int:
     """What the macro ``register-service`` calls: the callback is the function that the service symbol names."""
     return register_service_fn(service_name, symbol, symbol)
 
@@ -252,19 +272,19 @@ class PersistentService:
     lisp_name = "ROSLISP::PERSISTENT-SERVICE"
     initargs = {"SERVICE-NAME": "service_name", "SERVICE-TYPE": "service_type"}
 
-    def __init__(self, service_name, service_type):
+    def __init__(self, service_name: Text, service_type: ServiceName):
         if not isinstance(service_name, (str, LispString)):
             conditions.type_error(service_name, "STRING", "\nwhen binding ROSLISP::SERVICE-NAME")
         self.service_name, self.service_type = service_name, service_type
         self.type = messages.service_type(service_type)
-        self.connection = None
+        self.connection: Service | None = None
         self.connect(node.require_node())
 
-    def connect(self, here):
+    def connect(self, here: Node) -> None:
         self.connection = lookup(here, here.resolve(str(self.service_name)))
 
 
-def call_persistent_service(service, *request):
+def call_persistent_service(service: PersistentService, *request: object) -> RosMessage | None:
     """Call through the open connection. A failure is a ``service-call-error`` with the restart ``reconnect``."""
     here = node.require_node()
     message = _request(_persistent(service).type, request)
@@ -279,33 +299,27 @@ def call_persistent_service(service, *request):
             problem = f"The connection is closed: {here.graph.cut_off}." if here.graph.cut_off else "The connection is closed."
         failure = ServiceCallError(message=problem)
         conditions.restart_case(
-            [
-                (
-                    sym("ROSLISP::RECONNECT"),
-                    lambda: service.connect(here),
-                    "Try reconnecting and call the service again.",
-                )
-            ],
+            [(sym("ROSLISP::RECONNECT"), lambda: service.connect(here), "Try reconnecting and call the service again.")],
             lambda failure=failure: conditions.error(failure),
         )
 
 
-def close_persistent_service(service):
+def close_persistent_service(service: PersistentService) -> None:
     """Close the connection."""
     _persistent(service).connection = None
 
 
-def persistent_service_ok(service):
+def persistent_service_ok(service: PersistentService) -> bool | None:
     """T while the connection is open and the server there."""
     connection = _persistent(service).connection
     return True if connection is not None and connection.node.graph.services.get(connection.name) is connection else None
 
 
-def _persistent(service):
+def _persistent(service: object) -> PersistentService:
     return need(service, PersistentService, "ROSLISP:PERSISTENT-SERVICE")
 
 
-def call_named(service_name, service_symbol, return_field, *request):
+def call_named(service_name: Text, service_symbol: Symbol, return_field: Symbol | None, *request: object) -> Any:
     """What functions made by ``def-service-call`` do: call, and return the response or one field of it."""
     response = call_service(service_name, service_symbol, *request)
     if return_field is None:

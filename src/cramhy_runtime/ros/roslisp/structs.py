@@ -6,12 +6,12 @@ structs again. ``set-param`` takes one as well. Source: roslisp.md 8.1, the libr
 
 from __future__ import annotations
 
-from ...lisp import conditions
-from ...lisp.data import Cons, list_from
-from ...lisp.faces import define_face
-from ...lisp.packages import keyword, string_designator, sym
-from ...lisp.printer.printer import define_printer
-from ...lisp.printer.standard_printers import print_slots
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.ground.packages import keyword, string_designator, sym
+from cramhy_runtime.ground.printing import define_printer
+from cramhy_runtime.ground.printing import print_slots
+from cramhy_runtime.kernel.typing_names import Any
 
 
 class Struct:
@@ -20,36 +20,34 @@ class Struct:
     __slots__ = ("members",)
     lisp_name = "S-XML-RPC::XML-RPC-STRUCT"
 
-    def __init__(self, members):
+    def __init__(self, members: dict[str, Any]):
         self.members = members
 
 
-def xml_rpc_struct(*names_and_values):
+def xml_rpc_struct(*names_and_values: Any) -> Struct:
     """A new struct of alternating names (symbols or strings) and values."""
     if len(names_and_values) % 2:
         return conditions.error("An XML-RPC struct is made of names and values in turn, but the last name has no value.")
     return Struct({string_designator(name): value for name, value in zip(names_and_values[::2], names_and_values[1::2])})
 
 
-def xml_rpc_struct_alist(struct):
+def xml_rpc_struct_alist(struct: Struct) -> Cons | None:
     """Its members as an association list with keywords."""
     return list_from([Cons(keyword(name), value) for name, value in _checked(struct).members.items()])
 
 
-def get_xml_rpc_struct_member(struct, member):
+def get_xml_rpc_struct_member(struct: Struct, member: object) -> Any:
     """The value of a member, or nil when it has none of that name."""
     return _checked(struct).members.get(string_designator(member))
 
 
-def xml_rpc_struct_p(thing):
+def xml_rpc_struct_p(thing: object) -> bool | None:
     """T for structs."""
     return True if isinstance(thing, Struct) else None
 
 
-def _checked(struct):
+def _checked(struct: object) -> Struct:
     return struct if isinstance(struct, Struct) else conditions.type_error(struct, "S-XML-RPC:XML-RPC-STRUCT")
 
 
-define_face("S-XML-RPC", functions={"xml-rpc-struct": xml_rpc_struct, "xml-rpc-struct-alist": xml_rpc_struct_alist,
-                                    "get-xml-rpc-struct-member": get_xml_rpc_struct_member, "xml-rpc-struct-p": xml_rpc_struct_p})
 define_printer(Struct, lambda struct, stream: print_slots(sym(Struct.lisp_name), [("ALIST", xml_rpc_struct_alist(struct))], stream))

@@ -6,16 +6,22 @@ All waits here park, so in virtual time they take no time at all (law 5). Source
 from __future__ import annotations
 
 from ... import kernel
-from ...lisp.conditions import type_error
-from ...lisp.data import MultipleValues, Symbol, one, truth
-from ...lisp.evaluation.control import fdefinition
-from ...lisp.numbers.arithmetic import need_real
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import MultipleValues, Symbol, one, truth
+from cramhy_runtime.ground.functions import function_named
+from cramhy_runtime.ground.numbers import need_real
 from .. import graph
 from . import logging
 from .clock import ros_time
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T")
 
 
-def spin_until_ros_time_valid():
+def spin_until_ros_time_valid() -> None:
     """Wait until `ros_time` is above zero, looking every 0.05 s; a warning every 100 looks."""
     looks = 0
     while not ros_time() > 0:
@@ -25,7 +31,7 @@ def spin_until_ros_time_valid():
         kernel.sleep(0.05)
 
 
-def wait_duration(d):
+def wait_duration(d: float) -> bool:
     """Wait until ``d`` seconds of ROS time have passed; T."""
     seconds = float(need_real(d))
     node = graph.active().lisp_node
@@ -38,7 +44,7 @@ def wait_duration(d):
     return True
 
 
-def loop_at_most_every(d, body):
+def loop_at_most_every(d: float, body: Callable[[], object]) -> NoReturn:
     """Call ``body`` for ever, at most once per ``d`` seconds, the first time at once. It is left by a non-local exit."""
     period = float(need_real(d))
     while True:
@@ -48,7 +54,7 @@ def loop_at_most_every(d, body):
         kernel.sleep(rest)  # zero and less yields, so an endless loop can be ended
 
 
-def spin_until(test, increment, body=None, timeout=None):
+def spin_until(test: Callable[[], object], increment: float, body: Callable[[], object] | None = None, timeout: float | None = None) -> Any:
     """Call ``test`` every ``increment`` seconds and return its value when true; else call ``body``.
 
     When ``timeout`` seconds have passed: two values, NIL and T. The test is tried at least once.
@@ -66,11 +72,11 @@ def spin_until(test, increment, body=None, timeout=None):
         kernel.sleep(pause if end is None else max(0.0, min(pause, end - kernel.now())))
 
 
-def with_parallel_thread(function, name, body):
+def with_parallel_thread(function: Callable[[], object] | Symbol, name: str | None, body: Callable[[], T]) -> T:
     """Run ``function`` (or that of a symbol) in a task called ``name`` while ``body`` runs, then end it; the values of ``body``."""
     if isinstance(function, Symbol):
         name = name if name is not None else function.name
-        function = fdefinition(function)
+        function = function_named(function)
     if not callable(function):
         return type_error(function, "FUNCTION")
     task = kernel.spawn(function, name=str(name))

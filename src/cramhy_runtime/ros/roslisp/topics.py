@@ -10,16 +10,24 @@ from __future__ import annotations
 from collections import deque
 
 from ... import kernel
-from ...lisp import conditions
-from ...lisp.condition_types import Condition, Error, SimpleTypeError, formatted, shown
-from ...lisp.data import NO_VALUES, LispString, Symbol
-from ...lisp.format.format import format_to_string
-from ...lisp.objects.generic_errors import no_applicable_method, no_primary_method
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Condition, Error, SimpleTypeError, formatted, shown
+from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
+from cramhy_runtime.ground.printing import format_to_string
+from cramhy_runtime.ground.generic_errors import no_applicable_method, no_primary_method
 from ..messages import RosMessage, topic_class
 from ..topics import Publication
 from ..type_texts import same_on_the_wire
 from . import logging, node
 from .errors import close_names, ros_error
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cramhy_runtime.ground.data import MultipleValues
+    from ..graph import Node
+    from ..signatures import MessageType, Text, TypeName
 
 
 DELIVERY = ("ROSLISP", "DESERIALIZATION-THREAD")
@@ -37,17 +45,18 @@ class Subscription:
 
     lisp_name = "ROSLISP::SUBSCRIPTION"
 
-    def __init__(self, node, name, message_type, limit=None):
+    def __init__(self, node: Node, name: str, message_type: MessageType, limit: int | None = None):
         self.node, self.name, self.type, self.limit = node, name, message_type, limit
-        self.queue = deque(maxlen=limit)
-        self.callbacks = []
+        self.queue: deque[RosMessage] = deque(maxlen=limit)
+        self.callbacks: list[Subscriber] = []
         self.closed = False
-        self.message, self.remaining = None, []
-        self.task = None
+        self.message: RosMessage | None = None
+        self.remaining: list[Subscriber] = []
+        self.task: kernel.Task[object] | None = None
         self.task_name = f"Subscriber thread for topic {name}"
         self._handlers = [(Error, self._failed)]
 
-    def receive(self, message):
+    def receive(self, message: RosMessage) -> None:
         if self.task is not None:
             if len(self.queue) == self.limit:
                 logging.log_text(logging.DEBUG, DELIVERY, f"Dropped 1 messages on topic {self.name}")
@@ -57,17 +66,20 @@ class Subscription:
             self.message, self.remaining = message, list(self.callbacks)
             self.task = owner.spawn(self._run, name=self.task_name, parent=owner.main)
 
-    def spoiled(self, publication, message):
+    def spoiled(self, publication: Publication, message: RosMessage) -> None:
         """A message of another type came over the wire. roslisp's thread for the connection dies of it; we drop the message."""
-        logging.log_text(logging.DEBUG, DELIVERY, f"Dropped a {message.ros_type} that {publication.node.name} sent on {self.name}, "
-                         f"whose type is {self.type.ros_type}")
+        logging.log_text(
+            logging.DEBUG,
+            DELIVERY,
+            f"Dropped a {message.ros_type} that {publication.node.name} sent on {self.name}, whose type is {self.type.ros_type}",
+        )
 
-    def close(self):
+    def close(self) -> None:
         self.closed = True
         if self.task is not None and self.task is not kernel.current():
             self.task.cancel("the subscription ended")
 
-    def _run(self):
+    def _run(self) -> None:
         try:
             while self.queue or self.remaining:
                 try:
@@ -77,7 +89,7 @@ class Subscription:
         finally:
             self.message, self.remaining, self.task = None, [], None
 
-    def _deliver(self):
+    def _deliver(self) -> None:
         queue, callbacks = self.queue, self.callbacks
         while not self.closed:
             kernel.checkpoint()  # a callback may cause the next message, and that one the next, for ever
@@ -91,7 +103,7 @@ class Subscription:
         queue.clear()
         self.remaining = []
 
-    def _failed(self, condition):
+    def _failed(self, condition: Condition) -> None:
         logging.log_text(
             logging.ERROR,
             ("ROSLISP", "SERVICE", "TCP"),
@@ -105,20 +117,20 @@ class Subscriber:
     __slots__ = ("topic", "subscription", "callback")
     lisp_name = "ROSLISP::SUBSCRIBER"
 
-    def __init__(self, topic, subscription, callback):
+    def __init__(self, topic: str, subscription: Subscription, callback: Callable[[Any], object]):
         self.topic, self.subscription, self.callback = topic, subscription, callback
 
 
 # ------------------------------------------------------------------------------------------------------ roslisp's functions
 
 
-def _topic_name(topic, parameter="TOPIC"):
+def _topic_name(topic: object, parameter: str = "TOPIC") -> str:
     if not isinstance(topic, (str, LispString)):
         return conditions.type_error(topic, "STRING", f"\nwhen binding ROSLISP::{parameter}")
     return str(topic)
 
 
-def advertise(topic, topic_type, *, latch=None):
+def advertise(topic: Text, topic_type: TypeName, *, latch: bool | None = None) -> Publication | None:
     """Publish on ``topic`` from now on. Advertised already: the publication that is there, unchanged."""
     topic = _topic_name(topic)
     here = node.require_node()
@@ -130,27 +142,36 @@ def advertise(topic, topic_type, *, latch=None):
     return publication
 
 
-def _agrees_elsewhere(here, name, cls, operator):
+def _agrees_elsewhere(here: Node, name: str, cls: MessageType, operator: str) -> bool:
     """Whether the robot that the session is joined to, if it is, has messages of ``cls`` on the topic too; an error when it has not."""
     other = here.graph.type_elsewhere(name, cls) if here.graph.type_elsewhere is not None else None
     if other is None:
         return True
     kind, place = other
     call = f'({operator} "{name}" "{kind}")' if operator == "advertise" else f'({operator} "{name}" "{kind}" callback)'
-    ros_error("The topic ~a has messages of the type ~a at ~a, not ~a, so no message would arrive.", name, kind, place, cls.ros_type,
-              hint=f"Try {call}, or another topic. rostopic list, typed at the prompt, shows those of this session.")
+    ros_error(
+        "The topic ~a has messages of the type ~a at ~a, not ~a, so no message would arrive.",
+        name,
+        kind,
+        place,
+        cls.ros_type,
+        hint=f"Try {call}, or another topic. rostopic list, typed at the prompt, shows those of this session.",
+    )
     return False
 
 
-def _warn_of_listeners_to_another_type(publication):
+def _warn_of_listeners_to_another_type(publication: Publication) -> None:
     """Such a node complains on its own screen, where nobody looks who has just typed ``advertise``."""
     for subscription in publication.node.graph.topics[publication.name].visible_subscriptions:
         if not same_on_the_wire(subscription.type, publication.type):
-            conditions.warn("~a", f"{subscription.node.name} listens to {publication.name} for messages of type "
-                            f"{subscription.type.ros_type}, so it gets nothing of what is published there as {publication.type.ros_type}.")
+            conditions.warn(
+                "~a",
+                f"{subscription.node.name} listens to {publication.name} for messages of type "
+                f"{subscription.type.ros_type}, so it gets nothing of what is published there as {publication.type.ros_type}.",
+            )
 
 
-def unadvertise(topic):
+def unadvertise(topic: Text) -> int:
     """Stop publishing on ``topic``; 1. Not advertised: a warning."""
     here = node.require_node()
     name = here.resolve(_topic_name(topic))
@@ -160,47 +181,61 @@ def unadvertise(topic):
     return 1
 
 
-def publish(pub, message):
+def publish(pub: Publication | Text, message: RosMessage) -> int:
     """Send ``message`` on ``pub``, a publication or the name of an advertised topic; the number of subscribers reached."""
     publication = pub
     if publication.__class__ is not Publication:
         if not isinstance(pub, (str, LispString)):
-            advice = ("What (advertise topic type) returns is published on, or the name of an advertised topic. Has the function been "
-                      "called that advertises?")
+            advice = (
+                "What (advertise topic type) returns is published on, or the name of an advertised topic. Has the function been "
+                "called that advertises?"
+            )
             return no_primary_method("ROSLISP:PUBLISH", 3, pub, message, advice=advice)
         here = node.require_node()
         name = here.resolve(str(pub))
         publication = here.publications.get(name)
         if publication is None:
-            return ros_error("Unknown topic ~a", name, hint=lambda: close_names(
-                name, here.publications, f'One publishes on a topic that was advertised before: (advertise "{name}" type).'))
+            return ros_error(
+                "Unknown topic ~a",
+                name,
+                hint=lambda: close_names(
+                    name, here.publications, f'One publishes on a topic that was advertised before: (advertise "{name}" type).'
+                ),
+            )
     elif not publication.node.alive:
         here = node.require_node()
         publication = here.publications.get(publication.name, publication)
     if not isinstance(message, RosMessage):
-        return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERIALIZE", 2, message,
-                                    advice=f'What is published is a message: (make-msg "{publication.type.ros_type}" field value ...).')
+        return no_applicable_method(
+            "ROSLISP-MSG-PROTOCOL:SERIALIZE",
+            2,
+            message,
+            advice=f'What is published is a message: (make-msg "{publication.type.ros_type}" field value ...).',
+        )
     return publication.publish(message)
 
 
-def publication_type(pub):
+def publication_type(pub: Publication) -> MessageType:
     """The message class of a publication object (``publish-msg`` and ``make-publisher-msg`` build on it)."""
     if isinstance(pub, Publication):
         return pub.type
     text = f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION."
     return conditions.error(
         SimpleTypeError("~a", text, datum=pub, expected_type="ROSLISP::PUBLICATION"),
-        hint="This macro takes what (advertise topic type) returns. With a topic's name one writes (publish name (make-msg ...)).")
+        hint="This macro takes what (advertise topic type) returns. With a topic's name one writes (publish name (make-msg ...)).",
+    )
 
 
-def num_subscribers(pub):
+def num_subscribers(pub: Publication) -> int:
     """How many subscribers are connected to a publication object."""
     if not isinstance(pub, Publication):
         return conditions.type_error(pub, "ROSLISP::PUBLICATION", "\nwhen binding ROSLISP::PUB")
     return pub.subscribers
 
 
-def subscribe(topic, topic_type, callback, *, max_queue_length=None):
+def subscribe(
+    topic: Text, topic_type: TypeName, callback: Callable[[Any], object], *, max_queue_length: int | Symbol | None = None
+) -> Subscriber | None:
     """Have ``callback`` called with every message on ``topic``; returns a subscriber for `unsubscribe`.
 
     Waits until publishers that are there have accepted the connection. A type that cannot be found is a warning and NIL.
@@ -226,8 +261,9 @@ def subscribe(topic, topic_type, callback, *, max_queue_length=None):
         return None
     problem = _publishers_of_another_type(here, name, cls)
     if problem is not None:
-        conditions.warn("~a", f"Received error {problem} when attempting to setup subscription to {name} of type {cls.ros_type}, "
-                        "so not subscribing.")
+        conditions.warn(
+            "~a", f"Received error {problem} when attempting to setup subscription to {name} of type {cls.ros_type}, so not subscribing."
+        )
         return None
     first = subscription is None
     if first:
@@ -241,7 +277,7 @@ def subscribe(topic, topic_type, callback, *, max_queue_length=None):
     return subscriber
 
 
-def _publishers_of_another_type(here, name, cls):
+def _publishers_of_another_type(here: Node, name: str, cls: MessageType) -> str | None:
     """What the publishers of the topic say when none of them has messages of class ``cls``, else ``None``."""
     topic = here.graph.topics.get(name)
     publications = topic.visible_publications if topic is not None else []
@@ -250,11 +286,11 @@ def _publishers_of_another_type(here, name, cls):
     return publications[0].mismatch(here, cls)
 
 
-def _subscription(here, name):
+def _subscription(here: Node, name: str) -> Subscription | None:
     return next((entry for entry in here.subscriptions.get(name, ()) if isinstance(entry, Subscription)), None)
 
 
-def _type_or_warning(topic, topic_type):
+def _type_or_warning(topic: str, topic_type: TypeName) -> MessageType | None:
     def give_up(condition):
         shown_type = topic_type if isinstance(topic_type, str) else formatted("~a", (topic_type,))
         conditions.warn("~a", f"Couldn't lookup topic type {shown_type} for {topic}, so not subscribing.")
@@ -262,7 +298,7 @@ def _type_or_warning(topic, topic_type):
     return conditions.handler_case([(Error, give_up)], lambda: topic_class(topic_type))
 
 
-def _limit(length):
+def _limit(length: object) -> int | None:
     if length is None or isinstance(length, Symbol) and length.name == "INFTY":
         return None
     if length.__class__ is not int or length < 1:
@@ -270,7 +306,7 @@ def _limit(length):
     return length
 
 
-def unsubscribe(subscriber):
+def unsubscribe(subscriber: Subscriber) -> MultipleValues:
     """Remove the callback; the last one ends the subscription. Returns no values."""
     if not isinstance(subscriber, Subscriber):
         return conditions.type_error(subscriber, "ROSLISP::SUBSCRIBER", "\nwhen binding ROSLISP::SUBSCRIBER")

@@ -5,37 +5,45 @@ Source: roslisp.md 11. Init functions run by descending rank; equal ranks in the
 
 from __future__ import annotations
 
-from ...lisp import conditions
-from ...lisp.data import UNSUPPLIED, LispString, Symbol
-from ...lisp.evaluation.control import fdefinition
-from ...lisp.packages import intern, is_symbol, sym, symbol_name
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol
+from cramhy_runtime.ground.functions import function_named
+from cramhy_runtime.ground.packages import intern, is_symbol, sym, symbol_name
 from .. import graph
 from . import logging, node
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
-_init_functions: dict[Symbol, tuple] = {}
-_cleanup_functions: dict[Symbol, object] = {}
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
-def register_ros_init_function(symbol, rank=0):
+_init_functions: dict[Symbol, tuple[Callable[[], object], float]] = per_image({})
+_cleanup_functions: dict[Symbol, Callable[[], object]] = per_image({})
+
+
+def register_ros_init_function(symbol: Symbol, rank: float = 0) -> Callable[[], object]:
     """Run the function of ``symbol``, as it is now, in `startup_ros`; higher ranks come first. Returns the function."""
-    function = fdefinition(symbol)
+    function = function_named(symbol)
     _init_functions[symbol] = (function, rank if isinstance(rank, (int, float)) and rank is not True else 0)
     return function
 
 
-def register_ros_cleanup_function(symbol):
+def register_ros_cleanup_function(symbol: Symbol) -> Callable[[], object]:
     """Run the function of ``symbol``, as it is now, in `shutdown_ros`. Returns the function."""
-    function = _cleanup_functions[symbol] = fdefinition(symbol)
+    function = _cleanup_functions[symbol] = function_named(symbol)
     return function
 
 
-def forget_registrations():
+def forget_registrations() -> None:
     """Empty both registries (for tests, and for a session that starts over)."""
     _init_functions.clear()
     _cleanup_functions.clear()
 
 
-def startup_ros(*, master_uri=UNSUPPLIED, cmd_line_args=UNSUPPLIED, name="cram_hl", anonymous=True):
+def startup_ros(
+    *, master_uri: object = UNSUPPLIED, cmd_line_args: object = UNSUPPLIED, name: str = "cram_hl", anonymous: bool = True
+) -> None:
     """Start a node, after shutting down one that runs, and run the init functions; NIL."""
     if graph.active().lisp_node is not None:
         shutdown_ros()
@@ -46,7 +54,7 @@ def startup_ros(*, master_uri=UNSUPPLIED, cmd_line_args=UNSUPPLIED, name="cram_h
         function()
 
 
-def shutdown_ros():
+def shutdown_ros() -> None:
     """Run the cleanup functions and shut the node down."""
     for function in list(_cleanup_functions.values()):
         _announce("ROS cleanup", function)
@@ -54,26 +62,26 @@ def shutdown_ros():
     return node.shutdown_ros_node()
 
 
-def _announce(what, function):
+def _announce(what: str, function: object) -> None:
     logging.ros_log(logging.INFO, intern("ROSNODE", "ROSLISP-UTILITIES"), f"{what} ~a.", function)
 
 
 # ------------------------------------------------------------------------------------------------------------------- names
 
 
-def _package(package):
+def _package(package: Any) -> Any:
     return package if package is not None else sym("*PACKAGE*").value
 
 
-def _string(thing):
+def _string(thing: object) -> str:
     return str(thing) if isinstance(thing, (str, LispString)) else conditions.type_error(thing, "STRING")
 
 
-def _symbol_name(thing):
+def _symbol_name(thing: object) -> str:
     return symbol_name(thing) if is_symbol(thing) else conditions.type_error(thing, "SYMBOL")
 
 
-def lispify_ros_name(string, package=None):
+def lispify_ros_name(string: str, package: object = None) -> Symbol:
     """``"HelloWorld"`` → ``HELLO-WORLD``: a dash before each capital that follows a small letter or a digit."""
     text = _string(string)
     if not text:
@@ -86,17 +94,17 @@ def lispify_ros_name(string, package=None):
     return intern("".join(parts).upper(), _package(package))
 
 
-def rosify_lisp_name(symbol):
+def rosify_lisp_name(symbol: Symbol) -> str:
     """``HELLO-WORLD`` → ``"HelloWorld"``."""
     return "".join(part.capitalize() for part in _symbol_name(symbol).split("-"))
 
 
-def lispify_ros_underscore_name(string, package=None):
+def lispify_ros_underscore_name(string: str, package: object = None) -> Symbol:
     """``"foo_bar"`` → ``FOO-BAR``."""
     return intern(_string(string).replace("_", "-").upper(), _package(package))
 
 
-def rosify_underscores_lisp_name(symbol):
+def rosify_underscores_lisp_name(symbol: Symbol) -> str:
     """``FOO-BAR`` → ``"foo_bar"``; a name with a small letter is taken as it is."""
     name = _symbol_name(symbol)
     return name if any(character.islower() for character in name) else name.replace("-", "_").lower()

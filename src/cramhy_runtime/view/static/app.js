@@ -9,8 +9,10 @@ import { clock } from "./format.js";
 import { LogView } from "./log.js";
 import { ModulesView } from "./modules.js";
 import { PaceView } from "./pace.js";
+import { offerPanes } from "./panes.js";
 import { Pictures } from "./paper.js";
 import { Session } from "./session.js";
+import { offerSwitch } from "./settings.js";
 import { StatusView } from "./status.js";
 import { offerThemes } from "./theme.js";
 import { Timeline } from "./timeline.js";
@@ -22,10 +24,16 @@ const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? locati
 const STANDS = "Virtual time stands still while the prompt waits. Step lets some of it pass.";
 const IS_PAST = "This is a recording: what its turtles did is done, and they cannot be driven.";
 
-const doing = ({ recording, paused, busy }) => recording ? `replays ${recording}` : (paused ? "paused" : busy ? "a form runs" : "the prompt waits");
+// In a few words, what goes on; running: the task that runs now, or "".
+function doing({ recording, paused, busy }, running) {
+  if (recording) return `replays ${recording}`;
+  const what = paused ? "paused" : busy ? "a form runs" : "the prompt waits";
+  return running ? `${what}: ${running}` : what;
+}
 
 async function start() {
-  offerThemes(byId("theme"));
+  offerThemes(byId("theme"), byId("projector"));
+  offerPanes(document.querySelector("main"), byId("tabs"));
   const shapes = await fetch("shapes.json");
   if (!shapes.ok) throw new Error(`the server has no shapes.json (${shapes.status})`);
   const pictures = new Pictures(await shapes.json());
@@ -37,23 +45,29 @@ async function start() {
     connection: (...news) => status.connection(...news),
   });
   const world = new WorldView({
-    canvas: byId("paper"), empty: byId("empty"), turtles: byId("turtles"), pose: byId("pose"), strokes: session.strokes, pictures,
+    canvas: byId("paper"), empty: byId("empty"), turtles: byId("turtles"), pose: byId("pose"), where: byId("where"),
+    strokes: session.strokes, pictures,
   });
-  const tree = new TreeView({ tree: byId("tasks"), count: byId("tasks-count") });
+  const tree = new TreeView({ tree: byId("tasks"), none: byId("no-tasks"), count: byId("tasks-count"), follow: byId("follow") });
   const fluents = new FluentsView({ list: byId("fluents"), count: byId("fluents-count") });
   const modules = new ModulesView({ list: byId("modules") });
-  const log = new LogView({ list: byId("log"), level: byId("level") });
+  const log = new LogView({ scroller: byId("log"), list: byId("log").firstElementChild, level: byId("level") });
   const call = (service, args) => session.bridge.call(service, args);
   const pace = new PaceView({ pause: byId("pause"), step: byId("step"), size: byId("step-size"), speed: byId("speed"), call, failed });
   const timeline = new Timeline({ slider: byId("moment"), strip: byId("strip"), button: byId("live"), seek, live });
   const wheel = new Drive({ pad: byId("pad"), publish: drive, call, turtle: () => world.chosen });
   for (const name of ["clear", "reset"]) byId(name).addEventListener("click", () => call(wheel.namespace + name).catch(failed));
   byId("earlier").addEventListener("click", () => session.earlier());
+  for (const what of ["grid", "goals", "way"]) offerSwitch(byId(`show-${what}`), `show-${what}`, (on) => world.show(what, on));
+  offerSwitch(byId("fluents-all"), "fluents-all", (on) => (fluents.all = on));
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && !event.defaultPrevented && !status.hush() && past.stamp !== null) timeline.present();
+  });
 
   const shown = () => past.state ?? session.live;
   const moment = () => past.stamp ?? session.time;
   const panels = [
-    () => world.read(),
+    () => world.read(shown().modules),
     () => tree.render(shown(), moment()),
     () => fluents.render(shown(), moment(), past.state && session.history),
     () => modules.render(shown()),
@@ -61,7 +75,7 @@ async function start() {
     () => {
       pace.render(session.bridge.open ? session.live.pace : null);
       setText(byId("clock"), clock(moment()));
-      setText(byId("doing"), session.joined ? doing(session.live.pace) : "");
+      setText(byId("doing"), session.joined ? doing(session.live.pace, past.state ? "" : tree.running) : "");
       document.body.classList.toggle("replaying", Boolean(session.live.pace?.recording));
     },
     () => {
@@ -78,8 +92,10 @@ async function start() {
       world.tick(sample, performance.now());
       if (message.simulator !== wheel.simulator) wheel.enter(message.simulator);
     } else if (kind === "fluents") fluents.note(message);
-    else if (kind === "tasks" && message.complete && session.live.pace?.recording) log.forget(); // somebody sought
-    else if (kind === "pace") world.playback.rate = message.virtual ? message.speed : 1;
+    else if (kind === "tasks" && message.complete && session.live.pace?.recording) { // somebody sought
+      log.forget();
+      world.way.forget();
+    } else if (kind === "pace") world.playback.rate = message.virtual ? message.speed : 1;
   }
 
   function anew() {
@@ -92,6 +108,7 @@ async function start() {
 
   function older() {
     world.paper.forget();
+    world.way.restart(session.history.between("world", -Infinity, Infinity));
     if (past.stamp !== null) seek(past.stamp);
   }
 

@@ -1,6 +1,7 @@
-// Fluents with their values, and the recent past of each as a step line.
+// Fluents with their values, and the recent past of each as a step line. Those that process modules make for themselves are shown when
+// somebody asks.
 
-import { arrange, el, setText, svg } from "./dom.js";
+import { arrange, el, setAttribute, setText, svg } from "./dom.js";
 import { Series, WINDOW, numberOf } from "./series.js";
 
 const MOST = 80; // rows; of more, the ones that changed last
@@ -14,7 +15,8 @@ export class FluentsView {
     this.live = new Map(); // id → Series
     this.touched = new Map(); // id → stamp of the last change
     this.past = { state: null }; // the moment that is looked back at, with what was found out about the time before it
-    this.empty = el("li", { class: "nothing" }, "No fluent yet.");
+    this.all = false; // whether those are shown that the program did not make itself
+    this.empty = el("li", { class: "nothing" });
   }
 
   forget() {
@@ -36,12 +38,16 @@ export class FluentsView {
   render(state, now, history) {
     const { series, touched } = history ? this.#past(history, state, now) : { series: this.live, touched: this.touched };
     let fluents = [...state.fluents.values()];
-    setText(this.count, fluents.length ? String(fluents.length) : "");
+    const known = fluents.length;
+    if (!this.all) fluents = fluents.filter(({ internal }) => !internal);
+    setText(this.count, known ? (fluents.length < known ? `${fluents.length} of ${known}` : String(known)) : "");
+    setText(this.empty, known ? "The program has made no fluent. Process modules have." : "No fluent yet.");
+    const shown = new Set(fluents.map(({ id }) => id));
     if (fluents.length > MOST) {
       const latest = new Set([...fluents].sort((one, other) => (touched.get(other.id) ?? 0) - (touched.get(one.id) ?? 0)).slice(0, MOST));
       fluents = fluents.filter((fluent) => latest.has(fluent));
     }
-    for (const id of this.rows.keys()) if (!state.fluents.has(id)) this.rows.delete(id);
+    for (const id of this.rows.keys()) if (!shown.has(id)) this.rows.delete(id);
     const nodes = fluents.map((fluent) => this.#row(fluent, series.get(fluent.id), now, touched.get(fluent.id)));
     arrange(this.list, nodes.length ? nodes : [this.empty]);
   }
@@ -61,6 +67,7 @@ export class FluentsView {
     let row = this.rows.get(fluent.id);
     if (!row) this.rows.set(fluent.id, (row = newRow()));
     setText(row.name, fluent.name);
+    setAttribute(row.name, "title", fluent.name);
     setText(row.value, fluent.value);
     row.node.classList.toggle("fresh", changed != null && now - changed < 0.6);
     const d = series?.path(now, WIDTH, HEIGHT) ?? "";

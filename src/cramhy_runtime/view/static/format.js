@@ -29,3 +29,9 @@ export function decimal(number, places = 2) {
 }
 
 export const plural = (count, one, many = `${one}s`) => `${count.toLocaleString("en")} ${count === 1 ? one : many}`;
+
+// "[GOAL-PERFORM] (GOAL (PERFORM #<A MOTION ...>)), call 2" as "[PERFORM] #<A MOTION ...>, call 2": there is one line for it.
+export function shortName(name) {
+  const goal = /^\[GOAL-([^\]]+)\] \(GOAL \((\S+) (.*)$/s.exec(name);
+  return goal && goal[1] === goal[2] ? `[${goal[1]}] ${goal[3].replace(/\)\)(, call \d+)?$/, "$1")}` : name;
+}

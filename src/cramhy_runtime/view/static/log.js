@@ -8,8 +8,9 @@ const LEVELS = [[16, "fatal"], [8, "error"], [4, "warn"], [2, "info"], [1, "debu
 const levelOf = (number) => LEVELS.find(([least]) => number >= least)?.[1] ?? "debug";
 
 export class LogView {
-  constructor({ list, level }) {
-    this.list = list;
+  // The element that scrolls and the list in it; the choice of the least level.
+  constructor({ scroller, list, level }) {
+    Object.assign(this, { scroller, list });
     this.lines = []; // {stamp of plan time, level, name, msg, node}
     this.fresh = [];
     this.least = Number(level.value);
@@ -35,13 +36,13 @@ export class LogView {
 
   // Show the lines until the time `until`; Infinity for all.
   render(until) {
-    const { list } = this;
+    const { scroller, list } = this;
     if (until !== this.until) {
       this.until = until;
       this.#filter();
     }
     if (!this.fresh.length) return;
-    const atEnd = list.scrollHeight - list.scrollTop - list.clientHeight < 24;
+    const atEnd = scroller.scrollHeight - scroller.scrollTop - scroller.clientHeight < 24;
     const lines = this.fresh.splice(0, BURST);
     for (const line of lines) {
       line.node = row(line);
@@ -50,7 +51,7 @@ export class LogView {
     list.append(...lines.map(({ node }) => node));
     this.lines.push(...lines);
     while (this.lines.length > MOST) this.lines.shift().node.remove();
-    if (atEnd) list.scrollTop = list.scrollHeight;
+    if (atEnd) scroller.scrollTop = scroller.scrollHeight;
   }
 
   #visible(line) {
@@ -59,7 +60,7 @@ export class LogView {
 
   #filter() {
     for (const line of this.lines) line.node.hidden = !this.#visible(line);
-    this.list.scrollTop = this.list.scrollHeight;
+    this.scroller.scrollTop = this.scroller.scrollHeight;
   }
 }
 

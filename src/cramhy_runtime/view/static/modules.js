@@ -26,6 +26,7 @@ export class ModulesView {
     row.module = module;
     row.node.dataset.state = module.state;
     setText(row.name, module.name);
+    setAttribute(row.name, "title", module.name);
     setText(row.state, module.state.toLowerCase());
     setText(row.executes, module.executes || "executes nothing");
     row.executes.classList.toggle("idle", !module.executes);

@@ -4,14 +4,16 @@
 
 export const SIZE = 500; // pixels of the original's paper
 export const METRE = 45;
+export const EXTENT = SIZE / METRE; // m, of the world
 const SCALE = 2; // of ours
 const EDGE = SIZE - 1;
 const COPIES = 6;
 const BETWEEN_COPIES = 5000; // lines
 const BOX = 1.5; // m, the side of a turtle's picture
 
-const place = (x) => (x * METRE + 0.5) * SCALE;
-const placeUp = (y) => (EDGE - y * METRE + 0.5) * SCALE;
+// Where a coordinate of the world lies, in pixels of the original's paper.
+export const place = (x) => x * METRE + 0.5;
+export const placeUp = (y) => EDGE - y * METRE + 0.5;
 
 const sheet = () => Object.assign(document.createElement("canvas"), { width: SIZE * SCALE, height: SIZE * SCALE });
 
@@ -99,10 +101,10 @@ export class Paper {
         x = NaN;
       }
       const at = index * 4;
-      if (xy[at] !== x || xy[at + 1] !== y) pen.moveTo(place(xy[at]), placeUp(xy[at + 1]));
+      if (xy[at] !== x || xy[at + 1] !== y) pen.moveTo(place(xy[at]) * SCALE, placeUp(xy[at + 1]) * SCALE);
       x = xy[at + 2];
       y = xy[at + 3];
-      pen.lineTo(place(x), placeUp(y));
+      pen.lineTo(place(x) * SCALE, placeUp(y) * SCALE);
     }
     if (before >= 0) pen.stroke();
   }
@@ -139,12 +141,14 @@ export class Pictures {
   }
 }
 
-// Draw the paper and the turtles into `pen`, a square of `side` device pixels. `chosen` is the name of the turtle that gets a ring.
-export function drawWorld(pen, side, paper, turtles, pictures, chosen) {
-  const metre = (side / SIZE) * METRE;
-  const factor = side / SIZE / SCALE;
+// Draw the paper and the turtles into `pen`, a square of `side` device pixels. `chosen` is the name of the turtle that gets a ring; marks()
+// draws what lies between paper and turtles.
+export function drawWorld(pen, side, paper, turtles, pictures, chosen, marks = () => {}) {
+  const factor = side / SIZE;
+  const metre = factor * METRE;
   pen.setTransform(1, 0, 0, 1, 0, 0);
   pen.drawImage(paper.canvas, 0, 0, side, side);
+  marks();
   const named = turtles.length > 1;
   for (const turtle of turtles) {
     const { x, y, theta } = turtle;

@@ -21,8 +21,11 @@ export class StatusView {
 
   // One of the STATES of a connection; detail: what the session said when it refused.
   connection(state, detail) {
-    this.pill.dataset.state = state;
-    setText(this.pill, NAMES[state]);
+    const again = state === STATES.CONNECTING && this.pill.dataset.state === STATES.LOST; // each attempt would be read out
+    if (!again) {
+      this.pill.dataset.state = state;
+      setText(this.pill, NAMES[state]);
+    }
     if (state === STATES.LOST) setText(this.banner, LOST);
     if (state === STATES.REFUSED) setText(this.banner, `The session does not let this page in${detail ? `: ${detail.replace(/\.$/, "")}` : ""}. ${REFUSED}`);
     if (state !== STATES.CONNECTING) this.banner.hidden = state === STATES.OPEN;
@@ -38,6 +41,13 @@ export class StatusView {
     this.notice.dataset.kind = kind;
     setText(this.notice, text);
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => setText(this.notice, ""), NOTICE);
+    this.timer = setTimeout(() => this.hush(), NOTICE);
+  }
+
+  // Take back what is said now; whether something was.
+  hush() {
+    const said = this.notice.textContent !== "";
+    setText(this.notice, "");
+    return said;
   }
 }

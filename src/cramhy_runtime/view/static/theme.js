@@ -1,29 +1,21 @@
-// Light or dark: as the system says, until somebody chooses.
+// Light or dark: as the system says, until somebody chooses. For a projector in either of them: large type and high contrast.
 
 import { setText } from "./dom.js";
+import { keep, kept, offerSwitch } from "./settings.js";
 
 const THEMES = ["auto", "light", "dark"];
-const KEY = "cramhy-theme";
 
-export function offerThemes(button) {
-  let theme = "auto";
-  try {
-    theme = localStorage.getItem(KEY) ?? theme;
-  } catch {
-    // a browser that keeps nothing for pages: then the choice lasts as long as the page
-  }
+export function offerThemes(button, projector) {
+  let theme;
   const enter = (chosen) => {
     theme = THEMES.includes(chosen) ? chosen : "auto";
     document.documentElement.dataset.theme = theme;
     setText(button.lastElementChild, theme);
   };
-  enter(theme);
+  enter(kept("theme", "auto"));
   button.addEventListener("click", () => {
     enter(THEMES[(THEMES.indexOf(theme) + 1) % THEMES.length]);
-    try {
-      localStorage.setItem(KEY, theme);
-    } catch {
-      // as above
-    }
+    keep("theme", theme);
   });
+  offerSwitch(projector, "projector", (on) => document.documentElement.toggleAttribute("data-projector", on));
 }

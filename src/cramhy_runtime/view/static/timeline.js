@@ -56,7 +56,8 @@ export class Timeline {
   #mark(value = this.past ?? this.range.end) {
     setAttribute(this.button, "aria-pressed", String(this.past === null));
     this.button.hidden = Boolean(this.recording);
-    const text = this.past === null ? `${clock(value)}, live` : `${clock(value)} of ${clock(this.range.end)}`;
+    // Live it does not change, since a reader of the screen would say every change.
+    const text = this.past === null && !this.recording ? "live" : `${clock(value)} of ${clock(this.range.end)}`;
     setAttribute(this.slider, "aria-valuetext", text);
   }
 

@@ -1,9 +1,10 @@
 // The task tree: what every task of the plans does, since when, what it waits for and where in the text. One line per task, kept
 // from one look to the next, so that only what has changed is touched. It is an ARIA tree: one stop for the tabulator, arrow keys within.
+// What runs now is marked and kept in sight, until somebody scrolls or walks in the tree; the button brings that back.
 
 import { arrange, el, setAttribute, setText, svg } from "./dom.js";
-import { duration, plural } from "./format.js";
-import { alive, outline } from "./outline.js";
+import { duration, plural, shortName } from "./format.js";
+import { alive, foremost, outline } from "./outline.js";
 import { told } from "./state.js";
 
 const MARKS = {
@@ -17,17 +18,20 @@ const MARKS = {
 };
 
 export class TreeView {
-  constructor({ tree, count }) {
-    Object.assign(this, { tree, count });
+  constructor({ tree, none, count, follow }) {
+    Object.assign(this, { tree, none, count, follow });
     this.rows = new Map(); // key → row
     this.choices = new Map();
     this.wide = new Set();
     this.shown = [];
     this.current = null; // key of the row that has the tabulator's stop
-    this.empty = el("p", { class: "nothing" }, "No plan has run yet. ", el("code", {}, "(top-level …)"), " starts one.");
+    this.now = null; // the row of what runs now
     tree.addEventListener("keydown", (event) => this.#key(event));
     tree.addEventListener("click", (event) => this.#click(event));
     tree.addEventListener("focusin", ({ target }) => this.#stop(target.closest("[role=treeitem]")?.dataset.key));
+    for (const way of ["wheel", "touchmove", "pointerdown", "focusin"]) tree.addEventListener(way, () => this.#follow(false), { passive: true });
+    follow.addEventListener("click", () => this.#follow(!this.follows));
+    this.#follow(true);
   }
 
   // Another session begins: its tasks have nothing to do with those of before, though they be numbered alike.
@@ -39,17 +43,42 @@ export class TreeView {
   // state: a State. now: plan time, s.
   render(state, now) {
     this.state = state;
-    this.now = now;
+    this.time = now;
     const rows = (this.shown = outline(state.tasks, this.choices, this.wide));
     const keys = new Set(rows.map(({ key }) => key));
     const focused = this.tree.contains(document.activeElement);
     for (const key of this.rows.keys()) if (!keys.has(key)) this.rows.delete(key);
     if (!keys.has(this.current)) this.current = rows[0]?.key ?? null;
-    arrange(this.tree, rows.length ? rows.map((row) => this.#row(row).node) : [this.empty]);
+    arrange(this.tree, rows.map((row) => this.#row(row).node));
+    this.tree.hidden = !rows.length;
+    this.none.hidden = rows.length > 0;
     if (focused && !this.tree.contains(document.activeElement)) this.rows.get(this.current)?.node.focus({ preventScroll: true });
     let running = 0;
     for (const task of state.tasks.values()) running += alive(task);
     setText(this.count, state.tasks.size ? `${running} alive, ${state.tasks.size - running} ended` : "");
+    this.now = foremost(rows) ?? null;
+    if (this.follows) this.#show();
+  }
+
+  // What runs now, in a few words; "" when nothing does.
+  get running() {
+    return this.now ? shortName(this.now.task.name) : "";
+  }
+
+  #follow(on) {
+    this.follows = on;
+    setAttribute(this.follow, "aria-pressed", String(on));
+    if (on) this.#show();
+  }
+
+  // Scroll as little as is needed to have what runs now in sight.
+  #show() {
+    const node = this.now && this.rows.get(this.now.key)?.node;
+    if (!node) return;
+    const { tree } = this;
+    const [top, bottom] = [node.offsetTop, node.offsetTop + node.offsetHeight];
+    if (top < tree.scrollTop) tree.scrollTop = top;
+    else if (bottom > tree.scrollTop + tree.clientHeight) tree.scrollTop = bottom - tree.clientHeight;
   }
 
   #row(row) {
@@ -62,16 +91,20 @@ export class TreeView {
       known.level = row.level;
       node.style.setProperty("--level", Math.min(row.level - 1, 12));
     }
+    setAttribute(node, "aria-posinset", row.index);
+    setAttribute(node, "aria-setsize", row.of);
     if (row.task) this.#fill(known, row);
-    else setText(known.text, `${plural(row.hidden, "task")} more that ended`);
+    else {
+      setText(known.text, `${plural(row.hidden, "task")} more that ended`);
+      setAttribute(node, "aria-expanded", String(row.open));
+    }
     return known;
   }
 
-  #fill(known, { task, index, of, children, open }) {
+  #fill(known, { task, children, open, now }) {
     const { node, name, operator, waits, place, time } = known;
     setAttribute(node, "aria-expanded", children ? String(open) : null);
-    setAttribute(node, "aria-posinset", index);
-    setAttribute(node, "aria-setsize", of);
+    setAttribute(node, "aria-current", now ? "true" : null);
     if (known.task !== task) {
       known.task = task;
       const doing = stateOf(task);
@@ -80,13 +113,15 @@ export class TreeView {
         known.mark.setAttribute("d", MARKS[doing] ?? MARKS.CREATED);
         setText(known.state, doing.toLowerCase());
       }
-      setText(name, task.name);
+      setText(name, shortName(task.name));
+      setAttribute(name, "title", task.name);
       setText(operator, task.operator && !task.name.includes(task.operator) ? task.operator.toLowerCase() : "");
       setText(waits, remark(task));
+      setAttribute(waits, "title", remark(task) || null);
       setText(place, task.place.replace(/^.*[/\\]/, ""));
       setAttribute(place, "title", task.place || null);
     }
-    setText(time, told(task.began) ? duration(Math.max(0, (told(task.ended) ? task.ended : this.now) - task.began)) : "");
+    setText(time, told(task.began) ? duration(Math.max(0, (told(task.ended) ? task.ended : this.time) - task.began)) : "");
   }
 
   #click(event) {
@@ -99,9 +134,12 @@ export class TreeView {
 
   #toggle(key, open) {
     const row = this.shown.find((one) => one.key === key);
-    if (row?.hidden) this.wide.add(row.parent);
-    else if (row?.children) this.choices.set(key, open ?? !row.open);
-    this.render(this.state, this.now);
+    if (!row) return;
+    const opens = open ?? !row.open;
+    if (row.hidden && opens) this.wide.add(row.parent);
+    else if (row.hidden) this.wide.delete(row.parent);
+    else if (row.children) this.choices.set(key, opens);
+    this.render(this.state, this.time);
   }
 
   #key(event) {
@@ -117,10 +155,11 @@ export class TreeView {
       End: () => this.#go(this.shown.length - 1),
       ArrowRight: () => (row.open ? this.#go(at + 1) : this.#toggle(row.key, true)),
       ArrowLeft: () => (row.open ? this.#toggle(row.key, false) : this.#go(above)),
+      Escape: () => this.#follow(true),
       Enter: () => this.#toggle(row.key),
       " ": () => this.#toggle(row.key),
     };
-    if (!actions[event.key]) return;
+    if (!actions[event.key] || (event.key === "Escape" && this.follows)) return;
     event.preventDefault();
     actions[event.key]();
   }
@@ -166,8 +205,8 @@ function taskRow(key) {
 }
 
 function moreRow(key) {
-  const text = el("span");
-  const node = el("div", { role: "treeitem", class: "task rest" }, text);
+  const text = el("span", { class: "text" });
+  const node = el("div", { role: "treeitem", class: "task rest" }, el("span", { class: "twist", "aria-hidden": "true" }), text);
   node.dataset.key = key;
   return { node, text };
 }

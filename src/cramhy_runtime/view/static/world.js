@@ -1,18 +1,25 @@
 // The world as it is seen: the canvas with paper and turtles, the turtle that is chosen, and where it is. Live, the picture follows the
-// ticks smoothly; of the past it shows one moment.
+// ticks smoothly; of the past it shows one moment. Grid, goals and way can be shown with it, and where the pointer is.
 
 import { arrange, el, setAttribute, setText, svg } from "./dom.js";
 import { decimal } from "./format.js";
+import { WaySheet, drawGoals, drawGrid, drawing } from "./marks.js";
 import { Paper, drawWorld, toWorld } from "./paper.js";
 import { Playback } from "./playback.js";
+import { Way } from "./way.js";
 
 const NEAR = 0.7; // m from a turtle, within which a click means it
+const TYPE = 0.75; // of the page's letters: those on the paper
 const ORDER = new Intl.Collator("en", { numeric: true }); // turtle2 before turtle10
 
 export class WorldView {
   // The elements of the page, the strokes, the pictures.
-  constructor({ canvas, empty, turtles, pose, strokes, pictures }) {
-    Object.assign(this, { canvas, empty, list: turtles, strokes, pictures });
+  constructor({ canvas, empty, turtles, pose, where, strokes, pictures }) {
+    Object.assign(this, { canvas, empty, list: turtles, where, strokes, pictures });
+    this.way = new Way();
+    this.sheet = new WaySheet(this.way);
+    this.goals = [];
+    this.shows = {}; // "grid", "goals", "way" → whether it is shown
     this.pen = canvas.getContext("2d", { alpha: false });
     this.paper = new Paper(strokes);
     this.playback = new Playback();
@@ -25,17 +32,27 @@ export class WorldView {
     new ResizeObserver(() => this.#fit()).observe(canvas);
     canvas.addEventListener("click", (event) => this.#pick(event));
     turtles.addEventListener("keydown", (event) => this.#step(event));
+    canvas.addEventListener("pointermove", (event) => this.#point(event));
+    for (const end of ["pointerleave", "pointercancel"]) canvas.addEventListener(end, () => (where.hidden = true));
+  }
+
+  // Whether the grid, the goals or the way is shown.
+  show(what, on) {
+    this.shows[what] = on;
+    this.dirty = true;
   }
 
   // A tick {stamp, turtles, strokes, epoch} of the live world.
   tick(sample, arrival) {
     this.playback.push(sample, arrival);
+    this.way.note(sample.stamp, sample.turtles);
     if (this.strokes.full) this.paper.settle(); // also while nobody draws: the page is hidden, or the past is looked at
   }
 
   forget() {
     this.playback.clear();
     this.paper.forget();
+    this.way.forget();
     this.dirty = true;
   }
 
@@ -53,11 +70,28 @@ export class WorldView {
     if (!this.dirty && !changed && sample === this.shown) return;
     this.dirty = false;
     this.shown = sample;
-    drawWorld(this.pen, this.canvas.width, this.paper, sample.turtles, this.pictures, this.chosen);
+    drawWorld(this.pen, this.canvas.width, this.paper, sample.turtles, this.pictures, this.chosen, () => this.#marks(sample));
   }
 
-  // The read-out beside the paper; less often than the picture.
-  read() {
+  #marks({ stamp, epoch }) {
+    const { grid, goals, way } = this.shows;
+    const side = this.canvas.width;
+    const letters = parseFloat(getComputedStyle(this.canvas).fontSize) * TYPE * (side / Math.max(1, this.canvas.clientWidth));
+    const paper = drawing(this.pen, side, epoch?.colour ?? [0, 0, 0], letters);
+    if (grid) drawGrid(paper);
+    if (way) this.sheet.show(paper, epoch?.stamp ?? -Infinity, stamp);
+    if (goals) drawGoals(paper, this.goals);
+  }
+
+  // The read-out beside the paper, and the goals of `modules`; less often than the picture.
+  read(modules) {
+    const goals = modules.flatMap((module) => pairs(module.goals ?? []));
+    if (JSON.stringify(goals) !== JSON.stringify(this.goals)) this.dirty = true;
+    this.goals = goals;
+    this.#tell();
+  }
+
+  #tell() {
     const turtles = this.shown?.turtles ?? [];
     this.empty.hidden = !this.shown || turtles.length > 0;
     if (turtles.length && !turtles.some((turtle) => turtle.name === this.chosen)) this.choose(turtles[0].name);
@@ -112,7 +146,7 @@ export class WorldView {
     if (!step || !names.length) return;
     event.preventDefault();
     this.choose(names[(names.indexOf(this.chosen) + step + names.length) % names.length]);
-    this.read();
+    this.#tell();
     this.chips.get(this.chosen)?.focus();
   }
 
@@ -126,6 +160,14 @@ export class WorldView {
     if (near.length) this.choose(near[0].name);
   }
 
+  // Tell where the pointer is in the world.
+  #point(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const { x, y } = toWorld((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
+    this.where.hidden = false;
+    setText(this.where, `x ${decimal(x)}  y ${decimal(y)}`);
+  }
+
   // As many pixels as the screen has for it.
   #fit() {
     const side = Math.max(1, Math.round(this.canvas.clientWidth * Math.min(window.devicePixelRatio || 1, 3)));
@@ -134,6 +176,9 @@ export class WorldView {
     this.dirty = true;
   }
 }
+
+// [x, y, x, y ...] as points.
+const pairs = (numbers) => Array.from({ length: numbers.length >> 1 }, (_, at) => ({ x: numbers[2 * at], y: numbers[2 * at + 1] }));
 
 function readings(list) {
   const text = {

@@ -1,0 +1,570 @@
+"""Fluents: cells whose changes others can observe, and nets of cells computed from cells.
+
+A fluent is CRAM's means of communication between branches: a robot's pose, a flag, "the goal is near". Changing one *pulses*
+it; a pulse wakes whoever waits, recomputes the nets built over it, and calls its callbacks, all before the assignment returns
+and all in the task that assigned. A net is made by applying an operator to a fluent, ``(< distance 0.5)``, and is a fluent
+again; see ``operators.py``. Waiting is in ``tasks/waiting.py``.
+
+One task runs at a time, so there are no locks. Inputs hold their nets weakly: a net that nobody needs disappears, and its input
+forgets it at the next pulse. Methods that users define on ``value``, ``pulse`` and so on are entered by
+``languages/commonlisp/faces/cpl/user_methods.py``.
+
+Source: cpl.md section 2. Repaired: a net whose first computation fails leaves nothing behind on its inputs; an error in one
+observer no longer keeps the others from being told; a net whose function lets other tasks run never keeps a value of the past;
+``fl-value-changed`` applies its key always.
+"""
+
+from __future__ import annotations
+
+import itertools
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, TypeVar, overload, subscripted
+from weakref import WeakKeyDictionary, ref
+
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.images import Cell
+from cramhy_runtime.kernel.tasks import shield
+
+from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.ground.conditions import SimpleTypeError, error, from_python, program_error
+from cramhy_runtime.ground.data import MultipleValues, Symbol, lisp_list, one, truth
+from cramhy_runtime.ground.equality import eql
+from cramhy_runtime.ground import functions
+from cramhy_runtime.ground.source_places import circumstance, locate
+from cramhy_runtime.ground.classes import make_instance
+from cramhy_runtime.ground.classes import find_class_or_error
+from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.printing import prin1_to_string, princ_to_string
+from ..failures.failure_types import CompositeFailure
+from ..hooks import on_make_fluent_hook
+from ..symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable
+
+    from ..signatures import Dependent, Name, Same
+    from .notation import Notation
+else:
+    Notation = Generic
+
+T = TypeVar("T", default=Any)
+T_co = TypeVar("T_co", covariant=True, default=Any)
+A = TypeVar("A")
+F = TypeVar("F", bound="Fluent[object]")
+C = TypeVar("C", bound="Callable[..., object]")
+_count = itertools.count(1)
+_class_watchers: list[Callable[[type[Fluent[object]]], object]] = []
+
+
+def when_class_made(function):
+    """Decorator: call ``function(cls)`` with each class of fluents that is made from now on."""
+    _class_watchers.append(function)
+    return function
+
+
+class Fluent(Notation[T_co]):
+    """What all fluents share: a name, a pulse counter, callbacks, nets computed from it, and tasks that wait for it.
+
+    ``value`` reads (and may consume, see ``pulse_fluents.py``), ``peek`` reads without side effects. What Python's operators make of
+    fluents is in ``python_operators.py``; what type checkers know of that is in ``notation.pyi``.
+    """
+
+    __slots__ = ("_name", "number", "pulses", "waiters", "callbacks", "nets", "sheltered", "__weakref__")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FLUENT"
+    prefix = "FLUENT-"
+    careful = False
+    foreign = False  # whether reading it calls functions of the user
+    __class_getitem__ = subscripted
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        for watcher in _class_watchers:
+            watcher(cls)
+
+    def __init__(self, name: Name | None = None):
+        self._name = name
+        self.number = next(_count)
+        self.pulses = 0
+        self.waiters: dict[kernel.Task[object], bool] | tuple[()] = ()
+        self.callbacks: dict[Hashable, Callable[[Any], object]] | None = None
+        self.nets: list[ref[Dependent]] | tuple[()] = ()
+        self.sheltered = False  # while its nets are told, no request to end arrives
+
+    @property
+    def name(self) -> Name:
+        """A symbol or string; made up, ``FLUENT-<n>``, when none was given."""
+        if self._name is None:
+            self._name = Symbol(f"{self.prefix}{self.number}")
+        return self._name
+
+    def read(self) -> T_co:
+        """For a class of a user that has no method for ``value``."""
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:VALUE", None, self)
+
+    peek = read
+    if not TYPE_CHECKING:
+        value = property(lambda self: self.read(), doc="The current value; reading may consume a pulse.")
+
+    def pulse(self) -> None:
+        """Tell the observers. The value does not change by it; who waits for a value that is ``nil`` goes on waiting."""
+        self.pulses += 1
+        if self.waiters or self.nets or self.callbacks:
+            self._notify(self.peek())
+
+    def _notify(self, value: Any) -> None:
+        if not self.nets and not self.callbacks:  # as a rule only tasks wait
+            if truth(value):
+                for task in self.waiters:
+                    task.kernel.unpark(task)
+        elif self.callbacks or self.sheltered:
+            with shield(kernel.current()):
+                self._tell(value)
+        else:
+            self._tell(value)
+
+    def _tell(self, value: Any) -> None:
+        callbacks = self.callbacks and list(self.callbacks.items())
+        problem: BaseException | None = None
+        if self.waiters and truth(value):
+            for task in self.waiters:
+                task.kernel.unpark(task)
+        if self.nets:
+            stale = False
+            for reference in tuple(self.nets):
+                net = reference()
+                if net is None:
+                    stale = True
+                    continue
+                try:
+                    net.input_pulsed()
+                except BaseException as raised:  # the others must hear of the pulse before it goes on
+                    problem = raised if problem is None else _graver(problem, raised)
+            if stale:
+                self.nets = [reference for reference in self.nets if reference() is not None]
+        if callbacks:
+            for name, callback in reversed(callbacks):
+                try:
+                    _call_back(callback, value, name, self)
+                except BaseException as raised:
+                    problem = raised if problem is None else _graver(problem, raised)
+        if problem is not None:
+            raise problem
+
+    def awaited(self) -> str:
+        """What a task that waits for it waits for, as text."""
+        return f"the fluent {prin1_to_string(self)}"
+
+    def attach(self, net: Dependent) -> None:
+        """Have ``net`` told of pulses, as long as somebody else holds it."""
+        if net.careful:
+            self.sheltered = True
+        nets = self.nets
+        if not nets:
+            self.nets = [ref(net)]
+            return
+        count = len(nets)
+        if count >= 32 and not count & (count - 1):  # an input that never pulses must not collect dead nets for ever
+            nets[:] = [reference for reference in nets if reference() is not None]
+        nets.append(ref(net))
+
+    def living_nets(self) -> list[Dependent]:
+        return [net for net in (reference() for reference in self.nets) if net is not None]
+
+    def __repr__(self):
+        return f"#<FLUENT {getattr(self.name, 'name', self.name)}>"
+
+
+@circumstance(lambda here: f"in the callback {princ_to_string(here['name'])} of {_shown(here['fluent'])}")
+def _call_back(function, value, name, fluent):
+    function(value)
+
+
+def _graver(first, second):
+    """Which of two exceptions of observers goes on: an error before a mere exit, else the first. It takes the other error along."""
+    if not isinstance(second, (Condition, Exception)):
+        return first
+    if not isinstance(first, (Condition, Exception)):
+        return first if isinstance(first, (kernel.Cancelled, kernel.Interrupted, kernel.Abandoned)) else second
+    condition, other = from_python(first), from_python(second)
+    locate(other, second)
+    if isinstance(condition, CompositeFailure):
+        circumstance.add(condition, f"Another observer failed, too: {other}")
+    else:
+        condition.beside = [*getattr(condition, "beside", ()), ("Another observer failed, too", other)]
+    return first
+
+
+def _shown(fluent):
+    return f"the fluent {princ_to_string(fluent.name)}"
+
+
+def _shown_net(net):
+    """The name of a net and of what it is computed from, for the reports of errors."""
+    names = [princ_to_string(fluent.name) for fluent in net.inputs]
+    over = f" over the fluent{'s' * (len(names) > 1)} {' and '.join(names)}" if names else ""
+    return f"the net {princ_to_string(net.name)}{over}"
+
+
+class ValueFluent(Fluent[T]):
+    """A fluent that stores a value. Assign with `set` or ``fluent.value = x``."""
+
+    __slots__ = ("stored", "test")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::VALUE-FLUENT"
+
+    def __init__(self, name: Name | None = None, value: T = None, test: Same[T] | Symbol | None = None):  # type: ignore[assignment]
+        self.stored = value
+        self.test = None if test is None else function_of(test)
+        super().__init__(name)
+
+    def read(self) -> T:
+        return self.stored
+
+    peek = read
+
+    def stores(self, new: T) -> bool:
+        """Store ``new`` unless the test says that nothing changed; whether it did."""
+        if truth(eql(self.stored, new)) if self.test is None else self._same(new):
+            return False
+        self.stored = new
+        return True
+
+    def set(self, new: T) -> T:
+        """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
+        if self.test is None:
+            old = self.stored
+            if old is new:
+                return new
+            if (old.__class__ is new.__class__ or old is False or new is False) and eql(old, new):  # of two classes only False is nil
+                return new
+        elif self._same(new):
+            return new
+        self.stored = new
+        self.pulses += 1
+        if self.waiters or self.nets or self.callbacks:
+            self._notify(new)
+        return new
+
+    def _same(self, new: T) -> bool:
+        """What the user's test says, of the value that is stored when it has said it: it may have let others assign."""
+        while True:
+            old = self.stored
+            same = truth(one(self.test(old, new)))
+            if self.stored is old:
+                return same
+
+    if TYPE_CHECKING:
+
+        @property
+        def value(self) -> T:
+            """The stored value; assigning pulses if it changes something."""
+
+        @value.setter
+        def value(self, new: T) -> None: ...
+    else:
+        value = property(read, set, doc="The stored value; assigning pulses if it changes something.")
+
+    def __repr__(self) -> str:
+        return f"#<FLUENT {getattr(self.name, 'name', self.name)} [{self.stored!r}]>"
+
+
+class Net(Fluent[T_co]):
+    """A fluent computed by ``formula()`` from ``inputs``, its fluents.
+
+    ``careful`` says that the formula calls a function of the user, which may let other tasks run. Then no request to end arrives
+    while the inputs tell this net of a pulse, and what was computed from values of the past does not count.
+    """
+
+    __slots__ = ("formula", "inputs", "prefix", "careful")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-FLUENT"
+
+    def __init__(self, operator: str, formula: Callable[[], T_co], inputs: tuple[Fluent[object], ...], careful: bool = False):
+        self.prefix = "FN-" + operator
+        self.formula = formula
+        self.inputs = inputs
+        self.careful = careful or any([fluent.foreign for fluent in inputs])
+        super().__init__()
+        self._begin()
+        for fluent in inputs:
+            fluent.attach(self)
+
+    foreign = property(lambda self: self.careful)
+
+    def _begin(self):
+        pass
+
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed")
+    def read(self):
+        return self.formula()
+
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed")
+    def peek(self):
+        return peeking(self.formula)
+
+    def input_pulsed(self) -> None:
+        self.pulse()
+
+
+class CachedNet(Net[T_co]):
+    """A net all of whose inputs are cacheable: computed when an input pulses, and pulsing only when its value changes."""
+
+    __slots__ = ("cached", "turn")
+    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-CACHEABLE-FLUENT"
+    foreign = False
+
+    @circumstance(lambda here: f"while {_shown_net(here['self'])} was made: its first value is computed at once")
+    def _begin(self):
+        self.turn = 0
+        if not self.careful:
+            self.cached = self.formula()  # before the inputs hear of this net: if it fails, they never do
+            return
+        pulses = None
+        while pulses != (now := [fluent.pulses for fluent in self.inputs]):  # until nobody assigned meanwhile
+            pulses = now
+            self.cached = self.formula()
+
+    def read(self):
+        return self.cached
+
+    peek = read
+
+    @circumstance(lambda here: None if "new" in here else f"while {_shown_net(here['self'])}, which keeps its old value, was computed anew")
+    def pulse(self):
+        if self.careful:
+            self.turn = turn = self.turn + 1
+            new = self.formula()
+            if self.turn != turn:
+                new = self._recomputed()
+        else:
+            new = self.formula()
+        old = self.cached
+        if old is new or eql(old, new):
+            return
+        self.cached = new
+        self.pulses += 1
+        if self.waiters or self.nets or self.callbacks:
+            self._notify(new)
+
+    input_pulsed = pulse
+
+    def _recomputed(self):
+        """Inputs pulsed while the formula was computed, and what it read of them is out of date: compute until none does."""
+        while True:
+            turn = self.turn
+            new = self.formula()
+            if self.turn == turn:
+                return new
+
+
+peekers: set[kernel.Task[object]] = set()
+"""The tasks of the kernel that read without side effects now."""
+
+
+def peeking(thunk: Callable[[], A]) -> A:
+    """Call ``thunk``; whatever it reads, through functions of the user too, it does not consume."""
+    me = kernel.current()
+    if me in peekers:
+        return thunk()
+    peekers.add(me)
+    try:
+        return thunk()
+    finally:
+        peekers.discard(me)
+
+
+class FunctionNamed:
+    """Calls whatever function a symbol has at the time."""
+
+    __slots__ = ("symbol",)
+
+    def __init__(self, symbol):
+        self.symbol = symbol
+
+    def __call__(self, *arguments):
+        return self.symbol.function(*arguments)
+
+
+def function_of(designator: Any) -> Callable[..., Any]:
+    """The function that a function or symbol stands for; of a symbol it is always the present one."""
+    return FunctionNamed(designator) if isinstance(designator, Symbol) else functions.function_of(designator)
+
+
+def is_cacheable(fluent: object) -> bool:
+    return isinstance(fluent, (ValueFluent, CachedNet))
+
+
+@overload
+def value(fluent: Fluent[A]) -> A: ...
+@overload
+def value(fluent: A) -> A: ...
+def value(fluent: Any) -> Any:
+    """``(value x)``: the value of a fluent; any other object is its own value."""
+    kind = fluent.__class__
+    if kind is ValueFluent or kind is CachedNet:  # the commonest by far
+        return fluent.read()
+    return fluent.read() if isinstance(fluent, Fluent) else fluent
+
+
+@overload
+def peek_value(fluent: Fluent[A]) -> A: ...
+@overload
+def peek_value(fluent: A) -> A: ...
+def peek_value(fluent: Any) -> Any:
+    """``(peek-value x)``: as `value`, consuming nothing."""
+    return fluent.peek() if isinstance(fluent, Fluent) else fluent
+
+
+def set_value(new, fluent):
+    """``(setf (value fluent) new)``: assign a value fluent; returns the value."""
+    if isinstance(fluent, ValueFluent):
+        return fluent.set(new)
+    return no_applicable_method("(COMMON-LISP:SETF CRAM-LANGUAGE-IMPLEMENTATION:VALUE)", 1, new, fluent)
+
+
+def pulse(fluent: Fluent[object]) -> None:
+    """``(pulse fluent)``: tell its observers, though nothing changed. Returns nil."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:PULSE", None, fluent)
+    fluent.pulse()
+
+
+CLASS, NAME, VALUE, TEST = map(keyword, ("CLASS", "NAME", "VALUE", "TEST"))
+ALLOW_TRACING, MAX_TRACING_FREQ = keyword("ALLOW-TRACING"), keyword("MAX-TRACING-FREQ")
+_OF_VALUE_FLUENTS = {NAME, VALUE, TEST}
+
+
+tracing_options: WeakKeyDictionary[Fluent[object], tuple[bool, float | None]] = WeakKeyDictionary()
+"""Fluent → what ``:allow-tracing`` and ``:max-tracing-freq`` said of it, for those that were made with such an option."""
+
+
+_living: Cell[dict[ref[Fluent[object]], None]] = Cell({}, fresh=True)  # a weak reference to each fluent that somebody made, in order
+
+
+def living_fluents() -> list[Fluent[object]]:
+    """The fluents that were made by ``make-fluent`` and that somebody holds, the oldest first."""
+    return [fluent for reference in list(_living.value) if (fluent := reference()) is not None]
+
+
+def announce(fluent: F, allow_tracing: bool = True, max_tracing_freq: float | None = None) -> F:
+    """Run the hook for a new fluent; returns the fluent."""
+    known = _living.value
+    known[ref(fluent, known.pop)] = None
+    if max_tracing_freq is not None or allow_tracing is not True:
+        tracing_options[fluent] = (allow_tracing, max_tracing_freq)
+    if on_make_fluent_hook.methods:
+        on_make_fluent_hook(fluent, allow_tracing, max_tracing_freq)
+    return fluent
+
+
+@overload
+def make_fluent(
+    *,
+    name: Name | None = None,
+    value: None = None,
+    test: Same[Any] | Symbol | None = None,
+    allow_tracing: bool = True,
+    max_tracing_freq: float | None = None,
+) -> ValueFluent[Any]: ...
+@overload
+def make_fluent(
+    *,
+    name: Name | None = None,
+    value: A,
+    test: Same[A] | Symbol | None = None,
+    allow_tracing: bool = True,
+    max_tracing_freq: float | None = None,
+) -> ValueFluent[A]: ...
+@overload
+def make_fluent(*, class_: type[F], **initargs: object) -> F: ...
+def make_fluent(
+    *,
+    class_: Any = None,
+    name: Any = None,
+    value: Any = None,
+    test: Any = None,
+    allow_tracing: Any = True,
+    max_tracing_freq: Any = None,
+    **others: Any,
+) -> Any:
+    """A new fluent, by default a value fluent with ``value``; ``test`` says which assignments change nothing (``eql``)."""
+    if class_ is None and not others:
+        return announce(ValueFluent(name, value, test), allow_tracing, max_tracing_freq)
+    initargs = {CLASS: class_, NAME: name, VALUE: value, TEST: test}
+    initargs = {key: argument for key, argument in initargs.items() if argument is not None}
+    initargs.update((keyword(key.rstrip("_").replace("_", "-").upper()), argument) for key, argument in others.items())
+    return _fluent_made(initargs, allow_tracing, max_tracing_freq)
+
+
+def fluent_from_initargs(*initargs):
+    """``(make-fluent :name name :value value :test test)``: a new fluent; with ``:class`` all other arguments are its initargs."""
+    if len(initargs) % 2:
+        return program_error("odd number of &KEY arguments")
+    given = {}
+    for index in range(0, len(initargs), 2):
+        given.setdefault(initargs[index], initargs[index + 1])
+    return _fluent_made(given, given.pop(ALLOW_TRACING, True), given.pop(MAX_TRACING_FREQ, None))
+
+
+fluent_from_initargs.__lisp_lambda_list__ = lisp_list(
+    sym("&REST"),
+    sym("CPL-IMPL::ARGS"),
+    sym("&KEY"),
+    lisp_list(sym("CLASS"), lisp_list(sym("QUOTE"), sym("CPL-IMPL::VALUE-FLUENT"))),
+    sym("CPL-IMPL::NAME"),
+    sym("CPL-IMPL::VALUE"),
+    lisp_list(sym("CPL-IMPL::ALLOW-TRACING"), True),
+    sym("CPL-IMPL::MAX-TRACING-FREQ"),
+    sym("&ALLOW-OTHER-KEYS"),
+)
+
+
+def _fluent_made(given, allow_tracing, max_tracing_freq):
+    cls = given.pop(CLASS, None)
+    if cls is None and given.keys() <= _OF_VALUE_FLUENTS:
+        fluent = ValueFluent(given.get(NAME), given.get(VALUE), given.get(TEST))
+    else:
+        fluent = make_instance(find_class_or_error(cls or sym("CPL-IMPL::VALUE-FLUENT")), *itertools.chain(*given.items()))
+    return announce(fluent, allow_tracing, max_tracing_freq)
+
+
+def register_update_callback(fluent: Fluent[object], name: Hashable, function: C) -> C:
+    """Call ``function`` with the value at every pulse of ``fluent``. A ``name`` that is taken is an error."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REGISTER-UPDATE-CALLBACK", 1, fluent, name, function)
+    callbacks = fluent.callbacks
+    if callbacks is None:
+        callbacks = fluent.callbacks = {}
+    if name in callbacks:
+        return error("Callback with name ~a is already registered.", name)
+    callbacks[name] = function_of(function)
+    return function
+
+
+def get_update_callback(fluent, name):
+    """Two values: the callback registered under ``name`` (a net counts under its own name) and whether there is one."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:GET-UPDATE-CALLBACK", 1, fluent, name)
+    if fluent.callbacks and name in fluent.callbacks:
+        callback = fluent.callbacks[name]
+        return MultipleValues((callback.symbol if callback.__class__ is FunctionNamed else callback, True))
+    for net in fluent.living_nets():
+        if net.name is name:
+            return MultipleValues((net.input_pulsed, True))
+    return MultipleValues((None, None))
+
+
+def remove_update_callback(fluent: Fluent[object], name: Hashable) -> bool | None:
+    """``True`` if there was a callback ``name`` and it is gone now, else nil."""
+    if not isinstance(fluent, Fluent):
+        return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REMOVE-UPDATE-CALLBACK", 1, fluent, name)
+    if fluent.callbacks and name in fluent.callbacks:
+        del fluent.callbacks[name]
+        return True
+    before = len(fluent.nets)
+    fluent.nets = [reference for reference in fluent.nets if (net := reference()) is not None and net.name is not name]
+    return True if len(fluent.nets) < before else None
+
+
+def check_fluent(fluent: object) -> None:
+    """Signal the type error of an operator that takes a fluent only."""
+    if not isinstance(fluent, Fluent):
+        error(SimpleTypeError("The value of FLUENT is ~S, which is not of type FLUENT.", fluent, datum=fluent, expected_type="FLUENT"))

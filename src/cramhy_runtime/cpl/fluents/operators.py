@@ -1,0 +1,263 @@
+"""Operators that understand fluents: on plain values they are Common Lisp's, on a fluent they make a net.
+
+An operator looks at its direct arguments only. None of them a fluent: it computes at once. At least one: it returns a net that
+recomputes the operation whenever an argument pulses, cached if all fluent arguments are cacheable. ``fl-and`` and ``fl-or``
+read their arguments from left to right and stop early, which matters when reading consumes. Source: cpl.md 2.7 to 2.9, 2.12.
+
+``fl-apply`` keeps the original's results: it does not spread its last argument but hands the function a *list* of values.
+Repaired: called with that list alone, it follows the fluents in it.
+"""
+
+from __future__ import annotations
+
+from operator import add, gt, lt, mul, sub
+from operator import eq as same_number
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
+
+from cramhy_runtime.ground.condition_types import CaseFailure
+from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.data import Cons, lisp_list, list_from, one, truth
+from cramhy_runtime.ground.equality import eq, eql
+from cramhy_runtime.ground.functions import identity
+from cramhy_runtime.ground.packages import keyword
+from .fluents import CachedNet, Fluent, Net, announce, check_fluent, function_of, is_cacheable, make_fluent, value
+from .pulse_fluents import ALWAYS, NEVER, ONCE, ChangeFluent, PulseFluent
+from ..symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from cramhy_runtime.ground.data import Keyword
+    from ..signatures import Comparison, Missed
+
+T = TypeVar("T")
+A = TypeVar("A")
+K = TypeVar("K")
+_QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other
+_TESTS = frozenset((lt, gt, same_number))
+
+
+def net(operator: str, formula: Callable[[], A], arguments: Sequence[object], careful: bool = False) -> Net[A]:
+    """The net for ``formula`` over those of ``arguments`` that are fluents; ``careful``: it calls a function of the user."""
+    inputs = tuple(dict.fromkeys(argument for argument in arguments if isinstance(argument, Fluent)))
+    kind = CachedNet if all(map(is_cacheable, inputs)) else Net
+    return announce(kind(operator, formula, inputs, careful))
+
+
+def _formula(function, arguments, quick=None):
+    if len(arguments) == 1:
+        (only,) = arguments
+        return lambda: function(only.read())
+    if len(arguments) == 2:
+        if quick is not None:
+            return _quick_formula(function, quick, *arguments)
+        first, second = arguments
+        if not isinstance(second, Fluent):
+            return lambda: function(first.read(), second)
+        if not isinstance(first, Fluent):
+            return lambda: function(first, second.read())
+        return lambda: function(first.read(), second.read())
+    return lambda: function(*map(value, arguments))
+
+
+def _quick_formula(function, quick, first, second):
+    """``function`` of two arguments, done by Python's ``quick`` when both are ordinary numbers: nets like ``(< distance 0.5)`` are
+    what plans wait for, and are computed at each step of the world."""
+    if second.__class__ not in _QUICK:
+
+        def formula():
+            return function(value(first), value(second))
+    elif quick in _TESTS:
+
+        def formula():
+            given = first.read()
+            return (quick(given, second) or None) if given.__class__ in _QUICK else function(given, second)
+    else:
+
+        def formula():
+            given = first.read()
+            return quick(given, second) if given.__class__ in _QUICK else function(given, second)
+
+    return formula
+
+
+def _lifted(name, operator, quick=None):
+    """The fluent-aware form of the Common Lisp function ``name``; ``quick``, of Python, does the commonest case, two ordinary numbers."""
+    symbol = sym(name)
+    if quick is None:
+
+        def compute(*arguments):
+            return symbol.function(*arguments)
+    else:
+        is_test = quick in _TESTS
+
+        def compute(*arguments):
+            if len(arguments) == 2:
+                first, second = arguments
+                if first.__class__ in _QUICK and second.__class__ in _QUICK:
+                    return quick(first, second) or None if is_test else quick(first, second)
+            return symbol.function(*arguments)
+
+    def lifted(*arguments):
+        for argument in arguments:
+            if isinstance(argument, Fluent):
+                return net(operator, _formula(compute, arguments, quick), arguments)
+        return compute(*arguments)
+
+    lifted.__name__ = operator.lower()
+    lifted.__doc__ = f"``cl:{name.lower()}`` that makes a net when an argument is a fluent."
+    return lifted
+
+
+fl_lt = _lifted("<", "FL<", lt)
+fl_gt = _lifted(">", "FL>", gt)
+fl_equals = _lifted("=", "FL=", same_number)
+fl_plus = _lifted("+", "FL+", add)
+fl_minus = _lifted("-", "FL-", sub)
+fl_times = _lifted("*", "FL*", mul)
+fl_divide = _lifted("/", "FL/")
+fl_member = _lifted("MEMBER", "FL-MEMBER")
+
+
+def _lift_test(operator: str, test: Callable[[Any, Any], bool | None]) -> Comparison:
+    def lifted(first, second):
+        if isinstance(first, Fluent) or isinstance(second, Fluent):
+            return net(operator, _formula(test, (first, second)), (first, second))
+        return test(first, second)
+
+    lifted.__name__ = lifted.__qualname__ = operator.lower().replace("-", "_")  # by which an error of its arguments finds it
+    return lifted
+
+
+fl_eq = _lift_test("FL-EQ", eq)
+fl_eql = _lift_test("FL-EQL", eql)
+
+
+@overload
+def fl_not(argument: Fluent[object]) -> Fluent[bool | None]: ...
+@overload
+def fl_not(argument: object) -> object: ...
+def fl_not(argument: object) -> object:
+    """``(not x)``, or a net that is true while the fluent ``argument`` is not."""
+    if isinstance(argument, Fluent):
+        return net("FL-NOT", lambda: None if truth(argument.read()) else True, (argument,))
+    return None if truth(argument) else True
+
+
+@overload
+def fl_and(first: Fluent[object], /, *more: object) -> Fluent[object]: ...
+@overload
+def fl_and(*arguments: object) -> object: ...
+def fl_and(*arguments: object) -> object:
+    """The last value if all are true, else nil; a net if there is a fluent. ``(fl-and)`` is true."""
+
+    def formula() -> Any:
+        result: Any = True
+        for argument in arguments:
+            result = value(argument)
+            if not truth(result):
+                return None
+        return result
+
+    return _now_or_net("FL-AND", formula, arguments)
+
+
+@overload
+def fl_or(first: Fluent[object], /, *more: object) -> Fluent[object]: ...
+@overload
+def fl_or(*arguments: object) -> object: ...
+def fl_or(*arguments: object) -> object:
+    """The first true value, or nil; a net if there is a fluent. Later fluents are not read, hence not consumed."""
+
+    def formula() -> Any:
+        for argument in arguments:
+            result = value(argument)
+            if truth(result):
+                return result
+        return None
+
+    return _now_or_net("FL-OR", formula, arguments)
+
+
+def _now_or_net(operator: str, formula: Callable[[], Any], arguments: tuple[object, ...]) -> Any:
+    if any(isinstance(argument, Fluent) for argument in arguments):
+        return net(operator, formula, arguments)
+    return formula()
+
+
+@overload
+def fl_funcall(function: Callable[..., T], first: Fluent[object], /, *more: object) -> Fluent[T]: ...
+@overload
+def fl_funcall(function: Callable[..., T], *arguments: object) -> T: ...
+def fl_funcall(function: Any, *arguments: Any) -> Any:
+    """Call ``function`` on the values of ``arguments``, at once or in a net. Lists are not searched for fluents."""
+    function = function_of(function)
+    for argument in arguments:
+        if isinstance(argument, Fluent):
+            if len(arguments) == 1:
+                return net("FL-FUNCALL", lambda: one(function(argument.read())), arguments, careful=True)
+            return net("FL-FUNCALL", lambda: one(function(*map(value, arguments))), arguments, careful=True)
+    return function(*arguments)
+
+
+def fl_apply(function: Callable[..., T], argument: object, *more: object) -> Net[T]:
+    """A net of ``function`` on the values of the leading arguments and, last, a *list* of the values in the last argument."""
+    function = function_of(function)
+    *leading, last = argument, *more
+    if last is not None and not isinstance(last, (Cons, list, tuple)):
+        return type_error(last, "LIST")
+    elements = [] if last is None else list(last)
+
+    def formula():
+        return one(function(*map(value, leading), list_from(list(map(value, elements)))))
+
+    return net("FL-APPLY", formula, [*leading, *elements], careful=True)
+
+
+_MISSED = {keyword(mode): mode for mode in (NEVER, ONCE, ALWAYS)}
+
+
+def fl_pulsed(fluent: Fluent[object], *, handle_missed_pulses: Missed | Keyword | None = None) -> PulseFluent:
+    """A fluent of its own that is true while ``fluent`` has pulses that were not consumed; modes :never, :once, :always."""
+    check_fluent(fluent)
+    if handle_missed_pulses is None:
+        return announce(PulseFluent(fluent))
+    mode = _MISSED.get(handle_missed_pulses) or (handle_missed_pulses if handle_missed_pulses in _MISSED.values() else None)
+    if mode is None:
+        return error(CaseFailure(handle_missed_pulses, "ECASE", lisp_list(*_MISSED)))
+    return announce(PulseFluent(fluent, mode))
+
+
+pulsed = fl_pulsed
+
+
+def fl_value_changed(
+    fluent: Fluent[T], *, test: Callable[[K, K], object] | None = None, key: Callable[[T], K] | None = None
+) -> ChangeFluent:
+    """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
+    check_fluent(fluent)
+    return announce(ChangeFluent(fluent, function_of(eql if test is None else test), function_of(identity if key is None else key)))
+
+
+_parameters = {}
+
+
+def define_cpl_parameter(name, initial=None):
+    """``(def-cpl-parameter name initial)``: a place with a hidden fluent, so that access is observed like a fluent's."""
+    _parameters[name] = make_fluent(name=name, value=initial)
+    return name
+
+
+def cpl_parameter_fluent(name):
+    """The fluent behind the parameter ``name``."""
+    return _parameters[name]
+
+
+def parameter_value(name):
+    """The value of the parameter ``name``."""
+    return _parameters[name].stored
+
+
+def set_parameter_value(new, name):
+    """Assign the parameter ``name``; returns ``new``."""
+    return _parameters[name].set(new)

@@ -1,0 +1,123 @@
+"""Starting plans from Python: ``run(main)`` and ``with plan():``.
+
+Both make a plan of what is in them: a task at the root, below which all others are dead when it ends. ``run`` is ``top-level`` for
+a script: it starts a kernel, runs the function as a plan, stops the kernel, and gives back what the function returned or raised. In
+a ``with plan():`` block the plan is the block itself, which suits tests and notebooks.
+
+Options (``clock``, ``backend``, ``seed``, ``time_limit``: see `kernel.start`) are for a kernel of its own; one that is active
+already, of a session, is put aside meanwhile. Without options an active kernel is used, and left running: a plan in a session
+sees the session's fluents, process modules and turtle; a test sees what its fixtures started.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
+
+from cramhy_runtime import kernel
+
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import NO_VALUES
+from ..tree import finished_plans
+from ..failures.python_exceptions import for_python, raise_in_python
+from ..current import current_task
+from ..tasks.ending import close_plan
+from .operators import top_level
+from ..statuses import FAILED, RUNNING, SUCCEEDED
+from ..tasks.tasks import ToplevelTask
+from ..tree.task_tree import TaskTreeNode
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from cramhy_runtime.kernel.signatures import Backend, BackendName, Clock, ClockName, Seed
+    from ..tasks.tasks import AbstractTask
+
+T = TypeVar("T")
+Arguments = TypeVarTuple("Arguments")
+
+
+@for_python
+def run(
+    main: Callable[[*Arguments], T],
+    *arguments: *Arguments,
+    clock: ClockName | Clock | None = None,
+    backend: BackendName | Backend | None = None,
+    seed: Seed | None = None,
+    time_limit: float | None = None,
+) -> T:
+    """Run ``main(*arguments)`` as a plan: what it returns. What it fails with is raised here, when all its tasks are dead."""
+    with _kernel(clock, backend, seed, time_limit):
+        return top_level(lambda: main(*arguments))
+
+
+@contextmanager
+def plan(
+    *,
+    clock: ClockName | Clock | None = None,
+    backend: BackendName | Backend | None = None,
+    seed: Seed | None = None,
+    time_limit: float | None = None,
+) -> Iterator[ToplevelTask[None]]:
+    """``with cpl.plan(clock="wall"):`` the block is a plan. Its tasks are dead when it is left; it gives the task at the root."""
+    with _kernel(clock, backend, seed, time_limit):
+        task: ToplevelTask[None] = ToplevelTask(name=lambda: "[TOP-LEVEL]")
+        me = kernel.current()
+        task.tree = TaskTreeNode()
+        task.kernel_task = me
+        task.change_status(RUNNING)
+        me.owner = task
+        task.started_at = kernel.now()
+        finished_plans.begins(task, None)
+        status, result = SUCCEEDED, NO_VALUES
+        problem: BaseException | None = None
+        try:
+            try:
+                yield task
+            except BaseException as exception:
+                problem = exception
+                status, result = task.outcome(exception)
+            _end(list(task.children))
+        finally:
+            task._die(status, result)
+            me.owner = None
+            me.spare()
+            finished_plans.ended(task, None)
+        if status is FAILED and problem is not None:
+            raise_in_python(problem)
+
+
+def _end(children: list[AbstractTask[object]]) -> None:
+    for child in children:
+        child.ask_to_end("The plan is over.")
+    for child in children:
+        close_plan(child, "The plan is over.")
+
+
+@contextmanager
+def _kernel(clock: object, backend: object, seed: object, time_limit: float | None) -> Iterator[None]:
+    """The kernel for a plan; an interrupt that ends the plan is Python's KeyboardInterrupt outside of it."""
+    active = kernel.active()
+    if active is not None and current_task() is not None:
+        error("A plan was started inside of a plan. Call its function as it is: what runs in a plan is a part of it.")
+    given = {"clock": clock, "backend": backend, "seed": seed, "time_limit": time_limit}
+    options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    try:
+        if active is not None and not options:
+            yield
+        elif active is not None and active.current is not active.main:
+            error("A kernel cannot be started by a task of another one. Leave out the options of the plan, so that it uses this kernel.")
+        else:
+            with kernel.aside():
+                kernel.start(**options)
+                yield
+    except kernel.Terminated:
+        raise
+    except (kernel.Interrupted, kernel.Abandoned):
+        if kernel.active() is not None:
+            kernel.interrupt_over()
+        interrupted = True
+    else:
+        interrupted = False
+    if interrupted:
+        raise KeyboardInterrupt

@@ -1,0 +1,50 @@
+"""What the functions of the plan language take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, Protocol, TypeVar, overload
+
+from cramhy_runtime.ground.data import Symbol
+from .fluents.fluents import Fluent, Net, ValueFluent
+from .fluents.pulse_fluents import PulseFluent
+from .tasks.tasks import AbstractTask, Task
+from .forms.named_steps import Tag
+from .tree.task_tree import TaskTreeNode
+
+T = TypeVar("T")
+
+Name = str | Symbol
+Thunk = Callable[[], T]
+"""A branch, or the body of a form: any callable of no arguments."""
+Same = Callable[[T, T], object]
+"""A test whether a new value is the same as the old one."""
+Missed = Literal["NEVER", "ONCE", "ALWAYS"]
+"""What becomes of pulses that nobody saw; Lisp's keywords of these names do as well."""
+Dependent = Net[object] | PulseFluent
+"""A fluent that is told of the pulses of another."""
+PlanTree = AbstractTask[object] | TaskTreeNode | Symbol
+"""What a report is about: a task, a task tree or the name of a top-level."""
+Step = Task[object] | Tag
+Ordering = tuple[Step | ValueFluent[Any], Step]
+"""(before, after): the step ``after`` begins when ``before`` is dead, or when the fluent ``before`` has been pulsed."""
+Clause = Callable[..., object]
+"""A function of a policy: its first argument is the `Store` of the use, the others are the parameters of the policy."""
+
+
+class Request(Protocol):
+    """A function that asks a task to do something, and waits for that unless ``sync`` is false. Lisp may add methods to it."""
+
+    def __call__(self, task: AbstractTask[object], *, reason: str | None = None, sync: bool = True) -> None: ...
+    def method(self, *specializers: object) -> Callable[[Callable[..., object]], Callable[..., object]]: ...
+
+
+class Comparison(Protocol):
+    """A test of two values, or the net of it if there is a fluent among them."""
+
+    @overload
+    def __call__(self, first: Fluent[object], second: object) -> Fluent[bool | None]: ...  # type: ignore[overload-overlap]
+    @overload
+    def __call__(self, first: object, second: Fluent[object]) -> Fluent[bool | None]: ...  # type: ignore[overload-overlap]
+    @overload
+    def __call__(self, first: object, second: object) -> bool | None: ...

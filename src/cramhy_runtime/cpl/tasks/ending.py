@@ -1,0 +1,199 @@
+"""How tasks are made to end, and cleanup that does not.
+
+Whoever started tasks waits here for their death (law 1), shielded: a request to end itself waits too. That is how a wait which
+never ends, in the cleanup form of one task, holds up the whole tree. In the original it does so for ever (cpl.md 3.7). Repaired:
+such a wait, and never a computation, is ended, the rest of its cleanup form is left out, and the outer cleanup forms run,
+
+* when a program says ``(evaporate task)`` a second time; the requests that forms make to their branches do not count;
+* when the cleanup has taken longer than ``*cleanup-time-limit*`` seconds of the kernel's clock, with a warning;
+* when the kernel finds that nothing can happen any more, or its time limit is reached (`close_plan`), with a warning.
+
+A task that is itself only waiting for the death of others is not disturbed: the request goes to those (`awaiting_death`).
+"""
+
+from __future__ import annotations
+
+from numbers import Real
+
+from cramhy_runtime.kernel.images import Cell
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.reports import where
+from cramhy_runtime.kernel.tasks import PARKED, shield
+
+from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime.ground.conditions import warn
+from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.ground.dynamic import binding
+from ..logging import active_tags, log
+from ..statuses import DEAD
+from ..task_variables import define_task_state, inherit
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cramhy_runtime.kernel import Task, cleanup
+    from .tasks import AbstractTask
+
+LATER = 0.01  # s after which a limit looks again, if the cleanup computed when it was over
+PATIENCE = 100  # waits that are ended when a plan is closed, before its cleanup is given up
+
+
+class awaiting_death(shield):  # noqa: N801 (reads as a statement)
+    """``with awaiting_death(tasks):`` around a wait for the death of ``tasks``, a list or a function that returns one."""
+
+    __slots__ = ("tasks", "plan_task", "outer")
+
+    def __init__(self, tasks):
+        super().__init__(kernel.current())
+        self.tasks = tasks
+        self.plan_task = self._task.owner
+
+    def __enter__(self):
+        self._task.shielded += 1
+        task = self.plan_task
+        if task is not None:
+            self.outer, task.awaited = task.awaited, self.tasks
+
+    def __exit__(self, *exception):
+        task, block = self.plan_task, self._task.cleanup
+        if task is not None:
+            task.awaited = self.outer
+            if task.cleanup_limit is not None:
+                task.cleanup_limit.go_on()
+        while block is not None:
+            if block.limit is not None:
+                block.limit.go_on()
+            block = block.outer
+        return super().__exit__(*exception)
+
+
+def end_tasks(tasks: list[Any], reason: str | None = None) -> None:
+    """Evaporate ``tasks`` and wait until they are dead; a request to end the current task waits for that too."""
+    if active_tags and tasks:
+        log("TEARDOWN", "~@[~a ~]~{~a~^, ~:_~}", reason, list_from([task.name for task in tasks]))
+    for task in tasks:
+        task.ask_to_end(reason)
+    with awaiting_death(tasks):
+        for task in tasks:
+            task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}")
+
+
+def end_waits(task: AbstractTask[object], because: str | None = None) -> bool:
+    """End the wait that the cleanup of ``task``, or of tasks whose death it awaits, is stuck in; returns whether there was one.
+
+    ``because``, a clause such as "Nothing can bring that about", makes a warning of it in the task that waits.
+    """
+    if task.awaited is not None:
+        others = task.awaited() if callable(task.awaited) else task.awaited
+        return any([end_waits(other, because) for other in others if other.alive])
+    me = task.kernel_task
+    if me is None or me.state is not PARKED or not (me.cancelled_delivered or me.cleanup is not None):
+        return False
+    if because is None:
+        return me.end_wait(kernel.WaitEnded("its cleanup waited, and it was asked to end once more"))
+    why, place = me.describe_why(), where(me.kernel.frame_of(me))
+
+    def told():
+        warn(
+            SimpleWarning(
+                "The cleanup of ~a waited for ~a~@[, at ~a~]. ~a: the rest of this cleanup form is left out, and outer ones run.",
+                task.name,
+                why,
+                place or None,
+                because,
+            )
+        )
+        return kernel.WaitEnded(because)
+
+    return me.end_wait(told)
+
+
+# ------------------------------------------------------------------------------------------------------- the limit of cleanup
+
+
+class CleanupLimit:
+    """Ends the waits of a cleanup when ``seconds`` are over, and again after as many more.
+
+    ``block`` is the `kernel.cleanup` it belongs to; ``None`` stands for all that a task does after it was asked to end outside of
+    such blocks, as a plan in Python does in ``finally``.
+    """
+
+    __slots__ = ("task", "seconds", "block", "timer")
+
+    def __init__(self, task, seconds, block):
+        self.task, self.seconds, self.block = task, seconds, block
+        self._look_after(seconds)
+
+    def _look_after(self, seconds):
+        self.timer = kernel.call_at(kernel.now() + seconds, self._over)
+
+    def _over(self):
+        task = self.task
+        if task.dead or task.awaited is not None or (self.block is None and task.kernel_task.cleanup is not None):
+            return  # those that it waits for, and the blocks, have limits of their own; a timer for nothing would hide a deadlock
+        ended = end_waits(task, f"The time of *CLEANUP-TIME-LIMIT*, {self.seconds:g} s, is over")
+        self._look_after(self.seconds if ended else LATER)
+
+    def go_on(self):
+        """It looked in vain while the task waited for others to die; that is over."""
+        if not self.timer.active:
+            self._look_after(self.seconds)
+
+    def end(self):
+        self.timer.cancel()
+
+
+def limit_cleanup(task: AbstractTask[object], block: cleanup | None = None) -> CleanupLimit | None:
+    """A `CleanupLimit` for the cleanup that ``task``, the current one, begins; ``None`` if no limit is set."""
+    seconds = _limit.value
+    if seconds is None or not isinstance(seconds, Real) or not 0 <= seconds < float("inf"):
+        return None
+    return CleanupLimit(task, float(seconds), block)
+
+
+def _limit_of_block(block: cleanup, kernel_task: Task[object]) -> CleanupLimit | None:
+    task = kernel_task.owner
+    return None if task is None else limit_cleanup(task, block)
+
+
+_limit: Cell[float | None] = Cell(None)
+
+
+def _set_limit(seconds: float | None) -> None:
+    _limit.value = seconds
+    if seconds is not None:  # until somebody sets a limit, blocks do not even ask for it
+        kernel.limit_by(_limit_of_block)
+
+
+CLEANUP_TIME_LIMIT = inherit(define_task_state("CPL-IMPL", "*CLEANUP-TIME-LIMIT*", lambda: _limit.value, _set_limit), None)
+
+
+def cleanup_time_limit(seconds: float | None) -> binding:
+    """``with cleanup_time_limit(5.0):`` binds ``*cleanup-time-limit*``, in seconds of the kernel's clock, for plans that start within."""
+    return binding(CLEANUP_TIME_LIMIT, seconds)
+
+
+# ------------------------------------------------------------------------------------------------------------ the whole plan
+
+
+def close_plan(task: AbstractTask[object], reason: str | None) -> None:
+    """Evaporate the root ``task`` and return when it is dead, whatever its cleanup waits for. For who started it, outside of it."""
+    for _ in range(PATIENCE):
+        try:
+            return end_tasks([task], reason)
+        except kernel.Abandoned:  # the user does not want to wait: all cleanup is given up already, but let it come down
+            kernel.settle()
+            raise
+        except (kernel.Deadlock, kernel.TimeLimit) as problem:
+            hopeless = isinstance(problem, kernel.Deadlock)
+            if not end_waits(task, "Nothing can bring that about any more" if hopeless else "The time limit of the run was reached"):
+                break
+    for below in _with_descendants(task):
+        below.kernel_task.abandon()
+    return end_tasks([task], reason)
+
+
+def _with_descendants(task):
+    found = [task]
+    for one in found:
+        found += [child for child in one.children if child.kernel_task is not None]
+    return found

@@ -1,0 +1,163 @@
+"""Suspension: stopping a branch with everything below it, and letting it go on.
+
+A request to suspend is obeyed where the task waits (in ``wait-for``, ``sleep``, joins and parallel forms), in loops, and at the end
+of its body. The order is that of cpl.md 3.5: leave ``retry-after-suspension``, run the ``on-suspension`` forms, suspend the children
+and wait for that, then become ``:suspended``. Waking goes down the tree first as well.
+
+Repaired: both requests are idempotent. Suspending a suspended task and waking a running one do nothing, where the original kills
+the task; one wake-up undoes any number of suspensions. Neither waits for a task that is dead, or that nobody has started yet: that
+one obeys when it is started. ``with-task-suspended`` on a dead task runs its body at once; on one that is not started it waits, since
+its body may rely on the status, and takes the request back when it is left before.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, TypeVar
+
+from cramhy_runtime import kernel
+
+from cramhy_runtime.ground.generic_functions import generic
+from ..current import current_task, inside_plan
+from .pausing import AT_REST, Unwind, obey, request
+from .tasks import AbstractTask, check_reason
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..signatures import Request, Thunk
+
+T = TypeVar("T")
+K = TypeVar("K", bound=AbstractTask[object])
+
+suspend: Request = generic(
+    "CPL-IMPL::SUSPEND",
+    "(task &key reason sync)",
+    documentation="""
+Suspend ``task`` and all below it; with ``sync`` (the default) wait until it is suspended or dead.""",
+)
+
+
+@suspend.method(AbstractTask)
+def _suspend(task, *, reason=None, sync=True):
+    check_reason(reason)
+    task.suspend(reason, sync)
+
+
+wake_up: Request = generic(
+    "CPL-IMPL::WAKE-UP",
+    "(task &key reason sync)",
+    documentation="""
+Let ``task`` and all below it go on; with ``sync`` (the default) wait until it is running or dead.""",
+)
+
+
+@wake_up.method(AbstractTask)
+def _wake_up(task, *, reason=None, sync=True):
+    check_reason(reason)
+    task.wake_up(reason, sync)
+
+
+@contextmanager
+def handler_for_suspension(handler: Thunk[object]) -> Iterator[None]:
+    """While the block runs, ``handler()`` runs first in the task whenever it is suspended. Innermost first."""
+    task = current_task()
+    if task is None:
+        yield
+        return
+    if task.suspension_handlers is None:
+        task.suspension_handlers = []
+    handlers = task.suspension_handlers
+    handlers.append(handler)
+    try:
+        yield
+    finally:
+        handlers.pop()
+
+
+def on_suspension(handler: Thunk[object], body: Thunk[T]) -> T:
+    """``(on-suspension form body...)``: values of ``body()`` within `handler_for_suspension`."""
+    with handler_for_suspension(handler):
+        return body()
+
+
+def retry_after_suspension(body: Thunk[T]) -> T:
+    """Values of ``body()``. A suspension unwinds it, the task is suspended outside of it, and after wake-up it starts again."""
+    task = current_task()
+    if task is None or task.retry_level:
+        return body()
+    while True:
+        task.retry_level += 1
+        try:
+            return body()
+        except Unwind as unwind:
+            if unwind.task is not task:
+                raise
+        finally:
+            task.retry_level -= 1
+        obey(task)
+
+
+@contextmanager
+def task_suspended(task: K, reason: str | None = None) -> Iterator[K]:
+    """While the block runs ``task`` is suspended; it is woken again on every exit."""
+    inside_plan("WITH-TASK-SUSPENDED")
+    try:
+        suspend(task, reason=reason)
+        while task.status not in AT_REST:  # not started yet, or somebody else woke it before it came to rest
+            request(task)
+            task.park_until(AT_REST, lambda: f"the suspension of {task.name}", lambda: not task.held)
+        yield task
+    finally:
+        with kernel.shield():
+            wake_up(task, reason=reason)
+
+
+def with_task_suspended(task: AbstractTask[object], body: Thunk[T], reason: str | None = None) -> T:
+    """``(with-task-suspended (task) body...)``: values of ``body()`` within `task_suspended`."""
+    with task_suspended(task, reason):
+        return body()
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Requests to suspend or evaporate the task wait until the block is over."""
+    task = current_task()
+    if task is None:
+        with kernel.shield():
+            yield
+        return
+    task.unschedulable += 1
+    try:
+        with kernel.shield():
+            yield
+    finally:
+        task.unschedulable -= 1
+        if task.held and not task.unschedulable:
+            obey(task)
+    if task.kernel_task.attention:
+        kernel.slice_over()  # which delivers what was held back
+
+
+def without_scheduling(body: Thunk[T]) -> T:
+    """``(without-scheduling body...)``: values of ``body()``, `undisturbed`."""
+    with undisturbed():
+        return body()
+
+
+def with_scheduling(body: Thunk[T]) -> T:
+    """Values of ``body()``; within ``without-scheduling``, requests are obeyed again meanwhile. Elsewhere it changes nothing."""
+    task = current_task()
+    if task is None or not task.unschedulable:
+        return body()
+    me, levels = task.kernel_task, task.unschedulable
+    task.unschedulable = 0
+    me.shielded -= levels
+    try:
+        obey(task)
+        if me.attention:
+            kernel.slice_over()  # which delivers what was held back
+        return body()
+    finally:
+        task.unschedulable = levels
+        me.shielded += levels

@@ -1,0 +1,96 @@
+"""What can be asked of a task: its status, what came of it, and its place among the others (cpl.md 3.2).
+
+None of this waits, and none of it changes anything; a dead task answers as well as a living one.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import list_from, truth
+from cramhy_runtime.ground.generic_functions import generic
+from ..fluents.operators import fl_funcall
+from ..statuses import ALIVE, DEAD, DONE, FAILED, status_list
+from .tasks import AbstractTask, saved_tasks
+
+status = generic("CPL-IMPL::STATUS", "(task)", documentation="The fluent of its status; callbacks on it see each change in order.")
+status.method(AbstractTask)(lambda task: task.status_fluent)
+
+result = generic(
+    "CPL-IMPL::RESULT",
+    "(task)",
+    documentation="""
+Its values when it succeeded, the condition when it failed, no values otherwise.""",
+)
+
+
+@result.method(AbstractTask)
+def _result(task):
+    task.claimed = True
+    return task.result
+
+
+task_path = generic("CPL-IMPL::TASK-PATH", "(task)", documentation="Its place in the task tree: a list of path parts, the deepest first.")
+task_path.method(AbstractTask)(lambda task: task.path)
+
+
+def task_alive(task):
+    """A fluent that is true while the task is not dead; the true value is a list tail, as ``member`` gives it."""
+    return _status_net(task, ALIVE)
+
+
+def task_dead(task):
+    """A fluent that is true when the task is dead."""
+    return _status_net(task, DEAD)
+
+
+def _status_net(task, statuses):
+    return fl_funcall(lambda now: status_list(statuses[statuses.index(now) :]) if now in statuses else None, status(task))
+
+
+def task_running_p(task):
+    """True while the task is alive, created and suspended included."""
+    return True if _now(task) in ALIVE else None
+
+
+def task_dead_p(task):
+    """True when the task has succeeded, failed or was evaporated."""
+    return True if _now(task) in DEAD else None
+
+
+def task_done_p(task):
+    """True when the task has succeeded or was evaporated."""
+    return True if _now(task) in DONE else None
+
+
+def task_failed_p(task):
+    """True when the task has failed."""
+    return True if _now(task) is FAILED else None
+
+
+def _now(task):
+    if not isinstance(task, AbstractTask):
+        return status(task).stored
+    task.claimed = True
+    return task.status
+
+
+def child_tasks(task):
+    """Its living children, newest first (a Lisp list)."""
+    return list_from(list(reversed(task.children)))
+
+
+def parent_task(task):
+    return task.parent
+
+
+def task_constraints(task):
+    return list_from(task.constraints or [])
+
+
+def list_saved_tasks():
+    """The tasks executed while ``*save-tasks*`` was true, in order of execution; ``*tasks*`` is the same list."""
+    return list_from(saved_tasks)
+
+
+def save_tasks(tasks):
+    """``(setf *tasks* list)``: let ``list`` be what `list_saved_tasks` returns."""
+    saved_tasks[:] = list(tasks) if truth(tasks) else []

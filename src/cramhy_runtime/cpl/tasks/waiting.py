@@ -1,0 +1,122 @@
+"""Waiting: for a fluent to become true, again and again, or for time to pass.
+
+A value that is true on the first look is returned at once. Otherwise the task parks at the fluent; a pulse that leaves the value
+false does not even wake it. On suspension it waits on afterwards and looks again, so a value that was true only meanwhile is
+missed, and one that is true at wake-up is seen. Source: cpl.md 2.10, 2.11, 3.9. Repaired: the timed wait keeps its time however
+often the fluent pulses, and can be evaporated and suspended like the untimed one.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar, overload
+
+from cramhy_runtime import kernel
+
+from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.data import is_ratio, truth
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.kernel.images import Cell
+
+from ..fluents.fluents import Fluent
+from ..logging import active_tags, log
+from .pausing import pause
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+T = TypeVar("T")
+TIMEOUT = keyword("TIMEOUT")
+user_wait: Cell[Callable[..., Any] | None] = Cell(None)
+"""The generic function ``wait-for``, when users have defined methods on it (``languages/commonlisp/faces/cpl/user_methods.py``)."""
+
+
+def wait_through(generic):
+    """Let `wait_for` call the function ``generic`` from now on, which has methods of users."""
+    user_wait.value = generic
+
+
+@overload
+def wait_for(fluent: Fluent[T | None], *, timeout: None = None) -> T: ...
+@overload
+def wait_for(fluent: Fluent[T | None], *, timeout: float | None) -> T | None: ...
+def wait_for(fluent: Any, *, timeout: float | None = None, **ignored: Any) -> Any:
+    """Wait until the value of ``fluent`` is true and return it; after ``timeout`` seconds give up and return nil.
+
+    Any other object is returned if it is true; nil is an error. A timeout of 0 only tests.
+    """
+    generic = user_wait.value
+    if generic is not None:
+        return generic(fluent) if timeout is None else generic(fluent, TIMEOUT, timeout)
+    if isinstance(fluent, Fluent):
+        value = fluent.read()
+        if value is not None and value is not False:
+            return value
+        return _wait(fluent, timeout)
+    return plain_wait_for(fluent)
+
+
+def plain_wait_for(fluent, *, timeout=None, **ignored):
+    """Wait until the value of a fluent is true, at most ``timeout`` seconds; anything else that is true is returned."""
+    if not isinstance(fluent, Fluent):
+        return fluent if truth(fluent) else error("wait-for called with nil argument.")
+    value = fluent.read()
+    return value if truth(value) else _wait(fluent, timeout)
+
+
+def _wait(fluent: Fluent[object], timeout: float | None) -> Any:
+    until = None if timeout is None else kernel.now() + in_seconds(timeout)
+    if until is not None and timeout <= 0:
+        return None
+    if active_tags:
+        log("WAIT-FOR", "~s", fluent)
+    me = kernel.current()
+    why = fluent.awaited
+    waiters = fluent.waiters
+    if not waiters:
+        waiters = fluent.waiters = {}
+    again = me in waiters  # an ON-SUSPENSION form, say, waits for what its task waits for already
+    waiters[me] = True
+    try:
+        while True:
+            in_time = me.kernel.park(why, until)
+            value = fluent.read()
+            if value is not None and value is not False:
+                return value
+            if not in_time and until is not None and kernel.now() >= until:
+                return None
+    finally:
+        if not again:
+            del waiters[me]
+
+
+def in_seconds(time: Any) -> float:
+    """A Lisp real as seconds of the kernel's clock; anything else is a type-error."""
+    if isinstance(time, bool) or not (isinstance(time, (int, float)) or is_ratio(time)):
+        return type_error(time, "REAL")
+    try:
+        return float(time)
+    except OverflowError:
+        return inf if time > 0 else -inf
+
+
+def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
+    """Wait for ``fluent``, call ``body``, and so on for ever; ``(return ...)``, the compiler's block, is the way out."""
+    while True:
+        wait_for(fluent)
+        body()
+        kernel.checkpoint()
+
+
+def sleep_star(seconds: float) -> None:
+    """Sleep for ``seconds`` of the kernel's clock; returns nil. Time spent suspended counts as slept."""
+    length = in_seconds(seconds)
+    if not length > 0:
+        kernel.yield_()
+        return
+    until = kernel.now() + length
+    while pause(lambda: f"the time {until:g} s (sleep {seconds})", until) or kernel.now() < until:
+        pass
+
+
+sleep = sleep_star

@@ -1,0 +1,187 @@
+"""The classes behind arrays that are more than a Python list.
+
+A simple general vector is a Python ``list`` and a string a ``str`` or `LispString`; that covers nearly all vectors of plans.
+The rest of ANSI chapter 15 needs three classes: `TypedVector`, a list that knows its element type (bit vectors are these);
+`LispArray`, a storage in row-major order seen through dimensions; and `Vector`, a one-dimensional one that may have a fill
+pointer and may grow. A displaced array shares the storage of its target.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .condition_types import TypeError_, formatted
+from .conditions import error
+from .data import LispString, lisp_list, list_from
+from .packages import sym
+
+BIT = sym("BIT")
+CHARACTER = sym("CHARACTER")
+
+
+class TypedVector(list):
+    """A simple vector whose elements are all of one type, such as BIT or DOUBLE-FLOAT."""
+
+    __slots__ = ("element_type", "__weakref__")
+    __hash__ = object.__hash__
+
+    def __new__(cls, elements=(), element_type=True):
+        return super().__new__(SimpleBitVector if element_type is BIT else cls)
+
+    def __init__(self, elements=(), element_type=True):
+        super().__init__(elements)
+        self.element_type = element_type
+
+    def active(self):
+        return self
+
+    def __reduce__(self):
+        return TypedVector, (list(self), self.element_type)
+
+
+class SimpleBitVector(TypedVector):
+    """A simple vector of bits: a class of its own, because methods are found by the class of their argument."""
+
+    __slots__ = ()
+
+
+class LispArray:
+    """An array of any rank.
+
+    ``storage`` holds the elements in row-major order from ``offset`` on; ``displaced_to`` is the array whose storage it is, if
+    it is another's. ``element_type`` is an upgraded type specifier (``True`` for T).
+    """
+
+    __slots__ = ("dimensions", "storage", "offset", "element_type", "adjustable", "displaced_to", "__weakref__")
+
+    def __init__(self, dimensions, storage, element_type=True, adjustable=False, displaced_to=None, offset=0):
+        self.dimensions = tuple(dimensions)
+        self.storage = storage
+        self.element_type = element_type
+        self.adjustable = adjustable
+        self.displaced_to = displaced_to
+        self.offset = offset
+
+    @property
+    def total_size(self):
+        return math.prod(self.dimensions)
+
+    def active(self):
+        """The elements as a Python list, in row-major order."""
+        return self.storage[self.offset : self.offset + self.total_size]
+
+    def shape(self):
+        """The dimensions as far as elements are active."""
+        return self.dimensions
+
+
+class Vector(LispArray):
+    """A vector with a fill pointer (or ``None``), or one that is adjustable or displaced. Python sees the active elements."""
+
+    __slots__ = ("fill_pointer",)
+
+    def __new__(cls, storage, fill_pointer=None, element_type=True, *_, **__):
+        return super().__new__(BitVector if element_type is BIT else cls)
+
+    def __init__(self, storage, fill_pointer=None, element_type=True, adjustable=False, displaced_to=None, offset=0, size=None):
+        super().__init__((len(storage) if size is None else size,), storage, element_type, adjustable, displaced_to, offset)
+        self.fill_pointer = fill_pointer
+
+    def __len__(self):
+        return self.dimensions[0] if self.fill_pointer is None else self.fill_pointer
+
+    def __bool__(self):
+        return True
+
+    def active(self):
+        return self.storage[self.offset : self.offset + len(self)]
+
+    def shape(self):
+        return (len(self),)
+
+    def __iter__(self):
+        return iter(self.active())
+
+    def __getitem__(self, index):
+        return self.active()[index]
+
+    def __setitem__(self, index, value):
+        size = len(self)
+        if not -size <= index < size:
+            raise IndexError(index)
+        self.storage[self.offset + index % size] = value
+
+
+class BitVector(Vector):
+    """A vector of bits that is not simple."""
+
+    __slots__ = ()
+
+
+def bit_vector(bits):
+    """The simple bit vector of ``bits``, an iterable of 0 and 1, as the reader makes it of ``#*101``."""
+    return TypedVector(bits, BIT)
+
+
+def is_bit_vector(thing):
+    """Whether ``thing`` is a bit vector."""
+    return isinstance(thing, (SimpleBitVector, BitVector))
+
+
+# ------------------------------------------------------------------------------------------------------- what arrays are like
+
+
+def is_simple(array):
+    """Whether ``array`` has no fill pointer, is not adjustable and not displaced."""
+    if isinstance(array, LispString):
+        return array.fill_pointer is None and not array.adjustable
+    return not isinstance(array, Vector) and not getattr(array, "adjustable", False) and getattr(array, "displaced_to", None) is None
+
+
+def dimensions(array):
+    """The dimensions as a Python tuple; of a vector with a fill pointer the whole size."""
+    if isinstance(array, LispArray):
+        return array.dimensions
+    return (len(array.chars) if isinstance(array, LispString) else len(array),)
+
+
+def element_type(array):
+    """The upgraded element type, ``True`` for T. Python's bytes count as a vector of octets."""
+    if isinstance(array, (str, LispString)):
+        return CHARACTER
+    if isinstance(array, (bytes, bytearray)):
+        return lisp_list(sym("UNSIGNED-BYTE"), 8)
+    return getattr(array, "element_type", True)
+
+
+def array_type(array):
+    """The type specifier that ``type-of`` gives for an array: ``(SIMPLE-VECTOR 2)``, ``(VECTOR T 3)``."""
+    sizes, kind, simple = dimensions(array), element_type(array), is_simple(array)
+    if len(sizes) == 1:
+        if kind is BIT:
+            return lisp_list(sym("SIMPLE-BIT-VECTOR" if simple else "BIT-VECTOR"), *sizes)
+        if not simple:
+            return lisp_list(sym("VECTOR"), kind, *sizes)
+        if kind is True:
+            return lisp_list(sym("SIMPLE-VECTOR"), *sizes)
+    return lisp_list(sym("SIMPLE-ARRAY" if simple else "ARRAY"), kind, list_from(sizes))
+
+
+class InvalidArrayIndex(TypeError_):
+    """A subscript outside the array."""
+
+    lisp_name = "SB-INT::INVALID-ARRAY-INDEX-ERROR"
+
+    def __init__(self, index=None, array=None, axis=None, bound=0, **slots):
+        super().__init__(index, f"(INTEGER 0 ({bound}))", **slots)
+        self.array, self.axis, self.bound = array, axis, bound
+
+    def report(self):
+        return formatted(
+            "Invalid index ~S for ~@[axis ~S of ~]~S, should be a non-negative integer below ~S.",
+            (self.datum, self.axis, array_type(self.array), self.bound),
+        )
+
+
+def wrong_rank(subscripts, rank):
+    return error("Wrong number of subscripts, ~W, for array of rank ~W.", len(subscripts), rank)

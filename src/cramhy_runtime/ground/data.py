@@ -1,0 +1,405 @@
+"""The data of Common Lisp as Python objects.
+
+``nil`` is ``None``, ``t`` is ``True``, a cons is a `Cons`, a symbol is an interned `Symbol`. Integers, ratios and strings are
+Python's own. A plain ``float`` stands for the single-float, because literals and ordinary arithmetic make singles and should
+run at Python's speed; `DoubleFloat` marks the doubles that ROS messages and ``1.0d0`` give, and keeps its type through
+arithmetic (contagion). A function that returns several values returns one `MultipleValues`; `one` takes the first.
+
+What is equal in Python need not be ``eql`` in Lisp (``True == 1 == 1.0``), so nothing here compares by ``==`` on behalf of
+Lisp: see ``ground/equality.py``.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from cramhy_runtime.kernel.active import checkpoint
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
+
+from .ports import PORTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from .packages import Package
+
+T = TypeVar("T")
+
+
+class _Marker:
+    """A named object that is nothing but itself."""
+
+    __slots__ = ("name",)
+
+    def __init__(self, name):
+        self.name = name
+
+    def __repr__(self):
+        return self.name
+
+
+UNBOUND = _Marker("#<unbound>")
+"""The value of a symbol or slot that has none."""
+UNSUPPLIED = _Marker("#<unsupplied>")
+"""Default of an &optional or &key parameter where ``nil`` and "not given" differ."""
+
+
+STRETCH = range(256)
+"""So many elements of a list a loop passes between two checkpoints: a circular list must not keep Ctrl-C from its plan."""
+
+
+class Symbol:
+    """A name with a value, a function, a property list and a home package.
+
+    ``value`` is the current dynamic value: see ``ground/dynamic.py`` for how tasks keep theirs apart.
+    ``function`` is always callable; that of an undefined function signals ``undefined-function``.
+    ``reads`` and ``writes`` are the structure class whose slot ``function`` reads and ``setf_function`` writes: where the compiler
+    saw that they do, it takes the slot of an object of that class itself. `function_changed` keeps them right. ``attribute`` is that
+    slot's Python name in compiled code, once and for all: a later accessor of this name for a slot of another name is just called.
+    """
+
+    __slots__ = (
+        "name",
+        "package",
+        "value",
+        "function",
+        "macro",
+        "setf_function",
+        "plist",
+        "special",
+        "constant",
+        "compiler_data",
+        "reads",
+        "writes",
+        "attribute",
+        "__weakref__",
+    )
+
+    def __init__(self, name: str, package: Package | None = None):
+        self.name = name
+        self.package = package
+        self.value: Any = UNBOUND
+        self.function: Callable[..., Any] = UndefinedFunction(self)
+        self.macro = None
+        self.setf_function = None
+        self.plist = None
+        self.special = False
+        self.constant = False
+        self.compiler_data = None
+        self.reads = self.writes = self.attribute = None
+
+    def function_changed(self):
+        """To be called after ``function`` or ``setf_function`` got another value."""
+        self.reads, self.writes = self._slot_class(self.function), self._slot_class(self.setf_function)
+
+    def _slot_class(self, function):
+        known = getattr(function, "__dict__", None)
+        if not known or "traced" in known or "slot_of" not in known:
+            return None
+        if self.attribute is None:
+            self.attribute = function.attribute
+        return known["slot_of"] if function.attribute == self.attribute else None
+
+    def __repr__(self) -> str:
+        return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
+
+    def __reduce__(self):
+        return (_symbol_in, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
+
+
+def _symbol_in(name, package):
+    """What unpickling a symbol calls."""
+    return PORTS.signals.intern(name, package)
+
+
+class Keyword(Symbol):
+    """A symbol of the package KEYWORD: its value is itself."""
+
+    __slots__ = ()
+
+    def __init__(self, name: str, package: Package | None = None):
+        super().__init__(name, package)
+        self.value = self
+        self.constant = True
+
+    def __repr__(self) -> str:
+        return ":" + self.name
+
+
+class UndefinedFunction:
+    """What stands in the function cell of a symbol without a function: calling it is the error.
+
+    So a call needs no test, and the error names the symbol that the user wrote.
+    """
+
+    __slots__ = ("symbol",)
+
+    def __init__(self, symbol: Symbol):
+        self.symbol = symbol
+
+    def __call__(self, *arguments: object, **keywords: object) -> Any:
+        return PORTS.signals.undefined_function(self.symbol, arguments, keywords)
+
+
+class Cons:
+    """A pair. Iterating gives the elements of the list that starts here; a dotted tail ends it."""
+
+    __slots__ = ("car", "cdr")
+
+    def __init__(self, car: Any, cdr: Any = None):
+        self.car = car
+        self.cdr = cdr
+
+    def __iter__(self) -> Iterator[Any]:
+        cell = self
+        while True:
+            for _ in STRETCH:
+                yield cell.car
+                cell = cell.cdr
+                if cell.__class__ is not Cons:
+                    return
+            checkpoint()
+
+    # For Python code that gets a list from Lisp. A list is never empty (that is None), so it is true whatever its length.
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __len__(self) -> int:
+        count, cell = 0, self
+        while True:
+            for _ in STRETCH:
+                if cell.__class__ is not Cons:
+                    return count
+                count += 1
+                cell = cell.cdr
+            checkpoint()
+
+    def __getitem__(self, index: int | slice) -> Any:
+        """The element at ``index``, which may be negative; a slice gives a Python list."""
+        if isinstance(index, slice) or index < 0:
+            return list(self)[index]
+        for item in self:
+            if not index:
+                return item
+            index -= 1
+        raise IndexError("list index out of range")
+
+    def __repr__(self):
+        parts, cell, limit = [], self, 50
+        while isinstance(cell, Cons) and limit:
+            parts.append(repr(cell.car) if cell.car is not None else "NIL")
+            cell, limit = cell.cdr, limit - 1
+        if cell is not None:
+            parts += [".", "..." if isinstance(cell, Cons) else repr(cell)]
+        return "(" + " ".join(parts) + ")"
+
+
+new_object = object.__new__
+
+
+@overload
+def lisp_list() -> None: ...
+@overload
+def lisp_list(first: object, /, *more: object) -> Cons: ...
+def lisp_list(*items: object) -> Cons | None:
+    """The list of ``items``; ``None`` when there are none."""
+    head = None
+    for item in reversed(items):
+        cell = new_object(Cons)
+        cell.car, cell.cdr = item, head
+        head = cell
+    return head
+
+
+def list_from(iterable: Iterable[object], tail: Any = None) -> Any:
+    """The list of the elements of ``iterable``, ending in ``tail``."""
+    head = tail
+    for item in reversed(iterable if isinstance(iterable, (list, tuple)) else list(iterable)):
+        cell = new_object(Cons)  # made without its constructor, which would be a call of a Python function
+        cell.car, cell.cdr = item, head
+        head = cell
+    return head
+
+
+def python_list(lst: Any) -> list[Any]:
+    """The elements of the Lisp list ``lst`` as a Python list."""
+    if lst.__class__ is not Cons:
+        return [] if lst is None else list(lst)
+    return list_parts(lst)[0]
+
+
+def list_parts(cell):
+    """(the elements of the list ``cell`` as a Python list, what stands behind its last cons)"""
+    items = []
+    while True:
+        for _ in STRETCH:
+            if cell.__class__ is not Cons:
+                return items, cell
+            items.append(cell.car)
+            cell = cell.cdr
+        checkpoint()
+
+
+def conses(lst):
+    """The conses of the list ``lst``, one after the other, whatever it ends in."""
+    while True:
+        for _ in STRETCH:
+            if lst.__class__ is not Cons:
+                return
+            yield lst
+            lst = lst.cdr
+        checkpoint()
+
+
+def list_end(lst):
+    """What ends the list ``lst``: ``None`` for a proper one, else the last ``cdr``; of a circular list a cons, for it has no end."""
+    slow, steps = lst, 0
+    while isinstance(lst, Cons):
+        lst, steps = lst.cdr, steps + 1
+        if not steps % 2:
+            slow = slow.cdr
+            if slow is lst and isinstance(lst, Cons):
+                return lst
+    return None if lst is False else lst
+
+
+class MultipleValues(tuple[Any, ...]):
+    """What a form returns that returns no values, or two or more. Exactly one value is returned bare."""
+
+    __slots__ = ()
+
+
+NO_VALUES = MultipleValues()
+
+
+def values(*items: object) -> Any:
+    """``cl:values``: return ``items`` as the values of the calling form."""
+    return items[0] if len(items) == 1 else MultipleValues(items)
+
+
+def one(value: Any) -> Any:
+    """The primary value: ``nil`` when there are no values."""
+    if value.__class__ is MultipleValues:
+        return value[0] if value else None
+    return value
+
+
+def all_values(value: Any) -> tuple[Any, ...]:
+    """All values of a form as a tuple."""
+    return value if value.__class__ is MultipleValues else (value,)
+
+
+def truth(value: object) -> bool:
+    """Whether ``value`` is true in Lisp: everything but ``nil``, so ``0`` and ``""`` are true; Python's ``False`` is false."""
+    return value is not None and value is not False
+
+
+def boolean(flag: object) -> bool | None:
+    """The Lisp truth value for a Python condition: ``True`` or ``None``."""
+    return True if flag else None
+
+
+class Character:
+    """A character object, ``#\\a``. Interned: two characters with the same code are the same object."""
+
+    __slots__ = ("char",)
+    _interned: dict = {}
+
+    def __new__(cls, char):
+        found = cls._interned.get(char)
+        if found is None:
+            found = super().__new__(cls)
+            found.char = char
+            cls._interned[char] = found
+        return found
+
+    @property
+    def code(self):
+        return ord(self.char)
+
+    def __repr__(self):
+        return f"Character({self.char!r})"
+
+    def __reduce__(self):
+        return Character, (self.char,)
+
+
+def is_ratio(thing: object) -> bool:
+    """Whether ``thing`` is a ratio, which is a `Fraction` of Python.
+
+    There are ratios only where somebody has imported ``fractions``. The rooms that plans need do not: its import takes a tenth of theirs.
+    `isinstance` would ask the abstract class of `Fraction`, which is slow.
+    """
+    fractions = sys.modules.get("fractions")
+    return fractions is not None and fractions.Fraction in thing.__class__.__mro__
+
+
+class DoubleFloat(float):
+    """A double-float: ``5.0d0``. Arithmetic with any real gives a double again; see ANSI 12.1.4.4 (float contagion)."""
+
+    __slots__ = ()
+
+    def __repr__(self):
+        return float.__repr__(self) + "d0"
+
+    def __reduce__(self):
+        return DoubleFloat, (float(self),)
+
+
+def _keep_double(name):
+    operation = getattr(float, name)
+
+    def method(self, other):
+        result = operation(self, other)
+        if result is NotImplemented:
+            return DoubleFloat(operation(self, float(other))) if is_ratio(other) else result
+        return DoubleFloat(result)
+
+    method.__name__ = name
+    return method
+
+
+for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
+    setattr(DoubleFloat, f"__{_name}__", _keep_double(f"__{_name}__"))
+DoubleFloat.__neg__ = lambda self: DoubleFloat(float.__neg__(self))
+DoubleFloat.__pos__ = lambda self: self
+DoubleFloat.__abs__ = lambda self: DoubleFloat(float.__abs__(self))
+
+
+class LispString:
+    """A string that can be changed in place: made by ``make-string``, ``copy-seq`` of itself, or with a fill pointer.
+
+    Literals and the results of most functions are plain ``str``, which is what Python callers see.
+    """
+
+    __slots__ = ("chars", "fill_pointer", "adjustable")
+
+    def __init__(self, chars="", fill_pointer=None, adjustable=False):
+        self.chars = list(chars)
+        self.fill_pointer = fill_pointer
+        self.adjustable = adjustable
+
+    def __str__(self):
+        return "".join(self.chars if self.fill_pointer is None else self.chars[: self.fill_pointer])
+
+    def __len__(self):
+        return len(self.chars) if self.fill_pointer is None else self.fill_pointer
+
+    def __repr__(self):
+        return f"LispString({str(self)!r})"
+
+    def __eq__(self, other):
+        """Equal to a text with the same characters, for Python code; Lisp does not compare by it."""
+        return str(self) == str(other) if isinstance(other, (str, LispString)) else NotImplemented
+
+    __hash__ = object.__hash__  # it can be changed, so its text is no key
+
+    def __iter__(self):
+        return iter(str(self))
+
+    def __getitem__(self, index):
+        return str(self)[index]
+
+    def __contains__(self, text):
+        return str(text) in str(self)

@@ -1,0 +1,567 @@
+"""Generic functions and methods.
+
+A `GenericFunction` is called like any function. It looks up the effective function (the applicable methods, put together by
+the method combination) under the classes of the arguments at the positions on which any method specializes, so a call costs
+one dictionary look-up once it has been made with such arguments. ``(eql x)`` specializers are looked up in a second table.
+
+How methods are called (for the compiler): a method that uses neither ``call-next-method`` nor ``next-method-p`` is added with
+``uses_next=False`` and called as ``function(*arguments)``. Otherwise it is called as ``function(next, *arguments)``:
+``(call-next-method)`` is ``next()``, ``(call-next-method a b)`` is ``next(a, b)``, and ``(next-method-p)`` is
+``next.exists`` (``True`` or ``None``). A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
+keywords a call may have is checked here, because all applicable methods together decide it (ANSI 7.6.5).
+
+Runtime rooms make generic functions with `generic` and ``@function.method(Class, ...)``. Source: ANSI 7.6; texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+import weakref
+
+from .classes import find_class_or_error, when_classes_change
+from .conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
+from .condition_types import shown_with
+from .data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
+from .equality import eql_key
+from .generic_errors import incongruent, no_applicable_method_error
+from .keyword_calls import lispify
+from .method_combination import STANDARD, Combination, find_combination
+from .methods import EqlSpecializer, Method, Shape
+from .packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
+from .ports import PORTS
+from .python_names import python_name
+
+all_generic_functions = weakref.WeakSet()
+ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
+
+
+@when_classes_change
+def _forget_dispatch():
+    for function in all_generic_functions:
+        function.forget()
+
+
+class FunctionObject:
+    """GENERIC-FUNCTION: the root of the classes of generic functions."""
+
+    lisp_name = "GENERIC-FUNCTION"
+
+
+class GenericFunction(FunctionObject):
+    """A generic function. Calls are in the subclasses; an instance changes its class when its way of dispatching changes.
+
+    Python looks for ``__call__`` in the class alone. One class whose ``__call__`` asks the instance how to dispatch would make a call
+    with one argument slower by a fifth, and a direct one (`call_directly`) more than twice as slow.
+    """
+
+    lisp_name = "STANDARD-GENERIC-FUNCTION"
+
+    def __init__(self, name, lambda_list=None):
+        self.__lisp_name__ = name
+        self.__name__ = self.__qualname__ = python_name(symbol_name(name.cdr.car if isinstance(name, Cons) else name))
+        self.__doc__ = None
+        self.lambda_list = lambda_list
+        self.shape = Shape(lambda_list)
+        self.methods: list[Method] = []
+        self.own_methods: list[Method] = []  # those of our code, which all images have
+        self.user_methods = 0
+        self.combination: Combination = STANDARD
+        self.combination_options: tuple = ()
+        self.precedence = None
+        self.from_defgeneric: list = []
+        self.forget()
+        all_generic_functions.add(self)
+
+    watcher = None
+    advice: str | None = None
+    """What the error that no method is applicable tells the user to do."""
+    direct = direct_methods = None
+
+    def call_directly(self, function):
+        """Let ``function`` make all calls, without any dispatch, as long as the methods are those that there are now.
+
+        It must be the only method. When somebody adds a method, calls are dispatched; when that is removed, they are direct again.
+        The function takes any arguments, so that it can hand those to `refuse` that do not fit. Returns the function.
+        """
+        assert [method.function for method in self.methods] == [function]
+        call = staticmethod(function)  # then Python calls the function itself, which costs less than a method that passes the call on
+        self.direct, self.direct_methods = type("DirectGeneric", (GenericFunction,), {"__call__": call}), list(self.methods)
+        self.forget()
+        return function
+
+    def refuse(self, *arguments):
+        """Signal the error of a call with ``arguments``, their number or that no method applies; ``UNSUPPLIED`` ones were not given."""
+        given = [argument for argument in arguments if argument is not UNSUPPLIED]
+        return self.lookup(given)(*given)
+
+    def watch(self, watcher):
+        """Let ``watcher(effective function, arguments, keywords)`` make all calls from now on; ``None`` ends that. For ``trace``."""
+        self.watcher = watcher
+        self.forget()
+
+    def forget(self):
+        """Forget all effective functions, and find out anew on which arguments the methods specialize."""
+        self.cache: dict = {}
+        positions = sorted(
+            {index for method in self.methods for index, specializer in enumerate(method.specializers) if specializer is not object}
+        )
+        self.positions = tuple(positions)
+        self.eql_keys = {
+            index: {method.specializers[index].key for method in self.methods if method.specializers[index].__class__ is EqlSpecializer}
+            for index in positions
+        }
+        self.eql_positions = tuple(index for index in positions if self.eql_keys[index])
+        self.minimum, self.maximum = self.shape.required, self.shape.maximum
+        fixed = self.minimum == self.maximum
+        if self.watcher is not None:
+            self.__class__ = _WatchedGeneric
+        elif self.direct is not None and self.methods == self.direct_methods:
+            self.__class__ = self.direct
+        elif len(positions) == 1 and fixed and self.minimum < 3:
+            self.__class__ = {(0, 1): UnaryGeneric, (0, 2): FirstOfTwo, (1, 2): _SecondOfTwo}[positions[0], self.minimum]
+        elif positions == [0]:
+            self.__class__ = _FirstGeneric
+        elif positions == [0, 1]:
+            self.__class__ = _TwoGeneric
+        else:
+            self.__class__ = _ManyGeneric
+
+    # ------------------------------------------------------------------------------------------------------------- dispatch
+
+    def lookup(self, arguments):
+        """The effective function for ``arguments``, from the cache or computed; wrong argument counts are errors."""
+        if len(arguments) < self.minimum or (self.maximum is not None and len(arguments) > self.maximum):
+            return wrong_argument_count(len(arguments))
+        key = self.cache_key(arguments)
+        found = self.cache.get(key)
+        if found is None:
+            # Only classes for which eql methods exist need the second look-up.
+            relevant = [index for index in self.eql_positions if self._eql_possible(index, arguments[index])]
+            found = self._by_value(relevant) if relevant else self.effective_function(arguments)
+            if found is None:
+                return lambda *arguments: no_applicable_method(self, arguments)
+            self.cache[key] = found
+        return found
+
+    def _eql_possible(self, index, argument):
+        cls = argument.__class__
+        return any(
+            method.specializers[index].value.__class__ is cls
+            for method in self.methods
+            if method.specializers[index].__class__ is EqlSpecializer
+        )
+
+    def _by_value(self, positions):
+        """The dispatch on the values at ``positions``, where (eql x) methods exist. The classes there are fixed already."""
+        if len(positions) > 1:
+            return self._by_values(positions)
+        (index,) = positions
+        known, table = self.eql_keys[index], {}
+
+        def dispatch(*arguments, **keywords):
+            key = eql_key(arguments[index])
+            effective = table.get(key)
+            if effective is None:
+                key = key if key in known else known_as_other
+                effective = table.get(key)
+                if effective is None:
+                    effective = self.effective_function(arguments)
+                    if effective is None:
+                        return no_applicable_method(self, arguments)
+                    table[key] = effective
+            return effective(*arguments, **keywords)
+
+        known_as_other = ("any other value",)
+        return dispatch
+
+    def _by_values(self, positions):
+        table: dict = {}
+        known = [(index, self.eql_keys[index]) for index in positions]
+
+        def dispatch(*arguments, **keywords):
+            key = tuple([value if value in keys else None for value, keys in [(eql_key(arguments[index]), keys) for index, keys in known]])
+            effective = table.get(key)
+            if effective is None:
+                effective = self.effective_function(arguments)
+                if effective is None:
+                    return no_applicable_method(self, arguments)
+                table[key] = effective
+            return effective(*arguments, **keywords)
+
+        return dispatch
+
+    def cache_key(self, arguments):
+        return tuple(arguments[index].__class__ for index in self.positions)
+
+    def applicable_methods(self, arguments):
+        """The methods that apply to ``arguments``, most specific first."""
+        required = arguments[: self.shape.required]
+        mros = [PORTS.classes.precedence(type(None) if argument is False else argument.__class__) for argument in required]
+        keys = [eql_key(argument) if index in self.eql_positions else None for index, argument in enumerate(required)]
+        order = self.precedence or range(len(required))
+        found = [method for method in self.methods if method.applies(mros, keys)]
+        found.sort(key=lambda method: method.rank(mros, order))
+        return found
+
+    def effective_function(self, arguments):
+        """The callable for arguments of these classes; ``None`` when no method applies."""
+        methods = self.applicable_methods(arguments)
+        if not methods and not self.combination.accepts_none:
+            return None
+        effective = self.combination.effective(self, methods, tuple(argument.__class__ for argument in arguments))
+        if self.shape.has_keys and methods:
+            return self._checking_keys(effective, methods)
+        return effective
+
+    def _checking_keys(self, effective, methods):
+        shapes = [self.shape, *(method.shape for method in methods)]
+        if any(shape.allow_other_keys or (shape.rest and not shape.has_keys) for shape in shapes[1:]) or self.shape.allow_other_keys:
+            return effective
+        allowed = list(dict.fromkeys(key for shape in shapes for key in shape.keys))
+        first = self.shape.required + self.shape.optional
+
+        def check(*arguments, **keywords):
+            if len(arguments) > first:
+                given = arguments[first:]
+                if len(given) % 2:
+                    return program_error("odd number of &KEY arguments")
+                for key in given[::2]:
+                    if key not in allowed and key is not ALLOW_OTHER_KEYS and not other_keys_allowed(given):
+                        return program_error("invalid keyword argument: ~S (valid keys are ~{~S~^, ~}).", key, list_from(allowed))
+            return effective(*arguments, **keywords)
+
+        return check
+
+    # ------------------------------------------------------------------------------------------------- for Python rooms
+
+    def method(self, *specializers, qualifier=None, uses_next=False):
+        """Decorator: add the Python function as a method for these classes; ``None`` stands for any object.
+
+        qualifier: ``"before"``, ``"after"``, ``"around"`` or another name; uses_next: the function takes ``next`` first.
+        """
+        classes = [object if specializer is None else specializer for specializer in specializers]
+
+        def define(function):
+            qualifiers = () if qualifier is None else (keyword(qualifier.upper()),)
+            add_method(self, qualifiers, classes, lispify(function), uses_next=uses_next, lambda_list=self.lambda_list, user=False)
+            return function
+
+        return define
+
+
+def other_keys_allowed(given):
+    """Whether keyword arguments, key by key, hold a true ``:allow-other-keys``; the first one counts."""
+    for index in range(0, len(given), 2):
+        if given[index] is ALLOW_OTHER_KEYS:
+            return given[index + 1] is not None
+    return False
+
+
+class UnaryGeneric(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        try:
+            (argument,) = arguments
+            effective = self.cache[argument.__class__]
+        except (KeyError, ValueError):
+            effective = self.lookup(arguments)
+        return effective(*arguments, **keywords)
+
+    def cache_key(self, arguments):
+        return arguments[0].__class__
+
+
+class FirstOfTwo(UnaryGeneric):
+    def __call__(self, *arguments, **keywords):
+        try:
+            argument, _ = arguments
+            effective = self.cache[argument.__class__]
+        except (KeyError, ValueError):
+            effective = self.lookup(arguments)
+        return effective(*arguments, **keywords)
+
+
+class _SecondOfTwo(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        try:
+            _, argument = arguments
+            effective = self.cache[argument.__class__]
+        except (KeyError, ValueError):
+            effective = self.lookup(arguments)
+        return effective(*arguments, **keywords)
+
+    def cache_key(self, arguments):
+        return arguments[1].__class__
+
+
+class _FirstGeneric(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        if len(arguments) < self.minimum or (self.maximum is not None and len(arguments) > self.maximum):
+            return wrong_argument_count(len(arguments))
+        effective = self.cache.get(arguments[0].__class__) or self.lookup(arguments)
+        return effective(*arguments, **keywords)
+
+    def cache_key(self, arguments):
+        return arguments[0].__class__
+
+
+class _TwoGeneric(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        if len(arguments) < self.minimum or (self.maximum is not None and len(arguments) > self.maximum):
+            return wrong_argument_count(len(arguments))
+        effective = self.cache.get((arguments[0].__class__, arguments[1].__class__)) or self.lookup(arguments)
+        return effective(*arguments, **keywords)
+
+
+class _ManyGeneric(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        if len(arguments) < self.minimum or (self.maximum is not None and len(arguments) > self.maximum):
+            return wrong_argument_count(len(arguments))
+        effective = self.cache.get(tuple([arguments[index].__class__ for index in self.positions])) or self.lookup(arguments)
+        return effective(*arguments, **keywords)
+
+
+class _WatchedGeneric(GenericFunction):
+    def __call__(self, *arguments, **keywords):
+        return self.watcher(self.lookup(arguments), arguments, keywords)
+
+
+def no_applicable_method(function, arguments):
+    """Call NO-APPLICABLE-METHOD; its default signals the error, with a restart RETRY."""
+    return PORTS.definitions.no_applicable_method(function, arguments, no_applicable_method_default)
+
+
+def no_applicable_method_default(function, arguments):
+    return restart_case(
+        [(sym("RETRY"), lambda: function(*arguments), "Retry calling the generic function.")],
+        lambda: no_applicable_method_error(function, arguments),
+    )
+
+
+# ---------------------------------------------------------------------------------------------------------------- definition
+
+
+def function_cell(name):
+    """(symbol, is a setf name) for a function name, a Symbol or ``(setf symbol)``."""
+    if isinstance(name, Cons) and name.car is sym("SETF") and isinstance(name.cdr, Cons):
+        return name.cdr.car, True
+    if not is_symbol(name):
+        type_error(name, "(OR SYMBOL (CONS (EQL SETF)))")
+    return name, False
+
+
+def find_generic_function(name):
+    """The generic function of that name, or ``None``."""
+    symbol, setf = function_cell(name)
+    function = symbol.setf_function if setf else symbol.function
+    return function if isinstance(function, GenericFunction) else None
+
+
+def ensure_generic_function(name, lambda_list=None, *, method_combination=None, argument_precedence_order=None, documentation=None):
+    """The generic function ``name``; made if there is none. Options that are given replace those it has.
+
+    name: a Symbol or ``(setf symbol)``. lambda_list: a Lisp list, or text for Python rooms. method_combination: a list
+    (name option...). argument_precedence_order: a list of parameter names. A name with an ordinary function or macro is an
+    error, with a restart CONTINUE that replaces it, except for symbols of COMMON-LISP.
+    """
+    symbol, setf = function_cell(name)
+    function = find_generic_function(name)
+    if function is None:
+        redefined(symbol)
+        old = symbol.setf_function if setf else symbol.function
+        opening = getattr(old, "opening", None)
+        if opening is None and not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
+            _refuse_ordinary(symbol)
+        if not setf:
+            PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", symbol)
+        function = GenericFunction(name, lambda_list) if opening is None else opening.open()
+        if setf:
+            symbol.setf_function = function
+        else:
+            symbol.function, symbol.macro = function, None
+        symbol.function_changed()
+    if method_combination is not None:
+        options = python_list(method_combination)
+        function.combination, function.combination_options = find_combination(options[0]), tuple(options[1:])
+        function.forget()
+    if argument_precedence_order is not None:
+        names = function.shape.names
+        function.precedence = [names.index(parameter) for parameter in python_list(argument_precedence_order)]
+        function.forget()
+    if documentation is not None:
+        function.__doc__ = documentation
+    return function
+
+
+def _refuse_ordinary(symbol):
+    condition = SimpleProgramError("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
+    if symbol.package is not None and symbol.package.name == "COMMON-LISP":
+        return error(condition)
+    return restart_case([(sym("CONTINUE"), lambda: None, "Replace the function binding.")], lambda: error(condition))
+
+
+def define_generic(name, lambda_list=None, *, method_combination=None, argument_precedence_order=None, documentation=None, methods=None):
+    """``defgeneric``: define or redefine the generic function ``name``; returns it.
+
+    name, lambda_list and options: see `ensure_generic_function`. methods: a list of lists (qualifiers specializers
+    lambda-list function uses-next) for the ``:method`` options; methods of an earlier ``defgeneric`` are removed. A lambda
+    list that does not fit the existing methods is an error.
+    """
+    function = find_generic_function(name)
+    if function is None:
+        function = ensure_generic_function(name, lambda_list)
+    else:
+        for method in function.from_defgeneric:
+            remove_method(function, method)
+        shape = Shape(lambda_list)
+        if any(not shape.agrees_with(method.shape) for method in function.methods):
+            error(
+                SimpleError(
+                    "New lambda-list ~S is incompatible with existing methods of ~S.~%Old lambda-list ~S",
+                    lambda_list,
+                    function,
+                    function.lambda_list,
+                )
+            )
+        function.lambda_list, function.shape = lambda_list, shape
+    function.combination, function.combination_options, function.precedence = STANDARD, (), None
+    function.from_defgeneric = []
+    ensure_generic_function(
+        name, method_combination=method_combination, documentation=documentation, argument_precedence_order=argument_precedence_order
+    )
+    for method in python_list(methods):
+        qualifiers, specializers, method_lambda_list, code, uses_next = python_list(method)
+        function.from_defgeneric.append(
+            add_method(function, qualifiers, specializers, code, lambda_list=method_lambda_list, uses_next=uses_next)
+        )
+    function.forget()
+    return function
+
+
+def specializer_of(designator):
+    """The specializer that a class, a class name, ``(eql value)`` with its value, or an `EqlSpecializer` stands for."""
+    if designator is True or designator is object:
+        return object
+    if isinstance(designator, (EqlSpecializer, type)):
+        return designator
+    if isinstance(designator, Cons) and designator.car is sym("EQL"):
+        return EqlSpecializer(designator.cdr.car)
+    return find_class_or_error(designator)
+
+
+def define_method(name, qualifiers, specializers, lambda_list, function, *, uses_next=True, documentation=None):
+    """``defmethod``: add a method to the generic function ``name``, which is made if there is none; returns the method.
+
+    name: a Symbol or ``(setf symbol)``. qualifiers: a list. specializers: a list with one entry per required parameter: a
+    class name (T for unspecialized ones) or a list ``(eql value)`` whose value is evaluated. lambda_list: the lambda list,
+    specialized or not. function: see the top of this module. uses_next: whether it takes ``next``; nil is false.
+    """
+    classes = [specializer_of(specializer) for specializer in python_list(specializers)]
+    generic_function = ensure_generic_function(name, _generic_lambda_list(lambda_list) if find_generic_function(name) is None else None)
+    return add_method(
+        generic_function, qualifiers, classes, function, lambda_list=lambda_list, uses_next=uses_next, documentation=documentation
+    )
+
+
+def _generic_lambda_list(lambda_list):
+    # The method's lambda list without specializers and defaults, and with no particular keywords.
+    result, keys = [], False
+    for item in python_list(lambda_list):
+        name = item.name if isinstance(item, Symbol) else ""
+        if name == "&AUX":
+            break
+        if not keys:
+            result.append(item.car if isinstance(item, Cons) else item)
+        keys = keys or name == "&KEY"
+    return list_from(result)
+
+
+def add_method(
+    generic_function,
+    qualifiers,
+    specializers,
+    function,
+    *,
+    lambda_list=None,
+    uses_next=True,
+    per_class=False,
+    documentation=None,
+    user=True,
+):
+    """Add a method, replacing one with the same qualifiers and specializers; returns the `Method`.
+
+    qualifiers: symbols; specializers: see `specializer_of`. per_class: ``function`` is called with the tuple of the argument
+    classes and returns the function to call, which may know their slots.
+    """
+    specializers = [specializer_of(specializer) for specializer in python_list(specializers)]
+    shape = Shape(lambda_list) if lambda_list is not None else generic_function.shape
+    method = Method(
+        generic_function, tuple(python_list(qualifiers)), specializers, function, bool(uses_next), shape, per_class, documentation
+    )
+    if not generic_function.shape.agrees_with(shape) or len(specializers) != generic_function.shape.required:
+        if generic_function.methods or generic_function.lambda_list is not None:
+            return incongruent(generic_function, method)
+        generic_function.shape = shape
+    old = find_method_or_none(generic_function, method.qualifiers, specializers)
+    if old is not None:
+        generic_function.methods.remove(old)
+    elif user:
+        generic_function.user_methods += 1
+    if not user:
+        generic_function.own_methods = [own for own in generic_function.own_methods if own is not old] + [method]
+    generic_function.methods.append(method)
+    generic_function.combination.check(generic_function, method)
+    if hasattr(function, "__dict__"):
+        function.__lisp_name__ = generic_function.__lisp_name__
+    generic_function.forget()
+    for watcher in method_watchers:
+        watcher(generic_function)
+    return method
+
+
+method_watchers: list = []
+
+
+def when_methods_change(function):
+    """Call ``function(generic_function)`` whenever methods are added to or removed from one."""
+    method_watchers.append(function)
+    return function
+
+
+def find_method_or_none(generic_function, qualifiers, specializers):
+    for method in generic_function.methods:
+        if method.qualifiers == tuple(qualifiers) and method.specializers == list(specializers):
+            return method
+    return None
+
+
+def remove_method(generic_function, method):
+    """``cl:remove-method``: returns the generic function."""
+    if method in generic_function.methods:
+        generic_function.methods.remove(method)
+        generic_function.user_methods = max(0, generic_function.user_methods - 1)
+        generic_function.forget()
+        for watcher in method_watchers:
+            watcher(generic_function)
+    return generic_function
+
+
+def generic(name, lambda_list, *, combination=None, documentation=None):
+    """A generic function of a Python room: ``publish = generic("ROSLISP::PUBLISH", "(pub message)")``.
+
+    name: ``"PACKAGE::NAME"`` or ``"(setf PACKAGE::NAME)"``. Methods: ``@publish.method(Publication, Message)``.
+    """
+    if name.startswith("(setf "):
+        name = lisp_list(sym("SETF"), sym(name[6:-1]))
+    else:
+        name = sym(name)
+    options = None if combination is None else [sym(combination) if isinstance(combination, str) else combination]
+    with our_own:
+        return ensure_generic_function(name, lambda_list, method_combination=options, documentation=documentation)
+
+
+def protocol_function(name, lambda_list, function):
+    """A generic function whose default method is ``function``."""
+    gf = generic(name, lambda_list)
+    function.lisp_default = True
+    add_method(gf, (), [True] * gf.shape.required, function, uses_next=False, user=False)
+    gf.__doc__ = function.__doc__
+    return gf

@@ -1,0 +1,311 @@
+"""Hash tables: Python dictionaries under the keys of ``ground/equality.py``.
+
+An entry is found by the hash key of its key under the table's test, and keeps the key itself, as the program sees it. Entries
+stay in the order in which they were first stored, so that two runs of a program see the same order (SBCL's is the same as long
+as nothing is removed). Functions that walk a table walk a snapshot and leave out what was removed meanwhile, so the current
+entry, or any other, may be removed on the way.
+
+A table made with ``:weakness`` does not keep its keys (or values) alive, where Python can refer to them weakly: symbols,
+instances and arrays, but not conses, numbers and strings. `sxhash` gives a number for tables that programs write themselves.
+Source: ANSI chapter 18; texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+import weakref
+from binascii import crc32
+
+from .arrays import is_bit_vector
+from .conditions import error, type_error
+from .data import UNSUPPLIED, Character, Cons, Keyword, LispString, MultipleValues, Symbol
+from .equality import KEYS, eq, eql, equal, equalp, equalp_key, is_number
+from .functions import function_of
+from .packages import sym
+
+LISP_NAMES = """
+make-hash-table gethash remhash clrhash maphash hash-table-p hash-table-count hash-table-test hash-table-size
+hash-table-rehash-size hash-table-rehash-threshold sxhash
+"""
+EXTENSION_NAMES = "hash-table-weakness hash-table-synchronized-p"
+"""Names of package SB-EXT."""
+
+_TESTS = {eq: "EQ", eql: "EQL", equal: "EQUAL", equalp: "EQUALP"}
+_BY_KEY = ("KEY", "KEY-AND-VALUE", "KEY-OR-VALUE")
+_BY_VALUE = ("VALUE", "KEY-AND-VALUE", "KEY-OR-VALUE")
+
+
+class HashTable:
+    """A hash table; for Python it is a mapping: ``table[key]``, ``key in table``, ``len(table)``, ``for key in table``.
+
+    test: "EQ", "EQL", "EQUAL" or "EQUALP". weakness: ``None`` or a keyword name such as "KEY". size: what the program asked
+    for; the table grows as it likes.
+    """
+
+    lisp_name = "HASH-TABLE"
+    __slots__ = ("test", "weakness", "entries", "hash_key", "size", "rehash_size", "rehash_threshold", "synchronized", "__weakref__")
+
+    def __init__(self, test="EQL", weakness=None, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=False):
+        self.test = test
+        self.weakness = weakness
+        self.hash_key = KEYS[test] if weakness is None else _weak_key(KEYS[test])
+        self.entries = {}
+        self.size, self.rehash_size, self.rehash_threshold = size, rehash_size, rehash_threshold
+        self.synchronized = synchronized
+
+    def get(self, key, default=None):
+        """The value of ``key``, or ``default``."""
+        entry = self.entries.get(self.hash_key(key))
+        if entry is None:
+            return default
+        return entry[1] if self.weakness is None else _strong(entry[1])
+
+    def put(self, key, value):
+        """Store ``value`` under ``key``. A key that is equal to an old one replaces its value, not the key."""
+        hash_key = self.hash_key(key)
+        entry = self.entries.get(hash_key)
+        if entry is not None:
+            entry[1] = value if self.weakness is None else self._held(value, _BY_VALUE, hash_key)
+        elif self.weakness is None:
+            self.entries[hash_key] = [key, value]
+        else:
+            self.entries[hash_key] = [self._held(key, _BY_KEY, hash_key), self._held(value, _BY_VALUE, hash_key)]
+
+    def _held(self, thing, when, hash_key):
+        if self.weakness not in when or isinstance(thing, type):
+            return thing
+        table = weakref.ref(self)
+
+        def forget(reference):
+            alive = table()
+            if alive is not None:
+                entry = alive.entries.get(hash_key)
+                if entry is not None and (entry[0] is reference or entry[1] is reference):
+                    del alive.entries[hash_key]
+
+        try:
+            return _Weak(thing, forget)
+        except TypeError:  # Python has no weak references to this
+            return thing
+
+    def remove(self, key):
+        """Remove the entry of ``key``; whether there was one."""
+        return self.entries.pop(self.hash_key(key), None) is not None
+
+    def clear(self):
+        """Remove all entries."""
+        self.entries.clear()
+
+    def items(self):
+        """Iterate over (key, value) in order of first storing; entries that are removed meanwhile are left out."""
+        entries = self.entries
+        for hash_key, entry in list(entries.items()):
+            if entries.get(hash_key) is entry:
+                yield (entry[0], entry[1]) if self.weakness is None else (_strong(entry[0]), _strong(entry[1]))
+
+    def keys(self):
+        return (key for key, _ in self.items())
+
+    def values(self):
+        return (value for _, value in self.items())
+
+    __iter__ = keys
+
+    def __len__(self):
+        return len(self.entries)
+
+    def __bool__(self):
+        return True
+
+    def __contains__(self, key):
+        return self.hash_key(key) in self.entries
+
+    def __getitem__(self, key):
+        entry = self.entries.get(self.hash_key(key))
+        if entry is None:
+            raise KeyError(key)
+        return entry[1] if self.weakness is None else _strong(entry[1])
+
+    __setitem__ = put
+
+    def __delitem__(self, key):
+        if not self.remove(key):
+            raise KeyError(key)
+
+    def __repr__(self):
+        return f"#<HASH-TABLE :TEST {self.test} :COUNT {len(self)}>"
+
+    def equalp_table(self, other):
+        """What ``equalp`` says of two tables: the same test and keys, and values that are ``equalp``."""
+        if not isinstance(other, HashTable) or self.test != other.test or len(self) != len(other):
+            return None
+        return True if all(key in other and equalp(value, other[key]) for key, value in self.items()) else None
+
+    def equalp_table_key(self):
+        """The `equalp_key` of a table."""
+        return ("hash table", self.test, frozenset((self.hash_key(key), equalp_key(value)) for key, value in self.items()))
+
+
+def _weak_key(hash_key):
+    # A symbol is its own hash key; a weak table must not hold it that way.
+    return lambda thing: (id(thing), None) if isinstance(thing, Symbol) else hash_key(thing)
+
+
+class _Weak(weakref.ref):
+    """Our own class of weak references, so that one that a program stores is not mistaken for it."""
+
+    __slots__ = ()
+
+
+def _strong(thing):
+    return thing() if thing.__class__ is _Weak else thing
+
+
+def need_table(thing):
+    """``thing`` if it is a hash table, else a type-error."""
+    if not isinstance(thing, HashTable):
+        type_error(thing, "HASH-TABLE", "\nwhen binding HASH-TABLE")
+    return thing
+
+
+def make_hash_table(*, test=UNSUPPLIED, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=None, weakness=None):
+    """``make-hash-table``: a new table. ``test`` is one of eq, eql (the default), equal, equalp, as symbol or function."""
+    if size.__class__ is not int or size < 0:
+        type_error(size, "UNSIGNED-BYTE", "\nwhen binding SB-IMPL::SIZE")
+    if weakness is not None and not (isinstance(weakness, Keyword) and weakness.name in {*_BY_KEY, *_BY_VALUE}):
+        type_error(weakness, "(MEMBER :KEY-OR-VALUE :KEY-AND-VALUE :VALUE :KEY NIL)", "\nwhen binding SB-IMPL::WEAKNESS")
+    return HashTable(
+        _test_name(test),
+        weakness and weakness.name,
+        size,
+        rehash_size,
+        rehash_threshold,
+        synchronized is not None and synchronized is not False,
+    )
+
+
+def _test_name(test):
+    if test is UNSUPPLIED:
+        return "EQL"
+    if isinstance(test, Symbol) and test.name in KEYS:
+        return test.name
+    name = _TESTS.get(test) if callable(test) and not isinstance(test, Symbol) else None
+    if name is None:
+        if not isinstance(test, Symbol) and test is not None and not callable(test):
+            type_error(test, "(OR FUNCTION SYMBOL)", "\nwhen binding SB-IMPL::TEST")
+        error("Unknown :TEST for MAKE-HASH-TABLE: ~S", test)
+    return name
+
+
+def gethash(key, table, default=None):
+    """``gethash``: two values, the value of ``key`` (or ``default``) and whether there is one."""
+    if table.__class__ is not HashTable:
+        need_table(table)
+    entry = table.entries.get(table.hash_key(key))
+    if entry is None:
+        return MultipleValues((default, None))
+    return MultipleValues((entry[1] if table.weakness is None else _strong(entry[1]), True))
+
+
+def value_in_table(key, table, default=None):
+    """The first value of `gethash`, which is what compiled code mostly wants; it saves making two."""
+    if table.__class__ is not HashTable:
+        need_table(table)
+    entry = table.entries.get(table.hash_key(key))
+    if entry is None:
+        return default
+    return entry[1] if table.weakness is None else _strong(entry[1])
+
+
+def set_gethash(value, key, table, default=None):
+    """``(setf gethash)``; ``default`` is accepted and not used, as in the standard."""
+    if table.__class__ is not HashTable or table.weakness is not None:
+        need_table(table).put(key, value)
+        return value
+    hash_key, entries = table.hash_key(key), table.entries
+    entry = entries.get(hash_key)
+    if entry is None:
+        entries[hash_key] = [key, value]
+    else:
+        entry[1] = value
+    return value
+
+
+def remhash(key, table):
+    """``remhash``: remove the entry of ``key``; whether there was one."""
+    return True if need_table(table).remove(key) else None
+
+
+def clrhash(table):
+    """``clrhash``: remove all entries; returns the table."""
+    need_table(table).clear()
+    return table
+
+
+def maphash(function, table):
+    """``maphash``: call ``function`` with each key and value; it may change or remove entries. Returns nil."""
+    function = function_of(function, "\nwhen binding SB-KERNEL:FUNCTION-DESIGNATOR")
+    for key, value in need_table(table).items():
+        function(key, value)
+
+
+def hash_table_p(thing):
+    """``hash-table-p``: whether ``thing`` is a hash table."""
+    return True if isinstance(thing, HashTable) else None
+
+
+def hash_table_count(table):
+    """``hash-table-count``: the number of entries."""
+    return len(need_table(table))
+
+
+def hash_table_test(table):
+    """``hash-table-test``: the symbol that names the test."""
+    return sym(need_table(table).test)
+
+
+def hash_table_size(table):
+    """``hash-table-size``: for how many entries there is room."""
+    return max(need_table(table).size, len(table))
+
+
+def hash_table_rehash_size(table):
+    """``hash-table-rehash-size``: what the program asked for; Python's tables grow by themselves."""
+    return need_table(table).rehash_size
+
+
+def hash_table_rehash_threshold(table):
+    """``hash-table-rehash-threshold``: likewise."""
+    return need_table(table).rehash_threshold
+
+
+def hash_table_weakness(table):
+    """``sb-ext:hash-table-weakness``: nil or the keyword."""
+    return need_table(table).weakness and sym(":" + table.weakness)
+
+
+def hash_table_synchronized_p(table):
+    """``sb-ext:hash-table-synchronized-p``: whether it was made so. With one baton every table is safe."""
+    return True if need_table(table).synchronized else None
+
+
+SETTERS = {"GETHASH": set_gethash}
+
+
+def sxhash(x, depth=4):
+    """``sxhash``: a non-negative integer that is the same for ``equal`` objects, and the same in every run."""
+    if isinstance(x, Cons):
+        return (sxhash(x.car, depth - 1) * 31 + sxhash(x.cdr, depth - 1) * 17 + 1) % _HASHES if depth else 1
+    if x.__class__ is int:
+        return abs(x) % _HASHES
+    if is_number(x):
+        return crc32(repr(x).encode())
+    if isinstance(x, (str, LispString)):
+        return crc32(str(x).encode("utf-8", "surrogatepass"))
+    if isinstance(x, (Symbol, Character)):
+        return crc32((x.name if isinstance(x, Symbol) else x.char).encode("utf-8", "surrogatepass")) + 1
+    if x is None or x is False:
+        return 0
+    return crc32("".join(map(str, x)).encode() if is_bit_vector(x) else x.__class__.__name__.encode())
+
+
+_HASHES = 0x4000000000000000

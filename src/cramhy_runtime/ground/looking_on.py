@@ -1,0 +1,41 @@
+"""Who only looks on at a program must not change what the program prints.
+
+Addresses, and numbers in names of tasks, are given in the order in which they are asked for. So what is printed for somebody who only
+looks on, such as a recorder, gets none: an object that has none yet shows as ``#<POINT {?}>``. Other tasks print as ever.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from cramhy_runtime import kernel
+
+
+class _Onlooker:
+    """The task that looks on now, if one does."""
+
+    def __init__(self):
+        self.task = _NOBODY
+
+
+_NOBODY = object()
+_onlooker = _Onlooker()
+
+
+@contextmanager
+def looking_on():
+    """While the block runs, what this task prints gets no addresses and no numbers."""
+    before, _onlooker.task = _onlooker.task, _this_task()
+    try:
+        yield
+    finally:
+        _onlooker.task = before
+
+
+def _this_task():
+    return None if kernel.active() is None else kernel.current()
+
+
+def only_looked_at():
+    """Whether what is printed now is for somebody who only looks on."""
+    return _onlooker.task is not _NOBODY and _onlooker.task is _this_task()

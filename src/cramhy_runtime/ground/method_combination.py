@@ -1,0 +1,305 @@
+"""Method combination: how the applicable methods of a call become one function.
+
+A `Combination` is built once per combination of argument classes; what it returns is cached by the generic function. The
+standard combination runs :around, :before, primary and :after methods; short forms (``progn``, ``+``, ``list`` ...) apply an
+operator to the results of all primary methods; a language may add forms of its own (`register_combination`). CRAM's ``hooks``
+(cpl.md section 11) takes every method, whatever its qualifiers, and gives the list of the results; without methods it gives ``nil``.
+Source: ANSI 7.6.6; texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+from .conditions import SimpleError, error, restart_case, warn
+from .data import Symbol, lisp_list, list_from, one, truth
+from .packages import keyword, sym, symbol_name
+from .ports import PORTS
+from .generic_errors import no_next_method_error, no_primary_method_error
+
+AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
+
+
+class NextMethod:
+    """What a method gets as ``next``: calling it is ``call-next-method``; ``exists`` is ``next-method-p``."""
+
+    __slots__ = ("following", "arguments", "keywords")
+
+    def __init__(self, following, arguments, keywords):
+        self.following, self.arguments, self.keywords = following, arguments, keywords
+
+    def __call__(self, *arguments):
+        if arguments:
+            return self.following(*arguments)
+        return self.following(*self.arguments, **self.keywords)
+
+    @property
+    def exists(self):
+        return None if isinstance(self.following, _NoNext) else True
+
+
+class _NoNext:
+    """Stands behind the last method."""
+
+    def __init__(self, generic_function, method):
+        self.generic_function, self.method = generic_function, method
+
+    def __call__(self, *arguments, **keywords):
+        return PORTS.definitions.no_next_method(self.generic_function, self.method, arguments, no_next_method_error)
+
+
+def link(generic_function, methods, classes, last=None):
+    """The function that runs the first of ``methods`` with the others as its next methods, and ``last`` behind them."""
+    following = last
+    for method in reversed(methods):
+        following = _step(method, classes, following if following is not None else _NoNext(generic_function, method))
+    return following
+
+
+def _step(method, classes, following):
+    function = method.callable_for(classes)
+    if not method.uses_next:
+        return function
+
+    def run(*arguments, **keywords):
+        return function(NextMethod(following, arguments, keywords), *arguments, **keywords)
+
+    return run
+
+
+class Combination:
+    """The standard method combination, and the interface of all others."""
+
+    lisp_name = "METHOD-COMBINATION"
+    accepts_none = False
+    documentation = None
+
+    def __init__(self, name):
+        self.name = name
+
+    def check(self, generic_function, method):
+        """Warn when ``method`` has qualifiers that this combination does not know."""
+        if not self.knows(method.qualifiers):
+            warn(
+                "Invalid qualifiers for ~A method combination in method~%  ~S:~%~S.",
+                symbol_name(self.name),
+                method,
+                list_from(method.qualifiers),
+            )
+
+    def knows(self, qualifiers):
+        return qualifiers in ((), (AROUND,), (BEFORE,), (AFTER,))
+
+    def effective(self, generic_function, methods, classes):
+        """The callable for ``methods``, the applicable methods in order, called with arguments of ``classes``."""
+        groups = {(): [], (AROUND,): [], (BEFORE,): [], (AFTER,): []}
+        for method in methods:
+            if method.qualifiers not in groups:
+                return invalid(
+                    generic_function,
+                    method,
+                    "has an invalid qualifier.~%Standard method combination requires all "
+                    "methods to have one of the single qualifiers :AROUND, :BEFORE and :AFTER or to have no "
+                    "qualifier at all.",
+                )
+            groups[method.qualifiers].append(method)
+        if not groups[()]:
+            return lambda *arguments, **keywords: retrying(generic_function, arguments, no_primary_method_error)
+        main = link(generic_function, groups[()], classes)
+        befores = [link(generic_function, [method], classes) for method in groups[(BEFORE,)]]
+        afters = [link(generic_function, [method], classes) for method in reversed(groups[(AFTER,)])]
+        if befores or afters:
+            main = _with_auxiliaries(main, befores, afters)
+        return link(generic_function, groups[(AROUND,)], classes, main)
+
+
+def _with_auxiliaries(main, befores, afters):
+    def run(*arguments, **keywords):
+        for function in befores:
+            function(*arguments, **keywords)
+        result = main(*arguments, **keywords)
+        for function in afters:
+            function(*arguments, **keywords)
+        return result
+
+    return run
+
+
+def retrying(generic_function, arguments, signal):
+    return restart_case(
+        [(sym("RETRY"), lambda: generic_function(*arguments), "Retry calling the generic function.")],
+        lambda: signal(generic_function, arguments),
+    )
+
+
+def invalid(generic_function, method, why):
+    def signal(*arguments, **keywords):
+        return error(SimpleError(f"invalid method error for ~S method:~%The method ~S on ~S {why}", method, method, generic_function))
+
+    return signal
+
+
+STANDARD = Combination(sym("STANDARD"))
+
+
+class ShortCombination(Combination):
+    """An operator over the results of all primary methods, which carry the operator's name as their qualifier.
+
+    fold: a Python function of the list of thunks, one per method.
+    """
+
+    def __init__(self, name, fold, identity_with_one_argument=False):
+        super().__init__(name)
+        self.fold, self.identity = fold, identity_with_one_argument
+
+    def knows(self, qualifiers):
+        return qualifiers in ((self.name,), (AROUND,))
+
+    def effective(self, generic_function, methods, classes):
+        name = symbol_name(self.name)
+        for method in methods:
+            if not self.knows(method.qualifiers):
+                has = "has no qualifiers" if not method.qualifiers else "has an illegal qualifier"
+                return invalid(
+                    generic_function,
+                    method,
+                    f"{has}.~%The method combination type {name} was defined with the short "
+                    f"form of DEFINE-METHOD-COMBINATION and so requires all methods have either the single qualifier "
+                    f"{name} or the single qualifier :AROUND.",
+                )
+        primaries = [method for method in methods if method.qualifiers == (self.name,)]
+        options = generic_function.combination_options
+        if options and symbol_name(options[0]) == "MOST-SPECIFIC-LAST":
+            primaries.reverse()
+        if not primaries:
+            return lambda *arguments, **keywords: retrying(generic_function, arguments, no_primary_method_error)
+        functions = [link(generic_function, [method], classes) for method in primaries]
+        if len(functions) == 1 and self.identity:
+            main = functions[0]
+        else:
+
+            def main(*arguments, **keywords):
+                return self.fold([_thunk(function, arguments, keywords) for function in functions])
+
+        return link(generic_function, [method for method in methods if method.qualifiers == (AROUND,)], classes, main)
+
+
+def _thunk(function, arguments, keywords):
+    return lambda: function(*arguments, **keywords)
+
+
+def _progn(thunks):
+    result = None
+    for thunk in thunks:
+        result = thunk()
+    return result
+
+
+def _and(thunks):
+    result = True
+    for thunk in thunks[:-1]:
+        result = one(thunk())
+        if not truth(result):
+            return None
+    return thunks[-1]()
+
+
+def _or(thunks):
+    for thunk in thunks[:-1]:
+        result = one(thunk())
+        if truth(result):
+            return result
+    return thunks[-1]()
+
+
+SPECIAL_FOLDS = {"PROGN": _progn, "AND": _and, "OR": _or}
+
+
+def fold_of(operator):
+    """The fold for ``operator``, a symbol: special for ``progn``, ``and`` and ``or``, else a call of its function."""
+    name = symbol_name(operator)
+    if name in SPECIAL_FOLDS:
+        return SPECIAL_FOLDS[name]
+    return lambda thunks: operator.function(*[one(thunk()) for thunk in thunks])
+
+
+class HookCombination(Combination):
+    """CRAM's ``hooks``: all methods, most specific first, whatever their one qualifier; the list of their results."""
+
+    accepts_none = True
+
+    def knows(self, qualifiers):
+        return len(qualifiers) == 1
+
+    def effective(self, generic_function, methods, classes):
+        for method in methods:
+            if not self.knows(method.qualifiers):
+                return invalid(
+                    generic_function,
+                    method,
+                    "has no qualifier.~%The method combination type HOOKS requires that each "
+                    "method has exactly one qualifier, which may be any symbol.",
+                )
+        functions = [link(generic_function, [method], classes) for method in methods]
+        fold = self._fold(generic_function.combination_options)
+
+        def run(*arguments, **keywords):
+            return fold([_thunk(function, arguments, keywords) for function in functions])
+
+        return run if functions else lambda *arguments, **keywords: None
+
+    def _fold(self, options):
+        for key, value in zip(options[::2], options[1::2]):
+            if symbol_name(key) == "HOOK-COMBINATION" and symbol_name(value) != "LIST":
+                return fold_of(value)
+        return lambda thunks: lisp_list(*[one(thunk()) for thunk in thunks])
+
+
+# ---------------------------------------------------------------------------------------------------------------- definitions
+
+_combinations: dict = {}
+_by_name = {"HOOKS": HookCombination}
+
+
+def register_combination(combination):
+    """Let its name name ``combination``."""
+    _combinations[combination.name] = combination
+
+
+def _define_standard_ones():
+    for name in "PROGN AND OR + APPEND NCONC LIST MAX MIN".split():
+        symbol = sym(name)
+        _combinations[symbol] = ShortCombination(symbol, fold_of(symbol), identity_with_one_argument=name != "LIST")
+    _combinations[STANDARD.name] = STANDARD
+
+
+_define_standard_ones()
+
+
+def known_combination(name):
+    """The method combination that the symbol ``name`` names, or ``None``. HOOKS is known under this name in every package."""
+    found = _combinations.get(name)
+    if found is None and isinstance(name, Symbol) and name.name in _by_name:
+        found = _combinations[name] = _by_name[name.name](name)
+    return found
+
+
+def find_combination(name):
+    """The method combination that the symbol ``name`` names; an error that names the known ones when there is none."""
+    found = known_combination(name)
+    if found is None:
+        return error(
+            SimpleError(
+                "There is no method combination named ~S. The standard ones are ~{~A~^, ~}; others are defined "
+                "with DEFINE-METHOD-COMBINATION.",
+                name,
+                list_from(sorted(map(symbol_name, _combinations))),
+            )
+        )
+    return found
+
+
+def define_short_combination(name, *, operator=None, identity_with_one_argument=None, documentation=None):
+    """``define-method-combination``, short form; returns the name. operator: a symbol, ``name`` by default."""
+    combination = ShortCombination(name, fold_of(operator if operator is not None else name), truth(identity_with_one_argument))
+    combination.documentation = documentation
+    _combinations[name] = combination
+    return name

@@ -1,0 +1,44 @@
+"""Which Python objects are numbers for a plan, and singles.
+
+A plain ``float`` stands for a single-float and is rounded to one where it becomes text or goes onto the wire. ``bool`` is no number,
+though Python says so: ``t`` and ``nil`` are symbols.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from fractions import Fraction
+
+from .conditions import FloatingPointOverflow, error, type_error
+from .data import DoubleFloat, lisp_list, one
+from .packages import sym
+
+_REALS = frozenset((int, float, Fraction, DoubleFloat))
+_pack_single = struct.Struct("<f")
+
+
+def single(value: float) -> float:
+    """``value``, a Python float, rounded to the nearest single-float (a float with 24 bits of precision)."""
+    try:
+        return _pack_single.unpack(_pack_single.pack(value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+
+
+def is_real(obj):
+    """Whether ``obj`` is a real number. Subclasses of Python's numbers count, ``bool`` does not."""
+    return obj.__class__ in _REALS or (isinstance(obj, (int, float, Fraction)) and obj.__class__ is not bool)
+
+
+def need_real(obj):
+    """``obj``, or the first of several values, if it is a real number; anything else is a ``type-error``."""
+    if is_real(obj):
+        return obj
+    first = one(obj)
+    return first if is_real(first) else type_error(first, sym("REAL"))
+
+
+def too_large_for(number, kind):
+    """Signal that ``number`` does not fit into the kind of float that ``kind`` names."""
+    return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym(kind))))

@@ -1,0 +1,443 @@
+"""Packages: which symbol a name means.
+
+A package maps names to symbols; it may use other packages (and sees their external symbols) and shadow names. NIL and T are
+the Python objects ``None`` and ``True``, so a package table may hold them besides `Symbol` objects. Source: ANSI chapter 11;
+message texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+from operator import attrgetter
+
+from cramhy_runtime.kernel.images import part, per_image
+from cramhy_runtime.kernel.typing_names import Any
+
+from . import cl_names
+from .data import Character, Keyword, LispString, Symbol
+from .ports import PORTS
+
+
+class Package:
+    """A package. ``internal`` and ``external`` map names to the symbols present in it; ``built_in``: it is part of cramhy.
+
+    ``lends_nicknames``: programs may define packages that are called like its nicknames, which it loses then. So it is with packages
+    that the original has only in a program that asks for them, when they have short nicknames; their room uses the full name.
+    """
+
+    built_in = lends_nicknames = False
+
+    def __init__(self, name, nicknames=(), use=(), documentation=None):
+        self.name = name
+        self.nicknames = list(nicknames)
+        self.use = list(use)
+        self.internal = {}
+        self.external = {}
+        self.shadowing = {}  # names, in the order in which they were shadowed
+        self.locked = False
+        self.local_nicknames = {}  # names that mean a package only while this one is current
+        self.documentation = documentation
+        self.defined = False  # by ``defpackage``, whose second call looks for differences
+
+    @property
+    def used_by(self):
+        """The packages that use this one, in order of definition."""
+        return [other for other in all_packages() if self in other.use]
+
+    def __repr__(self):
+        return f'#<PACKAGE "{self.name}">' if self.name is not None else "#<PACKAGE (deleted)>"
+
+    @property
+    def names(self):
+        return [self.name, *self.nicknames] if self.name is not None else []
+
+    def lookup(self, name):
+        """(symbol, status): status is ``"internal"``, ``"external"``, ``"inherited"`` or ``None``."""
+        if name in self.external:
+            return self.external[name], "external"
+        if name in self.internal:
+            return self.internal[name], "internal"
+        for other in self.use:
+            if name in other.external:
+                return other.external[name], "inherited"
+        return None, None
+
+    def intern(self, name):
+        """The symbol ``name`` means here; a new internal one (external in KEYWORD) when there is none."""
+        found, status = self.lookup(name)
+        if status:
+            return found
+        if self is KEYWORD:
+            symbol = Keyword(name, self)
+            self.external[name] = symbol
+        else:
+            symbol = Symbol(name, self)
+            self.internal[name] = symbol
+        return symbol
+
+    def present(self, name):
+        """Whether a symbol ``name`` is in this package itself, not inherited."""
+        return name in self.external or name in self.internal
+
+    def complete(self):
+        """Make sure that all external symbols are there; see `PythonPackage`, whose symbols are made when they are asked for."""
+
+    def import_symbol(self, symbol):
+        """Make ``symbol`` present here. An equally named other symbol is an error of class package-error."""
+        name = symbol_name(symbol)
+        found, status = self.lookup(name)
+        if status and found is not symbol:
+            PORTS.signals.package_error(
+                self,
+                f"Importing {printed(symbol)} into {self.name} would conflict with {printed(found)}, which is "
+                f"already there. Shadow one of them with :shadow or :shadowing-import-from.",
+            )
+        if not self.present(name):
+            self.internal[name] = symbol
+            if isinstance(symbol, Symbol) and symbol.package is None:
+                symbol.package = self
+
+    def shadowing_import(self, symbol):
+        name = symbol_name(symbol)
+        self.external.pop(name, None)
+        self.internal[name] = symbol
+        self.shadowing[name] = True
+
+    def shadow(self, name):
+        """Make sure that a symbol ``name`` is present here, whatever is inherited."""
+        if not self.present(name):
+            self.internal[name] = Symbol(name, self)
+        self.shadowing[name] = True
+        return self.intern(name)
+
+    def export(self, symbol):
+        name = symbol_name(symbol)
+        if name in self.external:
+            return
+        if name not in self.internal:
+            self.import_symbol(symbol)
+        self.external[name] = self.internal.pop(name)
+
+    def unexport(self, symbol):
+        name = symbol_name(symbol)
+        if name in self.external:
+            self.internal[name] = self.external.pop(name)
+
+    def unintern(self, symbol):
+        name = symbol_name(symbol)
+        for table in (self.external, self.internal):
+            if table.get(name, table) is symbol:
+                del table[name]
+                self.shadowing.pop(name, None)
+                if isinstance(symbol, Symbol) and symbol.package is self:
+                    symbol.package = None
+                return True
+        return None
+
+    def use_package(self, other):
+        """Inherit the external symbols of ``other``; a clash of names is an error unless shadowed here."""
+        if other is self or other in self.use:
+            return
+        for name, symbol in other.external.items():
+            found, status = self.lookup(name)
+            if status and found is not symbol and name not in self.shadowing:
+                PORTS.signals.package_error(
+                    self,
+                    f"{self.name} cannot use {other.name}: both {printed(symbol)} and {printed(found)} would be "
+                    f"called {name} in it. Shadow one of them with (:shadowing-import-from PACKAGE #:{name}).",
+                )
+        self.use.append(other)
+
+    def unuse_package(self, other):
+        if other in self.use:
+            self.use.remove(other)
+
+
+_packages: dict[str, Package] = per_image({})
+_ours: dict[str, Package] = {}
+"""The packages of our own code, whose symbols our modules hold: all images have the same, though not all at the same time."""
+on_demand: dict = per_image({})
+"""Packages of libraries that come with cramhy → the system that defines each, or a function that makes it; either is called upon when
+somebody asks for the package."""
+finders: list = []
+"""Who is asked for a package that nobody has registered: pairs of a function of its name, which registers it and returns it, or returns
+``None``, and a function that gives the names of all that it could make, for "did you mean"."""
+CURRENT = Symbol("*PACKAGE*")  # that of COMMON-LISP takes its place below
+
+
+def register(package):
+    """Enter ``package`` under its name and nicknames. A name that is taken is a package-error."""
+    for name in package.names:
+        if _packages.get(name, package) is not package:
+            PORTS.signals.package_error(package, f"A package named {name} already exists.")
+    for name in package.names:
+        _packages[name] = package
+    return package
+
+
+def ensure_package(name, *nicknames, use=()):
+    """The package ``name``, registered with its nicknames if it does not exist yet: what a room's ``symbols.py`` calls."""
+    return find_package(name) or ours(name, lambda: Package(name, nicknames, use))
+
+
+def ours(name, make):
+    """The package ``name`` of our own code, registered; the first image in which somebody asks makes it by ``make``."""
+    found = _ours.get(name)
+    if found is None or found.name is None:  # it was deleted
+        found = _ours[name] = make()
+    return register(found)
+
+
+def make_package(name, nicknames=(), use=()):
+    """A new registered package that uses the packages ``use``."""
+    return register(Package(name, nicknames, [find_package_or_error(other) for other in use]))
+
+
+def delete_package(package):
+    """Take ``package`` out of the world: nobody uses it any more, its symbols have no home, it has no name."""
+    for name in package.names:
+        _packages.pop(name, None)
+    for other in list(package.use):
+        package.unuse_package(other)
+    for table in (package.external, package.internal):
+        for symbol in table.values():
+            if isinstance(symbol, Symbol) and symbol.package is package:
+                symbol.package = None
+    package.name = None
+
+
+def rename_package(package, name, nicknames=()):
+    for old in package.names:
+        _packages.pop(old, None)
+    package.name, package.nicknames = name, list(nicknames)
+    return register(package)
+
+
+def all_packages():
+    """Every registered package once, in order of definition."""
+    return list(dict.fromkeys(_packages.values()))
+
+
+def symbol_name(symbol):
+    """The name of a symbol, NIL and T included."""
+    return "NIL" if symbol is None else "T" if symbol is True else symbol.name
+
+
+def symbol_package(symbol):
+    return COMMON_LISP if symbol is None or symbol is True else symbol.package
+
+
+def printed(symbol):
+    """The full name of a symbol, as messages show it: ``PACKAGE:NAME``, with two colons when it is internal."""
+    package, name = symbol_package(symbol), symbol_name(symbol)
+    if package is None:
+        return f"#:{name}"
+    if package is KEYWORD:
+        return f":{name}"
+    return f"{package.name}{':' if name in package.external else '::'}{name}"
+
+
+def is_symbol(obj):
+    return obj is None or obj is True or isinstance(obj, Symbol)
+
+
+def string_designator(designator):
+    """The string that a string, symbol or character stands for."""
+    if designator.__class__ is str:
+        return designator
+    if is_symbol(designator):
+        return symbol_name(designator)
+    return str(getattr(designator, "char", designator))
+
+
+def is_string_designator(thing):
+    """Whether ``thing`` is a string, a symbol or a character."""
+    return isinstance(thing, (str, LispString, Character)) or is_symbol(thing)
+
+
+def find_package(designator):
+    """The package a name, symbol or package stands for, or ``None``."""
+    if isinstance(designator, Package):
+        return designator
+    name = string_designator(designator)
+    nicknames = getattr(CURRENT.value, "local_nicknames", None)
+    if nicknames and name in nicknames:
+        return nicknames[name]
+    if name in on_demand:
+        maker = on_demand[name]
+        if callable(maker):
+            with our_own:
+                maker()
+        else:
+            PORTS.systems.load(maker)
+    found = _packages.get(name)
+    if found is None:
+        for find, _ in finders:
+            found = found or find(name)
+    return found
+
+
+def registered(name):
+    """The package called ``name`` if there is one by now; nothing is made on demand."""
+    return _packages.get(name)
+
+
+def defined_by_program(names):
+    """Packages called ``names`` are about to be defined: no library is loaded for them any more, and a nickname that was lent is theirs."""
+    for name in names:
+        on_demand.pop(name, None)
+        package = _packages.get(name)
+        if package is not None and package.lends_nicknames and package.name != name:
+            package.nicknames.remove(name)
+            del _packages[name]
+
+
+def find_package_or_error(designator):
+    """The package; a name without one is an error whose restarts may give another."""
+    package = find_package(designator)
+    if package is None:
+        if not is_string_designator(designator):
+            return PORTS.signals.type_error(designator, "(OR STRING SYMBOL CHARACTER PACKAGE)")
+        return PORTS.signals.package_does_not_exist(designator)
+    return package if package.name is not None else PORTS.signals.package_does_not_exist(package)
+
+
+def near_names(name, candidates, most=3):
+    """Names like ``name``, for "did you mean": the closest first."""
+    import difflib
+
+    return difflib.get_close_matches(name, list(candidates), n=most, cutoff=0.75)
+
+
+def package_names():
+    """The names and nicknames of all packages that there are or that naming them would make."""
+    return list(dict.fromkeys([*_packages, *on_demand, *(name for _, names in finders for name in names())]))
+
+
+def intern(name, package="COMMON-LISP"):
+    """The symbol ``name`` in ``package`` (a name or a `Package`); made there if there is none."""
+    found = package if isinstance(package, Package) else _packages.get(package)
+    return (found or find_package_or_error(package)).intern(name)
+
+
+def find_symbol(name, package):
+    """Two values as Python sees them: (symbol, status), status ``None`` when not there."""
+    return find_package_or_error(package).lookup(name)
+
+
+_shorthand: dict[str, object] = {}
+
+
+def sym(designator: str) -> Any:
+    """Shorthand for the runtime's own code: ``sym("CAR")``, ``sym("CPL-IMPL::PAR")``, ``sym(":NAME")``."""
+    found = _shorthand.get(designator)
+    if found is None:
+        package, _, name = designator.rpartition(":")
+        package = package.rstrip(":")
+        if designator.startswith(":"):
+            package = "KEYWORD"
+        found = _shorthand[designator] = intern(name, package or "COMMON-LISP")
+    return found
+
+
+def keyword(name: str) -> Keyword:
+    """The keyword ``:NAME``."""
+    symbol: Keyword = KEYWORD.intern(name)
+    return symbol
+
+
+KEYWORD = ours("KEYWORD", lambda: Package("KEYWORD"))
+COMMON_LISP = ours("COMMON-LISP", lambda: Package("COMMON-LISP", ["CL"]))
+COMMON_LISP.external.update({name.upper(): Symbol(name.upper(), COMMON_LISP) for name in cl_names.NAMES.split()}, NIL=None, T=True)
+CURRENT = COMMON_LISP.external["*PACKAGE*"]
+COMMON_LISP_USER = ours("COMMON-LISP-USER", lambda: Package("COMMON-LISP-USER", ["CL-USER"], [COMMON_LISP]))
+CRAMHY = ours("CRAMHY", lambda: Package("CRAMHY"))  # what macros expand into: functions of the runtime that users do not name
+
+
+# ------------------------------------------------------------------------------------------------------------------- images
+
+USERS = ("COMMON-LISP-USER", "CRAM-USER", "TESTING-USER", "PYTHON-USER")
+"""The packages of our own code whose contents are the user's: each image has its own."""
+_DEFINITIONS = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data", "reads", "writes")
+_definitions = attrgetter(*_DEFINITIONS)
+_redefined: dict[Symbol, tuple] = {}  # symbols of ours that users redefined -> what they mean by themselves
+
+
+def common(symbol):
+    """Whether all images share ``symbol``: it is of a package of ours, or nil or t."""
+    package = symbol_package(symbol)
+    return package is not None and _ours.get(package.name) is package and package.name not in USERS
+
+
+class _OurOwn:
+    """``with our_own:`` what is defined within comes with us, and is the same in all images."""
+
+    depth = 0
+
+    def __enter__(self):
+        self.depth += 1
+
+    def __exit__(self, *problem):
+        self.depth -= 1
+
+
+our_own = _OurOwn()
+
+
+def redefined(symbol):
+    """A program is about to give ``symbol`` another meaning. Of a symbol that all images share, the others keep the old one."""
+    if isinstance(symbol, Symbol) and symbol not in _redefined and not our_own.depth and common(symbol):
+        _redefined[symbol] = _state_of(symbol)
+
+
+def _state_of(symbol):
+    *others, data, reads, writes = _definitions(symbol)
+    return (*others, dict(data) if data else data, reads, writes)
+
+
+@part
+class _Redefinitions:
+    """What users made of the symbols that images share: those of our packages, and those that were there when an image was copied."""
+
+    @staticmethod
+    def take():
+        return {symbol: _definitions(symbol) for symbol in _redefined}
+
+    @staticmethod
+    def put(state):
+        for symbol, own in _redefined.items():
+            for name, value in zip(_DEFINITIONS, state.get(symbol, own)):
+                setattr(symbol, name, value)
+
+    @staticmethod
+    def copy(state):
+        for package in _users_packages():
+            for symbol in (*package.internal.values(), *package.external.values()):
+                if isinstance(symbol, Symbol) and symbol.package is package:
+                    _redefined.setdefault(symbol, _state_of(symbol))
+        return {symbol: _state_of(symbol) for symbol in _redefined}
+
+    @staticmethod
+    def new(state):
+        return {}
+
+
+def _users_packages():
+    return [package for package in all_packages() if package.name in USERS or _ours.get(package.name) is not package]
+
+
+@part
+class _UsersPackages:
+    """What is in the packages whose contents are the user's."""
+
+    @staticmethod
+    def take():
+        return {package: (package.internal, package.external, package.shadowing, package.use) for package in _users_packages()}
+
+    @staticmethod
+    def put(state):
+        for package, contents in state.items():
+            package.internal, package.external, package.shadowing, package.use = contents
+
+    @staticmethod
+    def copy(state):
+        return {package: tuple(table.copy() for table in contents) for package, contents in state.items()}

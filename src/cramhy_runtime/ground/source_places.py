@@ -1,0 +1,214 @@
+"""Where in the user's text something happens: from Python frames back to file, line and column.
+
+Compiled code carries the places of its forms, because core forms have them and Python's code objects keep them. So an error knows the
+innermost frame of a ``.lisp`` or ``.hy`` file or of a REPL line, and shows that line; frames of the runtime are not shown.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from itertools import islice
+
+from .data import list_from
+
+_LIBRARIES = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "libraries")
+
+
+_called = {}  # the names of texts that are no files → the files that they were read from
+
+
+def keep_text(filename, text, file=None):
+    """Let errors show the lines of ``text``, which is compiled under the name ``filename``, though there is no file of that name.
+
+    file: the name of the file that it was read from, if there is one. Errors call it so.
+    """
+    import linecache
+
+    linecache.cache[filename] = (len(text), None, text.splitlines(True), filename)
+    if file is not None:
+        _called[filename] = file
+
+
+def file_of_text(filename):
+    """The file that the text of that name was read from: what `keep_text` was told, or ``filename`` itself."""
+    return _called.get(filename, filename)
+
+
+def is_user_file(filename):
+    """Whether code of this file name was written by the user: Lisp, Hy, or typed at a prompt, or piped into it."""
+    filename = _called.get(filename, filename)
+    return (
+        filename.endswith((".lisp", ".hy", ".asd"))
+        and "hy_src" not in filename
+        and not filename.startswith(_LIBRARIES)
+        or filename.startswith(("<repl", "<stdin>"))
+    )
+
+
+def frame_position(frame, lasti=None):
+    """(file, line, column) of what ``frame`` is executing; the column may be ``None``."""
+    return code_position(frame.f_code, frame.f_lasti if lasti is None else lasti, frame.f_lineno)
+
+
+def code_position(code, lasti, line=None):
+    """(file, line, column) of the instruction ``lasti`` of a code object; ``line`` if the code does not tell."""
+    column = None
+    position = next(islice(code.co_positions(), lasti // 2, None), None) if lasti >= 0 else None
+    if position is not None:
+        line, _, column, _ = position
+    return code.co_filename, line, column
+
+
+def user_position(frame=None):
+    """The place of the innermost user frame at or above ``frame`` (default: the caller), or ``None``.
+
+    A frame in code that a macro made of nothing the user wrote has column 0; then the one that called it tells more.
+    """
+    frame = frame or sys._getframe(1)
+    made_by_macro = None
+    while frame is not None:
+        if is_user_file(frame.f_code.co_filename):
+            position = frame_position(frame)
+            if position[2] != 0:
+                return position
+            made_by_macro = made_by_macro or position
+        frame = frame.f_back
+    return made_by_macro
+
+
+def exception_position(exception):
+    """The place of the innermost user frame that ``exception`` passed, or ``None``; of macros' own code as in `user_position`."""
+    found, made_by_macro, traceback = None, None, exception.__traceback__
+    while traceback is not None:
+        if is_user_file(traceback.tb_frame.f_code.co_filename):
+            position = frame_position(traceback.tb_frame, traceback.tb_lasti)
+            if position[2] != 0:
+                found = position
+            else:
+                made_by_macro = position
+        traceback = traceback.tb_next
+    return found or made_by_macro
+
+
+def locate(condition, exception):
+    """Note on ``condition`` the innermost place of the user's text that ``exception`` passed, if no better one is known."""
+    if getattr(condition, "position", None) is None:
+        position = exception_position(exception)
+        if position is not None:
+            condition.position = position
+    circumstance.note(condition, exception)
+
+
+class Circumstances:
+    """What the runtime was about when an error arose, where the user's text does not say it: "while the net ... was computed".
+
+    ``@circumstance(tell)`` marks a function of the runtime: errors below it are shown with the line ``tell(its variables)``, if any,
+    and with the place that it was called from. That costs nothing until there is an error, since the function is found on the stack.
+
+    The variables are read from the frame, because a debugger asks before anything is unwound, and nets are computed at every assignment.
+    Measured: a stack of contexts for each task makes an assignment to a fluent with ten nets 1.4 to 2 times as long, and a single stack
+    for all tasks, which would be wrong, 1.2 to 1.4 times.
+    """
+
+    def __init__(self):
+        self._tellers = {}
+        self._beginnings = set()
+
+    def begins_with(self, function):
+        """Mark ``function``, in which the debugger evaluates a form: what its callers were about has nothing to do with errors in it."""
+        self._beginnings.add(function.__code__)
+        return function
+
+    def running(self, frame):
+        """(frame, instruction) of ``frame`` and its callers, up to the form that was typed in the debugger, or all."""
+        frames = []
+        while frame is not None and frame.f_code not in self._beginnings:
+            frames.append((frame, frame.f_lasti))
+            frame = frame.f_back
+        return frames
+
+    def __call__(self, tell):
+        def mark(function):
+            self._tellers[function.__code__] = tell
+            return function
+
+        return mark
+
+    def add(self, condition, line):
+        """Show ``line`` with ``condition``."""
+        lines = getattr(condition, "circumstances", None)
+        if lines is None:
+            lines = condition.circumstances = []
+        if line not in lines:
+            lines.append(line)
+
+    def note(self, condition, exception=None):
+        """Add the lines for the frames that ``exception`` passed, or for the running ones, to ``condition``, innermost first."""
+        frames = _passed(exception) if exception is not None else self.running(sys._getframe(1))
+        for index, (frame, _) in enumerate(frames):
+            tell = self._tellers.get(frame.f_code)
+            line = tell and tell(frame.f_locals)
+            if line and not _told(condition, line):
+                caller = next((frame_position(*outer) for outer in frames[index:] if is_user_file(outer[0].f_code.co_filename)), None)
+                if caller is not None and caller != getattr(condition, "position", None):
+                    line += f", called at {describe(caller)}"
+                self.add(condition, line)
+
+
+def _told(condition, line):
+    """Whether ``line`` is shown with ``condition``, which was noted before, on its way through another task."""
+    return any(known == line or known.startswith(line + ", called at ") for known in getattr(condition, "circumstances", None) or ())
+
+
+def _passed(exception):
+    frames, traceback = [], exception.__traceback__
+    while traceback is not None:
+        frames.append((traceback.tb_frame, traceback.tb_lasti))
+        traceback = traceback.tb_next
+    return frames[::-1]
+
+
+circumstance = Circumstances()
+
+
+def source_position():
+    """``cramhy::source-position``: the place of the innermost user frame as a list (file line column), or ``nil``."""
+    return list_from(user_position(sys._getframe(1)) or ())
+
+
+def describe(position):
+    """``file:line:column`` in the user's spelling."""
+    if position is None:
+        return None
+    filename, line, *column = position
+    shown = _relative(file_of_text(filename))
+    return ":".join([shown, str(line), *(str(part) for part in column if part)])
+
+
+def _relative(filename):
+    if filename.startswith("<"):
+        return filename
+    relative = os.path.relpath(filename)
+    return filename if relative.startswith("..") else relative
+
+
+def excerpt(position):
+    """The line of ``position`` with a caret under the column, two lines; empty when there is no such line."""
+    if position is None:
+        return ""
+    filename, line, *rest = position
+    import linecache  # it imports the tokenizer, for who shows a line of a file
+
+    text = linecache.getline(filename, line).rstrip("\n")
+    if not text.strip():
+        return ""
+    column = rest[0] if rest else None
+    if column is None or not 0 < column <= len(text) + 1:
+        return f"  {text}"
+    return f"  {text}\n  {' ' * (column - 1)}^"
+
+
+def describe_frame(frame):
+    """For the kernel's reports: the place in the user's text that ``frame`` stands in."""
+    return describe(user_position(frame)) if frame is not None else None

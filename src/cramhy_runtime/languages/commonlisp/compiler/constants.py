@@ -1,0 +1,141 @@
+"""The objects that compiled code refers to: symbols, quoted lists, standard functions.
+
+Each gets a name (``K17``) that is a global of the code. Code that runs at once has the objects put into its globals. Code that
+is kept in a file brings forms that make them again when it is loaded; an object that no form can make (a hash table inserted
+by ``#.``, say) makes the file one that is compiled anew each time.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
+from ..numbers.complex_numbers import parts
+from ..syntax.backquote import Comma
+from .core import List, expression, word
+
+
+class NotStorable(Exception):
+    """An object that no code can rebuild."""
+
+
+class Constants:
+    """The table of one text. ``fresh`` are the entries made since it was last asked: (name, kind, object)."""
+
+    def __init__(self, prefix="K"):
+        self.prefix = prefix
+        self.names = {}
+        self.alive = []  # ids are keys: the objects must live as long
+        self.fresh = []
+        self.made = set()
+        self.statements = []
+        self.count = 0
+
+    def name(self, kind, obj):
+        """The global name for ``obj``; kind is "object", or for the symbol ``obj`` "function" or "setf_function"."""
+        key = (kind, id(obj))
+        found = self.names.get(key)
+        if found is None:
+            self.count += 1
+            found = self.names[key] = f"{self.prefix}{self.count}"
+            self.alive.append(obj)
+            self.fresh.append((found, kind, obj))
+        return found
+
+    def own_name(self, base):
+        """A global name that nothing else in the text has."""
+        self.count += 1
+        return f"{base}_{self.prefix}{self.count}"
+
+    def take_objects(self):
+        """name → object for the entries made since the last call."""
+        fresh, self.fresh = self.fresh, []
+        return {name: obj if kind == "object" else getattr(obj, kind) for name, kind, obj in fresh}
+
+    def take_forms(self):
+        """Statements (core forms) that make the entries made since the last call."""
+        fresh, self.fresh, self.statements = self.fresh, [], []
+        for name, kind, obj in fresh:
+            if name in self.made:
+                continue
+            if is_circular(obj):
+                raise NotStorable(obj)
+            value = self.builder(obj, top=True)
+            if kind != "object":
+                value = expression(word("."), value, word(kind))
+            self.make(name, value)
+        self.fresh = []
+        return self.statements
+
+    def make(self, name, value):
+        self.statements.append(expression(word("setv"), word(name), value))
+        self.made.add(name)
+
+    def builder(self, obj, top=False):
+        """A core form that makes ``obj``. Inside a list, symbols that have a name already are referred to by it."""
+        if obj is None or obj is True:
+            return word("None" if obj is None else "True")
+        if not top:
+            known = self.names.get(("object", id(obj)))
+            if known in self.made:
+                return word(known)
+        kind = type(obj)
+        if isinstance(obj, Symbol):
+            if obj.package is None:
+                maker = expression(word("Lgensym"), obj.name)
+                if top:
+                    return maker
+                name = self.name("object", obj)  # the same symbol wherever it occurs in the text
+                self.make(name, maker)
+                return word(name)
+            return expression(word("Lintern"), obj.name, obj.package.name)
+        if kind is Cons:
+            items, cell = [], obj
+            while isinstance(cell, Cons):
+                items.append(self.builder(cell.car))
+                cell = cell.cdr
+            if cell is None:
+                return expression(word("Llist"), *items)
+            return expression(word("Ldotted"), *items, self.builder(cell))
+        if kind is str:
+            return obj
+        if kind is int:
+            return obj
+        if kind is float:
+            return float_model(obj)
+        if kind is DoubleFloat:
+            return expression(word("Ldouble"), float_model(float(obj)))
+        if kind is Fraction:
+            return expression(word("Lratio"), obj.numerator, obj.denominator)
+        if isinstance(obj, complex):
+            return expression(word("Lcomplex"), *map(self.builder, parts(obj)))
+        if kind is Character:
+            return expression(word("Lcharacter"), obj.char)
+        if kind is Comma:
+            return expression(word("Lcomma"), obj.kind, self.builder(obj.form))
+        if kind is list:
+            return List([self.builder(item) for item in obj])
+        raise NotStorable(obj)
+
+
+def is_circular(obj):
+    """Whether the conses and vectors of a constant come back to themselves."""
+    active, done, stack = set(), set(), [(obj, False)]
+    while stack:
+        item, leaving = stack.pop()
+        if leaving:
+            active.discard(id(item))
+            done.add(id(item))
+        elif isinstance(item, (Cons, list)) and id(item) not in done:
+            if id(item) in active:
+                return True
+            active.add(id(item))
+            stack.append((item, True))
+            stack += [(part, False) for part in ((item.car, item.cdr) if isinstance(item, Cons) else item)]
+    return False
+
+
+def float_model(value):
+    if value != value or value in (float("inf"), float("-inf")):
+        return expression(word("Lfloat"), str(float(value)))
+    return value

@@ -1,0 +1,570 @@
+"""From nodes to Hy: code that is made of core Hy forms with names that mean one thing.
+
+Every node is generated for a *destination*: its value is wanted as an expression, or assigned to a name, or returned, or only
+its effect is wanted. Lisp is made of expressions and Python partly of statements, so an expression may need statements before
+it; where an argument does, the arguments before it are first saved in variables, because Lisp evaluates from left to right.
+
+Exits are in ``generate_exits.py``, function definitions in ``generate_functions.py``.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from ..format.format_templates import SMALL, template
+from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
+from . import core, nodes
+from .constants import Constants, float_model
+from .core import List, expression, word
+from .destinations import EFFECT, FIRST_OF_VALUES, NONE, TRUE, VALUE, VALUES, Destination
+from .facts import NUMBERS, study, walk
+from .generate_exits import ExitGenerator
+from .generate_functions import FunctionGenerator
+from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
+
+
+COLLECT, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT FORMAT GETHASH".split())
+KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
+"""Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
+DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
+"""Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
+
+
+class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
+    """Generates one Python function at a time; `toplevel` is the entry."""
+
+    def __init__(self, constants=None):
+        self.constants = constants or Constants()
+        self.out = []
+        self.effects = 0
+        self.frames = []
+        self.scope = None
+        self.destinations = {}
+        self.jump_codes = {}
+        self.class_names = {}  # names of parameters → names of variables that hold their classes
+        self.before = []  # statements that must stand before the definition of the function being generated
+
+    # ------------------------------------------------------------------------------------------------------------- output
+
+    def emit(self, *items, pure=False):
+        self.out.append(expression(*items))
+        if not pure:
+            self.effects += 1
+
+    def call(self, name, *arguments):
+        """A call of a support function: ``call("one", x)`` is ``(Lone x)``."""
+        return expression(word("L" + name), *arguments)
+
+    def assign(self, name, value):
+        self.emit(word("setv"), word(name), value)
+
+    def captured(self, produce):
+        """(statements, result) of ``produce``, its statements kept apart."""
+        outer, self.out = self.out, []
+        try:
+            result = produce()
+            return self.out, result
+        finally:
+            self.out = outer
+
+    def temporary(self, base="Lt"):
+        return self.scope.unique(base)
+
+    def constant(self, obj):
+        return word(self.constants.name("object", obj))
+
+    def positioned(self, model, node):
+        position = node.position
+        if position is not None and model.__class__ is core.Expression:
+            model.position = position
+        return model
+
+    # ------------------------------------------------------------------------------------------------------------- driver
+
+    def gen(self, node, destination):
+        """Generate ``node``; for a value destination return the expression, else ``None``."""
+        return getattr(self, node.__class__.__name__)(node, destination)
+
+    def value(self, node):
+        return self.gen(node, VALUE)
+
+    def finish(self, model, node, destination, pure=False):
+        """Deliver an expression to its destination."""
+        kind = destination.kind
+        if not destination.multiple and not node.single and kind != "effect":
+            model = self.first_value(model)
+        if kind == "value":
+            return model
+        if kind == "return":
+            self.emit(word("return"), model)
+        elif kind == "assign":
+            self.assign(destination.name, model)
+        elif not pure:
+            self.out.append(model)
+            self.effects += 1
+        return None
+
+    def first_value(self, model):
+        """The first of the values of ``model``; nearly always it is the only one."""
+        value = word("Lv")
+        several = expression(
+            word("is-not"), expression(word("."), expression(word("setx"), value, model), word("__class__")), word("LMultipleValues")
+        )
+        return expression(word("if"), several, value, self.call("one", value))
+
+    def by_statements(self, node, destination, produce):
+        """Generate through ``produce(destination)``, which delivers by statements; for a value use a variable."""
+        if destination.kind != "value":
+            produce(destination)
+            return None
+        name = self.temporary()
+        produce(Destination("assign", name, destination.multiple))
+        return word(name)
+
+    def stable(self, model, node):
+        """Whether ``model`` means the same after later statements."""
+        if isinstance(node, nodes.Constant | nodes.FunctionReference):
+            return True
+        if isinstance(node, nodes.LocalVariable):
+            return not node.variable.assigned
+        return isinstance(node, nodes.Lambda) and isinstance(model, core.Symbol)
+
+    def arguments(self, arguments, destination=VALUE):
+        """The expressions of ``arguments``, evaluated from left to right."""
+        done = []
+        for node in arguments:
+            before = self.effects
+            statements, model = self.captured(lambda node=node: self.gen(node, destination))
+            if statements and self.effects != before:
+                for index, (earlier, earlier_node) in enumerate(done):
+                    if not self.stable(earlier, earlier_node):
+                        name = self.temporary()
+                        self.assign(name, earlier)
+                        done[index] = word(name), nodes.Constant(None)
+            self.out.extend(statements)
+            done.append((model, node))
+        return [model for model, _ in done]
+
+    # -------------------------------------------------------------------------------------------------------- values, names
+
+    def Constant(self, node, destination):
+        return self.finish(self.literal(node.value), node, destination, pure=True)
+
+    def literal(self, value):
+        if value is None or value is False:
+            return NONE
+        if value is True:
+            return TRUE
+        kind = type(value)
+        if kind is str:
+            return value
+        if kind is int and abs(value) < 1 << 64:
+            return value
+        if kind is float:
+            return float_model(value)
+        return self.constant(value)
+
+    def reference(self, variable):
+        name = word(variable.name)
+        return expression(word("."), name, word("v")) if variable.boxed else name
+
+    def LocalVariable(self, node, destination):
+        return self.finish(self.reference(node.variable), node, destination, pure=True)
+
+    def GlobalVariable(self, node, destination):
+        constant, value = self.constant(node.symbol), word("Lv")
+        place = expression(word("."), constant, word("value"))
+        bound = expression(word("is-not"), expression(word("setx"), value, place), word("Lunbound"))
+        model = expression(word("if"), bound, value, self.positioned(self.call("value", constant), node))
+        return self.finish(model, node, destination)
+
+    def SetLocal(self, node, destination):
+        variable = node.variable
+        value = node.value
+        if (
+            value.__class__ is nodes.Call
+            and value.symbol is COLLECT
+            and len(value.arguments) == 2
+            and destination.kind == "effect"
+            and value.arguments[0].__class__ is nodes.LocalVariable
+            and value.arguments[0].variable is variable
+            and not variable.boxed
+        ):
+            cell, tail = word(self.temporary("Lnew")), word(variable.name)
+            item = self.value(value.arguments[1])
+            # made without its constructor, which would be a call of a Python function
+            self.emit(word("setv"), cell, expression(word("Lnew_object"), word("LCons")))
+            self.emit(word("setv"), expression(word("."), cell, word("car")), item)
+            self.emit(word("setv"), expression(word("."), cell, word("cdr")), NONE)
+            self.emit(word("setv"), expression(word("."), tail, word("cdr")), cell)
+            self.emit(word("setv"), tail, cell)
+            return None
+        if not variable.boxed:
+            self.gen(node.value, Destination("assign", variable.name))
+        else:
+            self.emit(word("setv"), self.reference(variable), self.value(node.value))
+        return self.finish(self.reference(variable), node, destination, pure=True)
+
+    def SetGlobal(self, node, destination):
+        value = self.value(node.value)
+        place = expression(word("."), self.constant(node.symbol), word("value"))
+        self.emit(word("setv"), place, value)
+        return self.finish(place, node, destination, pure=True)
+
+    def FunctionReference(self, node, destination):
+        if node.setf:
+            model = self.call("setf_function", self.constant(node.symbol))
+        elif self.standard(node.symbol):
+            model = word(self.constants.name("function", node.symbol))
+        else:
+            model = self.call("fdefinition", self.constant(node.symbol))
+        return self.finish(model, node, destination, pure=True)
+
+    # --------------------------------------------------------------------------------------------------------------- calls
+
+    @staticmethod
+    def standard(symbol):
+        """Whether ``symbol`` names a function of Common Lisp, which nobody may redefine."""
+        return isinstance(symbol, Symbol) and symbol.package is COMMON_LISP and not isinstance(symbol.function, UndefinedFunction)
+
+    def Call(self, node, destination):
+        symbol, arguments = node.symbol, node.arguments
+        if symbol in STEPS and len(arguments) == 1:
+            symbol, arguments = STEPS[symbol], [*arguments, nodes.Constant(1)]
+        standard = self.standard(symbol) and destination.kind != "effect"
+        if standard and len(arguments) == 2 and symbol in ARITHMETIC:
+            if symbol not in COMPARISONS:
+                return self.finish(self.arithmetic(node, symbol, arguments), node, destination)
+            return self.finish(self.truth_value(self.comparison(node, symbol, arguments)), node, destination)
+        if symbol in NEGATIONS and len(arguments) == 1:
+            return self.finish(self.truth_value(expression(word("not"), self.test(arguments[0]))), node, destination)
+        if standard or symbol in KNOWN_PARTS:
+            test = self.small_test(node, symbol, arguments)
+            if test is not None:
+                return self.finish(self.truth_value(test), node, destination)
+            model = self.small_function(node, symbol, arguments)
+            if model is not None:
+                return self.finish(model, node, destination)
+        if symbol is FORMAT and destination.kind != "effect":
+            model = self.text(node, arguments)
+            if model is not None:
+                return self.finish(model, node, destination)
+        models = self.arguments(arguments)
+        if standard and symbol is GETHASH and 1 < len(arguments) < 4 and (not destination.multiple or destination is FIRST_OF_VALUES):
+            return self.finish(self.positioned(self.call("gethash", *models), node), nodes.Constant(None), destination)
+        model = self.through_object(node, symbol, models)
+        if model is not None:
+            reader = symbol.reads is not None and model[0] == "if"
+            return self.finish(model, nodes.Constant(None) if reader else node, destination)
+        if self.standard(symbol):
+            model = expression(word(self.constants.name("function", symbol)), *models)
+        elif is_symbol(symbol) and not isinstance(symbol, Symbol):
+            model = self.call("undefined", self.constant(symbol), *models)
+        else:  # named, because Python takes longer to call an attribute of an object with slots
+            function = expression(word("setx"), word("Lf"), expression(word("."), self.constant(symbol), word("function")))
+            model = expression(function, *models)
+        return self.finish(self.positioned(model, node), node, destination)
+
+    def text(self, node, arguments):
+        """``(format nil "..." ...)`` with a simple control: Python's formatting, if all arguments are atoms; else ``None``."""
+        if len(arguments) < 2 or any(argument.__class__ is not nodes.Constant for argument in arguments[:2]):
+            return None
+        control = arguments[1].value
+        if arguments[0].value is not None or control.__class__ is not str:
+            return None
+        found = template(control)
+        if found is None or len(found[1]) != len(arguments) - 2 or not found[1]:
+            return None
+        names = self.stable_names(self.arguments(arguments[2:]))
+        tests, parts = [], []
+        for kind, name in zip(found[1], names, strict=True):
+            if kind == "A" and name.__class__ is str:
+                parts.append(name)
+                continue
+            part, text = word(self.temporary()), self.call("text" + kind, name)
+            if kind == "A":
+                is_text = expression(word("is"), expression(word("."), name, word("__class__")), word("Lstr"))
+                text = expression(word("if"), is_text, name, text)
+            elif kind == "D":  # so small that Python surely prints it
+                is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
+                small = expression(word("<"), -SMALL, name, SMALL)
+                text = expression(word("if"), expression(word("and"), is_integer, small), name, text)
+            tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
+            parts.append(part)
+        filled = expression(word("%"), found[0], core.Tuple(parts))
+        if not tests:
+            return filled
+        general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)
+        simple = tests[0] if len(tests) == 1 else expression(word("and"), *tests)
+        return expression(word("if"), simple, filled, self.positioned(general, node))
+
+    def stable_names(self, models):
+        """``models``, evaluated and named as far as that is needed to use them twice."""
+        done = []
+        for model in models:
+            if model.__class__ in (core.Expression, core.List, core.Tuple):
+                name = self.temporary()
+                self.assign(name, model)
+                model = word(name)
+            done.append(model)
+        return done
+
+    def through_object(self, node, symbol, models):
+        """A call that goes through its first argument, if that is of the expected class, or ``None``.
+
+        A reader of a structure becomes an attribute. A generic function is asked for the effective function of its first
+        argument's class right here. Both look first whether the function is still that one.
+        """
+        if not isinstance(symbol, Symbol) or not models:
+            return None
+        function = symbol.function
+        if symbol.reads is not None and len(models) == 1:
+            (target,) = self.stable_names(models)
+            constant = self.constant(symbol)
+            quick = expression(word("is"), expression(word("."), target, word("__class__")), expression(word("."), constant, word("reads")))
+            slow = self.positioned(expression(expression(word("."), constant, word("function")), target), node)
+            return expression(word("if"), quick, expression(word("."), target, word(function.attribute)), self.first_value(slow))
+        kind = function.__class__.__name__
+        if DISPATCHERS.get(kind) != len(models):
+            return None
+        models = self.stable_names(models)
+        name, key = word("Lf"), expression(word("."), models[0], word("__class__"))
+        cached = expression(expression(word("."), expression(word("."), name, word("cache")), word("get")), key)
+        current = expression(word("setx"), name, expression(word("."), self.constant(symbol), word("function")))
+        same = expression(word("is"), expression(word("."), current, word("__class__")), word("L" + kind))
+        chosen = expression(word("if"), same, expression(word("or"), cached, name), name)
+        return self.positioned(expression(chosen, *models), node)
+
+    @staticmethod
+    def truth_value(test):
+        """t or nil for a Python test."""
+        return expression(word("if"), test, TRUE, NONE)
+
+    def CallLocal(self, node, destination):
+        arguments = self.arguments(node.arguments)
+        return self.finish(self.positioned(expression(self.reference(node.variable), *arguments), node), node, destination)
+
+    def CallValue(self, node, destination):
+        function, *arguments = self.arguments([node.function, *node.arguments])
+        if not isinstance(node.function, nodes.Lambda):
+            if function.__class__ is core.Symbol:
+                name = function
+            else:
+                name = word(self.temporary())
+                function = expression(word("setx"), name, function)
+            plain = expression(word("is"), expression(word("."), function, word("__class__")), word("LFunction"))
+            function = expression(word("if"), plain, name, self.call("callable", name))
+        return self.finish(self.positioned(expression(function, *arguments), node), node, destination)
+
+    def CallSetf(self, node, destination):
+        arguments = self.arguments(node.arguments)
+        attribute = getattr(getattr(node.symbol, "setf_function", None), "attribute", None)
+        if attribute is not None and destination.kind == "effect" and len(arguments) == 2 and node.symbol.writes is not None:
+            new, target = self.stable_names(arguments)
+            symbol = self.constant(node.symbol)
+            quick = expression(word("is"), expression(word("."), target, word("__class__")), expression(word("."), symbol, word("writes")))
+            slow = self.positioned(expression(self.call("setf_function", symbol), new, target), node)
+            self.emit(word("if"), quick, expression(word("setv"), expression(word("."), target, word(attribute)), new), slow)
+            return None
+        if node.symbol in KNOWN_SETTERS:
+            setter = word(self.constants.name("setf_function", node.symbol))
+        else:
+            setter = self.call("setf_function", self.constant(node.symbol))
+        return self.finish(self.positioned(expression(setter, *arguments), node), node, destination)
+
+    def CallSpread(self, node, destination):
+        arguments = self.arguments([node.function])
+        spread = self.arguments(node.arguments, VALUES)
+        unpacked = [expression(word("unpack-iterable"), self.call("all_values", item)) for item in spread]
+        return self.finish(expression(self.call("callable", arguments[0]), *unpacked), node, destination)
+
+    def Support(self, node, destination):
+        arguments = self.arguments(node.arguments, VALUES)
+        return self.finish(self.positioned(self.call(node.name, *arguments), node), node, destination)
+
+    # ------------------------------------------------------------------------------------------------------------- sequence
+
+    def Progn(self, node, destination):
+        for item in node.forms[:-1]:
+            self.gen(item, EFFECT)
+        return self.gen(node.forms[-1], destination)
+
+    def MultipleValueProg1(self, node, destination):
+        if not node.rest:
+            return self.gen(node.first, destination)
+        name = self.temporary()
+        self.gen(node.first, Destination("assign", name, destination.multiple))
+        for item in node.rest:
+            self.gen(item, EFFECT)
+        saved = nodes.Constant(None)
+        return self.finish(word(name), saved, destination, pure=True)
+
+    def LoadTimeValue(self, node, destination):
+        if not hasattr(node, "name"):
+            node.name = self.constants.own_name("Lloaded")  # a global: functions of other forms have theirs beside it
+            self.hoisted.append((node.name, node.node))
+        return self.finish(word(node.name), node, destination, pure=True)
+
+    # --------------------------------------------------------------------------------------------------------------- choice
+
+    def test(self, node):
+        """A Python expression that is true when the value of ``node`` is."""
+        if isinstance(node, nodes.Constant):
+            return NONE if node.value is None or node.value is False else TRUE
+        if isinstance(node, nodes.Call) and node.symbol in NEGATIONS and len(node.arguments) == 1:
+            return expression(word("not"), self.test(node.arguments[0]))
+        if isinstance(node, nodes.If):
+            test = self.test(node.test)
+            then_out, then = self.captured(lambda: self.test(node.then))
+            else_out, otherwise = self.captured(lambda: self.test(node.otherwise))
+            if not then_out and not else_out:
+                if otherwise is NONE:
+                    return expression(word("and"), test, then)
+                return expression(word("if"), test, then, otherwise)
+            name = self.temporary()
+            self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
+            return word(name)
+        if isinstance(node, nodes.Call) and self.standard(node.symbol):
+            if node.symbol in COMPARISONS and len(node.arguments) == 2:
+                return self.comparison(node, node.symbol, node.arguments)
+            test = self.small_test(node, node.symbol, node.arguments)
+            if test is not None:
+                return test
+        if node.boolean:
+            return expression(word("is-not"), self.value(node), NONE)
+        if isinstance(node, nodes.LocalVariable):
+            kind, value = node.variable.kind, self.reference(node.variable)
+            if kind in NUMBERS:
+                return TRUE
+            true = expression(word("is-not"), value, NONE)
+            return true if kind == "boolean" else expression(word("and"), true, expression(word("is-not"), value, word("False")))
+        model = self.gen(node, FIRST_OF_VALUES)
+        if model.__class__ is not core.Expression:
+            return self.call("truth", model)
+        value = word("Lv")
+        true = [expression(word("is-not"), expression(word("setx"), value, model), NONE), expression(word("is-not"), value, word("False"))]
+        if not node.single:
+            single = expression(word("is-not"), expression(word("."), value, word("__class__")), word("LMultipleValues"))
+            true.append(expression(word("or"), single, self.call("truth", self.call("one", value))))
+        return expression(word("and"), *true)
+
+    @staticmethod
+    def setting(name, value):
+        return expression(word("setv"), word(name), value)
+
+    def branch(self, test, then, otherwise):
+        do = word("do")
+        if otherwise:
+            self.emit(word("if"), test, expression(do, *then), expression(do, *otherwise))
+        else:
+            self.emit(word("when"), test, *then) if then else self.emit(do, test)
+
+    def If(self, node, destination):
+        if isinstance(node.test, nodes.Constant):
+            return self.gen(node.then if self.test(node.test) is TRUE else node.otherwise, destination)
+        test = self.test(node.test)
+        then_out, then = self.captured(lambda: self.gen(node.then, destination))
+        else_out, otherwise = self.captured(lambda: self.gen(node.otherwise, destination))
+        if destination.kind != "value":
+            self.branch(test, then_out, else_out)
+            return None
+        if not then_out and not else_out:
+            return expression(word("if"), test, then, otherwise)
+        name = self.temporary()
+        self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
+        return word(name)
+
+    # ------------------------------------------------------------------------------------------------------------- binding
+
+    @staticmethod
+    def alike(variable, other, forms):
+        """Whether ``variable``, bound to the value of ``other`` while ``forms`` run, can do without a Python variable of its own."""
+        if variable.writes or variable.captured or other.boxed or variable.owner is not other.owner:
+            return False
+        if not other.writes:
+            return True
+        return not other.captured and not any(item.__class__ is nodes.SetLocal and item.variable is other for item in walk(forms))
+
+    def bind_variable(self, variable, value):
+        self.assign(variable.name, self.call("cell", value) if variable.boxed else value)
+
+    def Let(self, node, destination):
+        bindings = []
+        for variable, value in node.bindings:
+            plain = not isinstance(variable, Symbol) and value.__class__ is nodes.LocalVariable
+            if plain and self.alike(variable, value.variable, [node.body, *(other for _, other in node.bindings)]):
+                variable.name = value.variable.name
+            else:
+                bindings.append((variable, value))
+        node = nodes.Let(bindings, node.body)
+        values = self.arguments([value for _, value in node.bindings])
+        lexical = [(variable, value) for (variable, _), value in zip(node.bindings, values) if not isinstance(variable, Symbol)]
+        dynamic = [(symbol, value) for (symbol, _), value in zip(node.bindings, values) if isinstance(symbol, Symbol)]
+        for variable, value in lexical:
+            self.bind_variable(variable, value)
+        if not dynamic:
+            return self.gen(node.body, destination)
+        return self.with_specials(node.body, dynamic, destination)
+
+    def with_specials(self, body, dynamic, destination):
+        def produce(inner):
+            for symbol, value in dynamic:
+                self.emit(word("Lbind"), self.constant(symbol), value)
+            statements, _ = self.captured(lambda: self.gen(body, inner))
+            undo = expression(word("finally"), self.call("unbind", len(dynamic)))
+            self.emit(word("try"), *(statements or [NONE]), undo)
+
+        return self.by_statements(body, destination, produce)
+
+    def MultipleValueBind(self, node, destination):
+        value = self.gen(node.values, VALUES)
+        count = len(node.variables)
+        names, dynamic, boxed = [], [], []
+        for variable in node.variables:
+            name = self.temporary() if isinstance(variable, Symbol) or variable.boxed else variable.name
+            names.append(word(name))
+            if isinstance(variable, Symbol):
+                dynamic.append((variable, word(name)))
+            elif variable.boxed:
+                boxed.append((variable, word(name)))
+        if names:
+            self.emit(word("setv"), List(names), self.call("spread", value, count))
+        else:
+            self.out.append(value)
+            self.effects += 1
+        for variable, name in boxed:
+            self.bind_variable(variable, name)
+        if dynamic:
+            return self.with_specials(node.body, dynamic, destination)
+        return self.gen(node.body, destination)
+
+    def Functions(self, node, destination):
+        for variable, _ in node.functions:
+            if variable.boxed:
+                self.assign(variable.name, self.call("cell", NONE))
+        for variable, function in node.functions:
+            if variable.boxed:
+                self.emit(word("setv"), self.reference(variable), self.function(function))
+            else:
+                self.function(function, variable.name)
+        return self.gen(node.body, destination)
+
+    # ------------------------------------------------------------------------------------------------------------- top level
+
+    def toplevel(self, node, name="toplevel", result="Lresult"):
+        """Statements (core forms) that run the top-level function ``node`` and leave its values in ``result``.
+
+        The constants that they need must be made before: see `Constants`.
+        """
+        self.hoisted = []
+        self.out, self.frames, self.scope = [], [], node.scope.parent or node.scope
+        self.effects = 0
+        self.jump_codes = {}
+        study(node)
+        function = self.function(node, name)
+        statements = self.out
+        while self.hoisted:
+            loaded, inner = self.hoisted.pop()
+            self.out = []
+            called = self.function(inner, f"{loaded}_function")
+            statements = [*self.out, self.setting(loaded, self.call("one", expression(called))), *statements]
+        return [*statements, self.setting(result, expression(function))]

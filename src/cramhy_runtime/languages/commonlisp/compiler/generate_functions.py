@@ -1,0 +1,128 @@
+"""Functions: from a `Lambda` node to ``defn`` or ``fn``, with its parameters and what they need done on entry.
+
+``&optional`` parameters have Python defaults; ``&rest`` and ``&key`` take Python's rest arguments apart, and Python callers may
+use keywords. A variable that must be caught anew in each turn of a loop comes as a default argument.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.ground.packages import symbol_name
+from . import nodes
+from .core import List, Tuple, expression, word
+from .generate_operators import class_of
+from .destinations import NONE, RETURN, TRUE, Destination
+
+
+class FunctionGenerator:
+    """The part of the `Generator` that defines functions."""
+
+    def Lambda(self, node, destination):
+        return self.finish(self.function(node), node, destination, pure=True)
+
+    def function(self, node, name=None):
+        """Emit the definition of a function and return the expression for it."""
+        given = name
+        if name is None:
+            base = node.name.cdr.car if isinstance(node.name, Cons) else node.name
+            name = self.scope.unique(python_name(symbol_name(base)) if base is not None else "Lfunction")
+        saved = self.out, self.frames, self.scope
+        self.out, self.frames, self.scope = [], [], node.scope
+        outer_before, self.before = self.before, []
+        parameters = self.parameters(node)
+        outer_classes, self.class_names = self.class_names, {}
+        for variable in node.parameters.required:
+            if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.kind or variable.proven):
+                noted = self.temporary("Lk")
+                self.assign(noted, class_of(word(variable.name)))
+                self.class_names[variable.name] = word(noted)
+        before, self.before = self.before, outer_before
+        self.gen(node.body, RETURN)
+        self.class_names = outer_classes
+        statements = self.out
+        scope = node.scope
+        self.out, self.frames, self.scope = saved
+        self.out.extend(before)
+        header = []
+        names = [word(variable.name) for variable in scope.nonlocals if not variable.boxed]
+        if names:
+            header.append(expression(word("nonlocal"), *names))
+        if scope.exits_set:
+            header.append(self.setting("Lexit", 0))
+        simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == word("return")
+        if simple:
+            return self.positioned(expression(word("fn"), List(parameters), statements[0][1]), node)
+        definition = expression(word("defn"), word(name), List(parameters), *header, *statements)
+        self.out.append(self.positioned(definition, node))
+        return word(name)
+
+    def parameters(self, node):
+        """The Python parameters of ``node``; what they need done on entry is emitted."""
+        spec = node.parameters
+        parameters = [word(variable.name) for variable in spec.required]
+        for variable, default, supplied in spec.optional:
+            plain = default is None and supplied is None
+            parameters.append(List([word(variable.name), NONE if plain else word("Lunsupplied")]))
+        if spec.rest is not None or spec.has_keys:
+            rest = spec.rest.name if spec.rest is not None else self.temporary("Lkeys")
+            parameters.append(expression(word("unpack-iterable"), word(rest)))
+        frozen = [variable for variable in node.scope.frozen if variable.fresh]
+        if frozen and not (spec.rest is not None or spec.has_keys):
+            parameters.append(word("*"))
+        parameters += [List([word(variable.name), word(variable.name)]) for variable in frozen]
+        if spec.has_keys:
+            keywords, parser = self.temporary("Lpython"), self.temporary("Lparse")
+            parameters.append(expression(word("unpack-mapping"), word(keywords)))
+        for variable, default, supplied in spec.optional:
+            self.default(variable, default, supplied)
+        if spec.has_keys:
+            table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
+            values = expression(word(parser), word(rest), word(keywords))
+            self.before.append(
+                self.setting(parser, self.call("key_parser", self.constant_keys(table), TRUE if spec.allow_other_keys else NONE))
+            )
+            if spec.keys:
+                self.keys_in_order(spec.keys, table, word(rest), word(keywords), values)
+            else:
+                self.out.append(values)
+        if spec.rest is not None:
+            self.assign(spec.rest.name, self.call("list_from", word(spec.rest.name)))
+        for variable, default, supplied, _ in spec.keys:
+            self.default(variable, default, supplied)
+        return parameters
+
+    def keys_in_order(self, keys, table, rest, python, values):
+        """Give the parameters ``keys`` their values: those in the order of the lambda list, as mostly written, are taken one by one.
+
+        Where arguments are left over then, all are sorted by the parser: ``values``.
+        """
+        taken, last = word(self.temporary("Ltaken")), word(self.temporary("Llast"))
+        self.emit(word("setv"), last, expression(word("-"), self.call("len", rest), 1))
+        self.emit(word("setv"), taken, 0)
+        for (variable, *_), (key, plain) in zip(keys, table, strict=True):
+            found = expression(
+                word("and"),
+                expression(word("<"), taken, last),
+                expression(word("is"), expression(word("get"), rest, taken), self.constant(key)),
+            )
+            take = [
+                self.setting(variable.name, expression(word("get"), rest, expression(word("+"), taken, 1))),
+                self.setting(taken, expression(word("+"), taken, 2)),
+            ]
+            self.branch(found, take, [self.setting(variable.name, NONE if plain else word("Lunsupplied"))])
+        left = expression(word("or"), expression(word("<="), taken, last), python)
+        self.emit(word("when"), left, expression(word("setv"), List([word(variable.name) for variable, *_ in keys]), values))
+
+    def constant_keys(self, table):
+        return Tuple([Tuple([self.constant(key), NONE if plain else word("Lunsupplied")]) for key, plain in table])
+
+    def default(self, variable, default, supplied):
+        missing = expression(word("is"), word(variable.name), word("Lunsupplied"))
+        if supplied is not None:
+            self.assign(supplied.name, expression(word("if"), missing, NONE, TRUE))
+        elif default is None:
+            return
+        value = default if default is not None else nodes.Constant(None)
+        statements, _ = self.captured(lambda: self.gen(value, Destination("assign", variable.name)))
+        self.emit(word("when"), missing, *statements)

@@ -1,0 +1,330 @@
+"""What compiled code calls.
+
+The names that generated code uses begin with ``L``: no Lisp name becomes such a Python name, so they cannot clash.
+`NAMESPACE` maps them to the functions here; the globals of every piece of compiled code contain it.
+"""
+
+from __future__ import annotations
+
+from ..collections.sequences import length
+from ..collections.arrays import aref
+from fractions import Fraction
+from itertools import zip_longest
+from operator import itemgetter
+from types import FunctionType
+
+from cramhy_runtime.ground.catching import ThrowExit, catch, throw  # noqa: F401  compiled code calls them
+from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.budget import TICKS, budget
+
+from cramhy_runtime.ground.conditions import (
+    Condition,
+    HandlerExit,
+    SimpleControlError,
+    caught,
+    enter_case,
+    error,
+    foreign_case,
+    program_error,
+    unbound_variable,
+    unknown_key,
+)
+from cramhy_runtime.ground.data import (
+    Character,
+    Cons,
+    DoubleFloat,
+    Keyword,
+    MultipleValues,
+    Symbol,
+    UNBOUND,
+    UNSUPPLIED,
+    UndefinedFunction,
+    all_values,
+    list_from,
+    lisp_list,
+    one,
+    truth,
+)
+from cramhy_runtime.ground.hash_tables import value_in_table
+from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
+from cramhy_runtime.ground.functions import function_of
+from ..format.format_templates import decimal, prin1_atom, princ_atom
+from ..numbers import arithmetic
+from ..numbers.irrational import complex_
+from cramhy_runtime.ground.generic_functions import FirstOfTwo, UnaryGeneric
+from cramhy_runtime.ground.packages import intern, keyword, printed
+from ..syntax.backquote import Comma
+from .declared_types import checked
+
+
+class Cell:
+    """A variable of its own for each turn of a loop."""
+
+    __slots__ = ("v",)
+
+    def __init__(self, v):
+        self.v = v
+
+
+class BlockExit(BaseException):
+    """Unwinds to a ``block`` or ``tagbody`` of an outer function. One object per entry of the block, its own token."""
+
+    value = None
+    active = True
+
+
+def counting(start, limit, step, inclusive):
+    """What a loop counts through: from ``start`` by the integer ``step`` up or down to ``limit``, in parts.
+
+    Each turn counts as a checkpoint, and between the parts others may get a turn. A limit that is a float, or no number at all, is
+    the generic functions' business.
+    """
+    if start.__class__ is not int or limit.__class__ is not int:
+        return (_counting_by_comparison(start, limit, step, inclusive),)
+    stop = limit + (1 if step > 0 else -1) if inclusive else limit
+    turns = range(start, stop, step)
+    return _parts(turns, len(turns))
+
+
+def _counting_by_comparison(number, limit, step, inclusive):
+    past = (arithmetic.gt2 if inclusive else arithmetic.ge2) if step > 0 else (arithmetic.lt2 if inclusive else arithmetic.le2)
+    while past(number, limit) is None:
+        yield number
+        number = arithmetic.add2(number, step)
+        kernel.checkpoint()
+
+
+def _parts(sequence, size):
+    """``sequence`` in parts."""
+    if size <= TICKS:
+        budget.left -= size
+        if budget.left < 0:
+            kernel.slice_over()
+        return (sequence,)
+    return _ticking(sequence, size)
+
+
+def _ticking(sequence, size):
+    for start in range(0, size, TICKS):
+        yield sequence[start : start + TICKS]
+        budget.left -= TICKS
+        if budget.left < 0:
+            kernel.slice_over()
+
+
+def items(vector):
+    """What a loop over the elements of ``vector`` goes through, in parts. The loop does not change the vector."""
+    return _parts(vector, len(vector)) if vector.__class__ is list else (_items(vector),)
+
+
+def _items(vector):
+    index = 0
+    while index < length(vector):
+        yield aref(vector, index)
+        index += 1
+        kernel.checkpoint()
+
+
+def block_value(exit_, token):
+    """The values that ``token`` was left with; any other exit goes on."""
+    if exit_ is not token:
+        raise exit_
+    return exit_.value
+
+
+def return_from(token, value):
+    """Leave the block of ``token`` with ``value``."""
+    if not token.active:
+        error(SimpleControlError("attempt to RETURN-FROM a block or GO to a tag that no longer exists"))
+    token.value = value
+    raise token
+
+
+def end_block(token):
+    token.active = False
+
+
+def progv(symbols, values, thunk):
+    """``progv``: bind specials computed at run time; symbols without a value become unbound."""
+    symbols, values, bound = list(symbols or ()), list(values or ()), 0
+    try:
+        for symbol, value in zip_longest(symbols, values[: len(symbols)], fillvalue=UNBOUND):
+            if not isinstance(symbol, Symbol) or symbol.constant:
+                program_error("PROGV cannot bind ~S: a variable must be a symbol that is not a constant.", symbol)
+            bind(symbol, value)
+            bound += 1
+        return thunk()
+    finally:
+        if bound:
+            unbind(bound)
+
+
+def value_of(symbol):
+    """The value of a special variable; unbound is an error with restarts."""
+    value = symbol.value
+    return unbound_variable(symbol) if value is UNBOUND else value
+
+
+def called_function(designator):
+    """The function that ``funcall`` calls."""
+    if isinstance(designator, Symbol):
+        return designator.function
+    if callable(designator) and designator is not True:
+        return designator
+    return function_of(designator, "\nwhen binding FUNCTION")
+
+
+def undefined(symbol, *arguments):
+    return UndefinedFunction(symbol)(*arguments)
+
+
+def spread(value, count):
+    """The first ``count`` values, with nil for missing ones."""
+    if value.__class__ is not MultipleValues:
+        return (value,) + (None,) * (count - 1) if count else ()
+    if len(value) >= count:
+        return value[:count]
+    return value + (None,) * (count - len(value))
+
+
+KEYS_OF_ARGUMENTS = slice(None, None, 2)
+KEPT_GETTERS = 32
+"""For how many sequences of keywords a function with &key keeps a getter."""
+
+
+def key_parser(table, allow_others):
+    """The function that sorts the &key arguments of a call; made once for each function with &key.
+
+    table: pairs of (keyword, value when missing). It takes the arguments after the positional ones, keyword objects and values,
+    and the keyword arguments of a Python caller, and gives the values in the order of ``table``; of equal keys the first counts.
+    """
+    slots = {key: index for index, (key, _) in enumerate(table)}
+    missing = tuple(value for _, value in table)
+    slot_of = slots.get
+    allow = keyword("ALLOW-OTHER-KEYS")
+    getters: dict = {}
+    getter_for = getters.get
+
+    def parse(rest, python):
+        if not python and not len(rest) & 1:
+            try:
+                getter = getter_for(rest[KEYS_OF_ARGUMENTS])
+            except TypeError:  # something that is no keyword and has no hash
+                getter = None
+            if getter is not None:
+                return getter(rest + missing)
+        values = list(missing)
+        for name, value in python.items():
+            rest = (*rest, keyword(name.upper().replace("_", "-")), value)
+        unknown = None
+        for index in range(len(rest) - 2, -1, -2):
+            try:
+                slot = slot_of(rest[index])
+            except TypeError:  # something that is no keyword and has no hash
+                slot = None
+            if slot is not None:
+                values[slot] = rest[index + 1]
+            elif rest[index] is not allow:
+                unknown = index
+        if len(rest) % 2:
+            return program_error("odd number of &KEY arguments")
+        if unknown is not None and not allow_others:
+            allowed = next((value for key, value in zip(rest[::2], rest[1::2]) if key is allow), None)
+            if not truth(allowed):
+                return unknown_key(rest[unknown], [key for key, _ in table])
+        keys = rest[::2]
+        if len(slots) > 1 and len(getters) < KEPT_GETTERS and all(key in slots for key in keys):
+            getters[keys] = itemgetter(*(2 * keys.index(key) + 1 if key in keys else len(rest) + index for key, index in slots.items()))
+        return values
+
+    return parse
+
+
+def dotted(*items):
+    """The list of all but the last of ``items``, ending in the last."""
+    return list_from(items[:-1], items[-1])
+
+
+def value_list(value):
+    return list_from(all_values(value))
+
+
+def not_(value):
+    return None if truth(value) else True
+
+
+NAMESPACE = {
+    "Lone": one,
+    "Ltruth": truth,
+    "Lnot": not_,
+    "Lvalue": value_of,
+    "Lfdefinition": fdefinition,
+    "Lsetf_function": setf_function,
+    "Lundefined": undefined,
+    "Lcallable": called_function,
+    "Lall_values": all_values,
+    "Lspread": spread,
+    "Lcell": Cell,
+    "Lbind": bind,
+    "Lunbind": unbind,
+    "Lblock": BlockExit,
+    "LHandlerExit": HandlerExit,
+    "Lenter_case": enter_case,
+    "Lforeign_case": foreign_case,
+    "Lcaught": caught,
+    "LException": (Exception, Condition),
+    "Lcheckpoint": kernel.checkpoint,
+    "LBlockExit": BlockExit,
+    "Lblock_value": block_value,
+    "Lend_block": end_block,
+    "Lreturn_from": return_from,
+    "Lrefill": kernel.refill,
+    "Lcounting": counting,
+    "Litems": items,
+    "LMultipleValues": MultipleValues,
+    "LCons": Cons,
+    "Lnew_object": object.__new__,
+    "Lstr": str,
+    "LtextA": princ_atom,
+    "LtextS": prin1_atom,
+    "LtextD": decimal,
+    "LUnaryGeneric": UnaryGeneric,
+    "LFirstOfTwo": FirstOfTwo,
+    "LFunction": FunctionType,
+    "Lcleanup": kernel.cleanup,
+    "Llist_from": list_from,
+    "Lunsupplied": UNSUPPLIED,
+    "Lcatch": catch,
+    "Lthrow": throw,
+    "Lprogv": progv,
+    "Lvalue_list": value_list,
+    "Lunbound": UNBOUND,
+    "Lchecked": checked,
+    "Lint": int,
+    "Lbudget": budget,
+    "Lkey_parser": key_parser,
+    "Lintern": intern,
+    "Lgensym": Symbol,
+    "Llist": lisp_list,
+    "Ldotted": dotted,
+    "Ldouble": DoubleFloat,
+    "Lratio": Fraction,
+    "Lcomplex": complex_,
+    "Lgethash": value_in_table,
+    "Llen": len,
+    "Lcharacter": Character,
+    "Lfloat": float,
+    "Lcomma": Comma,
+    "Ladd2": arithmetic.add2,
+    "Lsub2": arithmetic.sub2,
+    "Lmul2": arithmetic.mul2,
+    "Ldiv2": arithmetic.div2,
+    "Llt2": arithmetic.lt2,
+    "Lgt2": arithmetic.gt2,
+    "Lle2": arithmetic.le2,
+    "Lge2": arithmetic.ge2,
+    "Lnum_eq2": arithmetic.num_eq2,
+}
+
+__all__ = ["NAMESPACE", "Bindings", "Cons", "Keyword", "printed"]

@@ -1,0 +1,91 @@
+"""``eval``, ``fdefinition``, and the functions on conditions and restarts, as Lisp calls them (ANSI chapters 3, 5, 9)."""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground import conditions
+from ..compiler import support
+from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.data import UNBOUND, list_from, one
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import COMMON_LISP
+from ..reader.reader import read_from_string
+from .symbols import place_of, symbol_function
+from . import setf_places as places
+from .evaluator import PACKAGE, evaluate
+from cramhy_runtime.ground.functions import functionp
+
+LISP_NAMES = """eval compiled-function-p fdefinition get-setf-expansion
+error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name
+abort continue muffle-warning use-value store-value make-condition simple-condition-format-control
+simple-condition-format-arguments type-error-datum type-error-expected-type cell-error-name unbound-slot-instance
+arithmetic-error-operation arithmetic-error-operands print-not-readable-object stream-error-stream file-error-pathname"""
+
+
+compiled_function_p = functionp
+eval_ = evaluate
+get_setf_expansion = places.get_setf_expansion
+
+
+def fdefinition(name):
+    place = place_of(name)
+    return symbol_function(name) if place is None else support.setf_function(place)
+
+
+def error(datum, *arguments):
+    return conditions.error(datum, *arguments)  # the keyword ``hint`` is for Python
+
+
+signal, warn, cerror, break_ = conditions.signal, conditions.warn, conditions.cerror, conditions.break_
+invoke_debugger = conditions.invoke_debugger
+
+
+def compute_restarts(condition=None):
+    return list_from(conditions.compute_restarts(condition))
+
+
+find_restart, invoke_restart = conditions.find_restart, conditions.invoke_restart
+invoke_restart_interactively = conditions.invoke_restart_interactively
+abort, continue_, muffle_warning = conditions.abort, conditions.continue_, conditions.muffle_warning
+use_value, store_value = conditions.use_value, conditions.store_value
+
+
+def restart_name(restart):
+    return restart.name
+
+
+def make_condition(kind, *arguments):
+    return conditions.make_condition(kind, arguments)
+
+
+def _reader(attribute, kind="Condition"):
+    def reader(condition):
+        if not isinstance(condition, conditions.Condition):
+            return type_error(condition, "CONDITION")
+        value = getattr(condition, attribute, UNBOUND)
+        return type_error(condition, getattr(conditions, kind).lisp_name) if value is UNBOUND else value
+
+    return reader
+
+
+simple_condition_format_control = _reader("format_control", "SimpleCondition")
+type_error_datum = _reader("datum", "TypeError_")
+
+
+def type_error_expected_type(condition):
+    """The type specifier. The runtime names types by their printed form, which is read here."""
+    expected = condition.expected_type
+    if not isinstance(expected, str):
+        return expected
+    with binding(PACKAGE, COMMON_LISP):
+        return one(read_from_string(expected))
+
+
+print_not_readable_object = _reader("object", "PrintNotReadable")
+cell_error_name, unbound_slot_instance = _reader("name"), _reader("instance")
+arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _reader("operands")
+stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
+
+
+def simple_condition_format_arguments(condition):
+    arguments = condition.format_arguments
+    return list_from(arguments) if isinstance(arguments, tuple) else arguments

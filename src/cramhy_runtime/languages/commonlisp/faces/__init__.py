@@ -1,0 +1,1 @@
+"""The faces of the rooms: which package shows what of which room, under which names."""

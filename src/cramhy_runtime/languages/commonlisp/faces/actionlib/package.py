@@ -1,0 +1,57 @@
+"""The Lisp packages ACTIONLIB-LISP and ACTIONLIB. Source: roslisp.md 13.
+
+They are made when a program first names one of them or asks for their system (``image.define_actionlib``); the course has no
+actions. ``cancel-at-before-time`` is exported and has no definition, as in the original.
+"""
+
+from __future__ import annotations
+
+import importlib
+
+from ...packages.face_definition import define_face
+from ...syntax.operator_macros import export
+from ....operators import ACTIONLIB
+from ...objects.classes import alias_class
+from cramhy_runtime.ground.classes import register_class
+from cramhy_runtime.ground.packages import ensure_package, on_demand, sym
+
+NAMES = ("ACTIONLIB-LISP", "ACTIONLIB")
+
+
+def define_faces():
+    """Make the packages, once."""
+    if on_demand.pop(NAMES[0], None) is None:
+        return
+    for name in NAMES:
+        on_demand.pop(name, None)
+        ensure_package(name)
+    from cramhy_runtime.actionlib import calls, server, simple_client
+    from . import macro_support
+    from cramhy_runtime.actionlib.client import ActionClient
+
+    define_face(
+        "ACTIONLIB-LISP",
+        functions={
+            simple_client: "cancel-all-goals cancel-goal comm-state goal-id goal-status is-connected make-simple-action-client result "
+            "send-goal send-goal-and-wait state stop-tracking-goal terminal-state wait-for-result wait-for-server",
+            "cancel": simple_client.cancel_goal,
+        },
+        export="cancel-at-before-time simple-action-client",
+    )
+    define_face(
+        "ACTIONLIB",
+        functions={
+            calls: "make-action-client call-goal goal feedback",
+            simple_client: "wait-for-server",
+            server: "start-action-server cancel-request-received",
+            macro_support: "build-goal end-goal tell-feedback",
+        },
+        export="abort-goal action-client feedback-signal server-lost",
+        internal="build-goal end-goal tell-feedback",  # macros expand into them: a kept file names them, and so makes the packages
+    )
+    register_class(sym("ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"), ActionClient)
+    alias_class(sym("ACTIONLIB::ACTION-CLIENT"), ActionClient)
+    for cls in (calls.ServerLost, calls.FeedbackSignal):
+        register_class(sym(cls.lisp_name), cls)
+    export(ACTIONLIB)
+    importlib.import_module("cramhy.actionlib")

@@ -1,0 +1,452 @@
+"""Arithmetic and comparison of numbers: ``+ - * / = < max``, and the tests of a number's kind.
+
+The numeric tower is Python's: `int`, `Fraction` for ratios (a ratio with denominator 1 becomes an integer), `float` for single-
+floats, `DoubleFloat` for doubles, and three kinds of `complex`. A Python float is a single here and keeps its double precision
+inside; rounding to 24 bits happens where Common Lisp makes it visible: in the printer, in ``coerce`` to double and in
+``rational`` (see `single`). ``t``, ``nil`` and strings are no numbers, although Python's ``True`` is.
+
+The compiler calls `add2`, `sub2`, `mul2`, `div2`, `lt2`, `gt2`, `le2`, `ge2`, `num_eq2` and `num_ne2` for two arguments.
+They test for the two common classes first, so ordinary numbers pay for one set lookup each. Source: ANSI chapter 12; texts
+are SBCL's.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import sys
+from fractions import Fraction
+
+from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, error, type_error
+from cramhy_runtime.ground.data import DoubleFloat, MultipleValues, lisp_list, one
+from cramhy_runtime.ground.packages import sym
+from .complex_numbers import DoubleComplex, ExactComplex
+
+LISP_NAMES = """max min abs gcd lcm signum mod rem numberp realp rationalp integerp floatp complexp zerop plusp minusp evenp oddp
+numerator denominator"""
+
+_PLAIN = frozenset((int, float))
+_REALS = frozenset((int, float, DoubleFloat, Fraction))
+_MACHINE = frozenset((int, float, DoubleFloat))  # asked after _PLAIN: at least one argument is a double
+_NUMBERS = _REALS | {complex}
+
+_LARGEST = sys.float_info.max
+
+_pack_single = struct.Struct("f")
+
+
+def single(value):
+    """``value``, a Python float, rounded to the nearest single-float (a float with 24 bits of precision)."""
+    try:
+        return _pack_single.unpack(_pack_single.pack(value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+
+
+# ---------------------------------------------------------------------------------------------------------------- the kinds
+
+
+def is_number(obj):
+    """Whether ``obj`` is a Lisp number; as Python truth value. Subclasses of Python's numbers count, ``bool`` does not."""
+    return obj.__class__ in _NUMBERS or (isinstance(obj, (int, float, Fraction, complex)) and obj.__class__ is not bool)
+
+
+def is_real(obj):
+    return obj.__class__ in _REALS or (isinstance(obj, (int, float, Fraction)) and obj.__class__ is not bool)
+
+
+def is_rational(obj):
+    return isinstance(obj, (int, Fraction)) and obj.__class__ is not bool
+
+
+def is_integer(obj):
+    return obj.__class__ is int or (isinstance(obj, int) and obj.__class__ is not bool)
+
+
+def need_number(obj):
+    return obj if is_number(obj) else _first_value(obj, is_number, "NUMBER")
+
+
+def need_real(obj):
+    return obj if is_real(obj) else _first_value(obj, is_real, "REAL")
+
+
+def _first_value(obj, accepts, wanted):
+    # compiled code leaves it to the generic functions to take the first of several values
+    first = one(obj)
+    return first if accepts(first) else type_error(first, sym(wanted))
+
+
+def need_integer(obj):
+    return obj if is_integer(obj) else type_error(obj, sym("INTEGER"))
+
+
+def need_rational(obj):
+    return obj if is_rational(obj) else type_error(obj, sym("RATIONAL"))
+
+
+def numberp(object):
+    return True if is_number(object) else None
+
+
+def realp(object):
+    return True if is_real(object) else None
+
+
+def rationalp(object):
+    return True if is_rational(object) else None
+
+
+def integerp(object):
+    return True if is_integer(object) else None
+
+
+def floatp(object):
+    return True if isinstance(object, float) else None
+
+
+def complexp(object):
+    return True if isinstance(object, complex) else None
+
+
+# --------------------------------------------------------------------------------------------------------------- arithmetic
+
+
+def normal(value):
+    """``value``, a Fraction turned into an int when it is whole."""
+    if value.__class__ is Fraction and value.denominator == 1:
+        return value.numerator
+    return value
+
+
+def division_by_zero(operation, *operands):
+    """Signal that ``operation`` (the name of a CL function) divided by zero."""
+    return error(DivisionByZero(sym(operation), lisp_list(*operands)))
+
+
+def overflow(operation, *operands):
+    """Signal that the result of ``operation`` is too large for a float."""
+    return error(FloatingPointOverflow(sym(operation), lisp_list(*operands)))
+
+
+def _finite(operation, result, *operands):
+    """``result``, or an overflow when it is infinite though no operand was."""
+    if math.isinf(result) and all(math.isfinite(operand) for operand in operands):
+        return overflow(operation, *operands)
+    return result
+
+
+def _operate(operation, function, a, b):
+    if a.__class__ is MultipleValues or b.__class__ is MultipleValues:
+        return LISP_FUNCTIONS[operation](one(a), one(b))
+    a, b = _complex_operands(need_number(a), need_number(b))
+    try:
+        return normal(function(a, b))
+    except OverflowError:
+        return overflow(operation, a, b)
+
+
+def _complex_operands(a, b):
+    # Two contagions that Python does not know: of a double to a complex of singles, and none of a ratio to an exact number.
+    for number, other in ((a, b), (b, a)):
+        if isinstance(number, complex):
+            if other.__class__ is DoubleFloat and number.__class__ is complex:
+                return (DoubleComplex(a), b) if number is a else (a, DoubleComplex(b))
+            if other.__class__ is Fraction and isinstance(number, ExactComplex):
+                return (a, ExactComplex(b, 0)) if number is a else (ExactComplex(a, 0), b)
+    return a, b
+
+
+def add2(a, b):
+    """``(+ a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        try:
+            return a + b
+        except OverflowError:
+            return overflow("+", a, b)
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
+        return DoubleFloat(float(a) + float(b))
+    return _operate("+", lambda x, y: x + y, a, b)
+
+
+def sub2(a, b):
+    """``(- a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        try:
+            return a - b
+        except OverflowError:
+            return overflow("-", a, b)
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
+        return DoubleFloat(float(a) - float(b))
+    return _operate("-", lambda x, y: x - y, a, b)
+
+
+def mul2(a, b):
+    """``(* a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        try:
+            product = a * b
+        except OverflowError:
+            return overflow("*", a, b)
+        if product.__class__ is float and not -_LARGEST <= product <= _LARGEST:
+            return _finite("*", product, a, b)
+        return product
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
+        return DoubleFloat(_finite("*", float(a) * float(b), a, b))
+    return _operate("*", lambda x, y: x * y, a, b)
+
+
+def div2(a, b):
+    """``(/ a b)``: a ratio when both are rational."""
+    kind, other = a.__class__, b.__class__
+    if kind in _PLAIN and other in _PLAIN:
+        try:
+            if kind is int and other is int:
+                quotient, rest = divmod(a, b)
+                return Fraction(a, b) if rest else quotient
+            return a / b
+        except ZeroDivisionError:
+            return _zero_division(a, b)
+        except OverflowError:
+            return overflow("/", a, b)
+    if kind is MultipleValues or other is MultipleValues:
+        return div2(one(a), one(b))
+    a, b = _complex_operands(need_number(a), need_number(b))
+    try:
+        return normal(a / b if kind is not int or other is not int else Fraction(a, b))
+    except ZeroDivisionError:
+        return _zero_division(a, b)
+    except OverflowError:
+        return overflow("/", a, b)
+
+
+def _zero_division(a, b):
+    # The operands are shown as the operation saw them, that is, after contagion.
+    if isinstance(a, float) or isinstance(b, float):
+        kind = DoubleFloat if DoubleFloat in (a.__class__, b.__class__) else float
+        a, b = kind(a), kind(b)
+    return division_by_zero("/", a, b)
+
+
+def add(*numbers):
+    """``cl:+``"""
+    if not numbers:
+        return 0
+    total = need_number(numbers[0])
+    for number in numbers[1:]:
+        total = add2(total, number)
+    return total
+
+
+def subtract(number, *more):
+    """``cl:-``"""
+    if not more:
+        return sub2(0, number) if number.__class__ in _PLAIN and number else -need_number(number)
+    for other in more:
+        number = sub2(number, other)
+    return number
+
+
+def multiply(*numbers):
+    """``cl:*``"""
+    if not numbers:
+        return 1
+    product = need_number(numbers[0])
+    for number in numbers[1:]:
+        product = mul2(product, number)
+    return product
+
+
+def divide(number, *more):
+    """``cl:/``"""
+    if not more:
+        return div2(1, number)
+    for other in more:
+        number = div2(number, other)
+    return number
+
+
+def increment(number):
+    """``cl:1+``"""
+    return number + 1 if number.__class__ in _PLAIN else add2(number, 1)
+
+
+def decrement(number):
+    """``cl:1-``"""
+    return number - 1 if number.__class__ in _PLAIN else sub2(number, 1)
+
+
+# --------------------------------------------------------------------------------------------------------------- comparison
+
+
+def num_eq2(a, b):
+    """``(= a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        return True if a == b else None
+    return True if need_number(a) == need_number(b) else None
+
+
+def num_ne2(a, b):
+    """``(/= a b)``"""
+    return None if num_eq2(a, b) else True
+
+
+def lt2(a, b):
+    """``(< a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        return True if a < b else None
+    return True if need_real(a) < need_real(b) else None
+
+
+def gt2(a, b):
+    """``(> a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        return True if a > b else None
+    return True if need_real(a) > need_real(b) else None
+
+
+def le2(a, b):
+    """``(<= a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        return True if a <= b else None
+    return True if need_real(a) <= need_real(b) else None
+
+
+def ge2(a, b):
+    """``(>= a b)``"""
+    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+        return True if a >= b else None
+    return True if need_real(a) >= need_real(b) else None
+
+
+def _chain(compare, check):
+    def compare_all(number, *more):
+        check(number)
+        result = True
+        for other in more:
+            # All arguments are looked at, so that a wrong one is found even after the answer is clear.
+            if compare(number, other) is None:
+                result = None
+            number = other
+        return result
+
+    return compare_all
+
+
+num_eq = _chain(num_eq2, need_number)
+lt, gt, le, ge = (_chain(compare, need_real) for compare in (lt2, gt2, le2, ge2))
+
+
+def num_ne(number, *more):
+    """``cl:/=``: whether no two of the arguments are equal."""
+    numbers = [need_number(number), *more]
+    result = True
+    for index, first in enumerate(numbers):
+        for second in numbers[index + 1 :]:
+            if num_eq2(first, second):
+                result = None
+    return result
+
+
+def max_(number, *more):
+    need_real(number)
+    for other in more:
+        if gt2(other, number):
+            number = other
+    return number
+
+
+def min_(number, *more):
+    need_real(number)
+    for other in more:
+        if lt2(other, number):
+            number = other
+    return number
+
+
+def zerop(number):
+    return True if need_number(number) == 0 else None
+
+
+def plusp(number):
+    return True if need_real(number) > 0 else None
+
+
+def minusp(number):
+    return True if need_real(number) < 0 else None
+
+
+def evenp(integer):
+    return True if need_integer(integer) % 2 == 0 else None
+
+
+def oddp(integer):
+    return True if need_integer(integer) % 2 else None
+
+
+# ------------------------------------------------------------------------------------------------------- functions of integers
+
+
+def abs_(number):
+    size = abs(need_number(number))
+    return DoubleFloat(size) if isinstance(number, DoubleComplex) else size
+
+
+def signum(number):
+    """-1, 0 or 1 of the kind of ``number``; for a complex number the one of length 1 with its direction."""
+    need_number(number)
+    if isinstance(number, complex):
+        return number / abs(number) if number else number
+    if number == 0:
+        return number
+    sign = 1 if number > 0 else -1
+    return number.__class__(sign) if isinstance(number, float) else sign
+
+
+def gcd(*integers):
+    return math.gcd(*(need_integer(integer) for integer in integers))
+
+
+def lcm(*integers):
+    return math.lcm(*(need_integer(integer) for integer in integers))
+
+
+def mod(number, divisor):
+    """The rest of ``floor``: has the sign of ``divisor``."""
+    if number.__class__ is int and divisor.__class__ is int and divisor:
+        return number % divisor
+    from .rounding import floor
+
+    return floor(number, divisor)[1]
+
+
+def rem(number, divisor):
+    """The rest of ``truncate``: has the sign of ``number``."""
+    from .rounding import truncate
+
+    return truncate(number, divisor)[1]
+
+
+def numerator(rational):
+    return need_rational(rational).numerator
+
+
+def denominator(rational):
+    return need_rational(rational).denominator
+
+
+LISP_FUNCTIONS = {
+    "+": add,
+    "-": subtract,
+    "*": multiply,
+    "/": divide,
+    "1+": increment,
+    "1-": decrement,
+    "=": num_eq,
+    "/=": num_ne,
+    "<": lt,
+    ">": gt,
+    "<=": le,
+    ">=": ge,
+}
+"""The operators whose names are no Python names."""

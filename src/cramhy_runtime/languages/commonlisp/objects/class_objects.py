@@ -1,0 +1,305 @@
+"""Lisp classes as Python classes: the metaclass, STANDARD-OBJECT, and which slots a class has.
+
+``defclass`` makes a Python class. Its slots are Python attributes, so Python code reads ``robot.speed``; unbound is the
+attribute that is missing. `StandardClass` orders superclasses as CLOS does (ANSI 4.3.5), which now and then is not Python's
+order. Classes of the runtime's rooms are plain Python classes that say what Lisp sees of them: ``lisp_name =
+"PACKAGE::NAME"`` and ``initargs = {"SLOT-NAME": "attribute"}``; users may inherit from them.
+
+Which attribute holds a slot is asked per class, because two slots of different packages may have one Python name: the second
+gets an underscore more. A class that is defined again stays the same object; `touch_classes` makes everybody forget what they
+had computed about it.
+"""
+
+from __future__ import annotations
+
+from . import protocol_functions
+from cramhy_runtime.ground.printing import prin1_to_string
+
+from cramhy_runtime.ground import classes
+from cramhy_runtime.ground.conditions import SimpleError, error
+from cramhy_runtime.ground.data import UNBOUND, Symbol
+from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.ground.packages import keyword, printed, sym
+from . import builtin_classes
+
+
+class StandardClass(type):
+    """The metaclass of classes made by ``defclass`` and ``define-condition``."""
+
+    lisp_name = "STANDARD-CLASS"
+
+    def mro(cls):
+        return precedence_list(cls)
+
+    def __call__(cls, *initargs, **keywords):
+        """Python's way of ``make-instance``. A subclass that Python code wrote is made as Python makes it."""
+        if "lisp_direct_slots" in vars(cls):
+            return classes.make_instance(cls, *initargs, **keywords)
+        return super().__call__(*initargs, **keywords)
+
+
+def precedence_list(cls):
+    """The class precedence list of ``cls`` by the rule of ANSI 4.3.5.1; a contradiction is an error that explains it."""
+    classes, stack = [], [cls]
+    while stack:
+        current = stack.pop()
+        if current not in classes:
+            classes.append(current)
+            stack.extend(current.__bases__)
+    before = {current: set() for current in classes}  # what must come before each class
+    for current in classes:
+        previous = current
+        for base in current.__bases__:
+            before[base].add(previous)
+            previous = base
+    result = []
+    while len(result) < len(classes):
+        free = [current for current in classes if current not in result and before[current].issubset(result)]
+        if not free:
+            return _contradiction(cls, [current for current in classes if current not in result])
+        result.append(free[0] if len(free) == 1 else _rightmost_subclass(free, result))
+    return result
+
+
+def _rightmost_subclass(free, result):
+    for current in reversed(result):
+        for base in current.__bases__:
+            if base in free:
+                return base
+    return free[0]
+
+
+def _contradiction(cls, rest):
+    names = [_name(current) for current in rest]
+    return error(
+        SimpleError(
+            "While computing the class precedence list of the class named ~A.~%It is not possible to compute the class precedence "
+            "list because~%there is a circularity in the local precedence relations.~%This arises because of these classes: ~A.~%"
+            "A class that is listed as a superclass must not come before its own subclass.",
+            _name(cls),
+            ", ".join(names),
+        )
+    )
+
+
+def _name(cls):
+    symbol = vars(cls).get("lisp_symbol")  # the class is not complete, so it cannot be asked
+    return printed(symbol) if symbol is not None else vars(cls).get("lisp_name", cls.__name__)
+
+
+class DirectSlot:
+    """A slot as a class definition gives it. ``initfunction`` is a thunk or ``None``; ``cell`` holds the value of a class slot."""
+
+    def __init__(
+        self,
+        name,
+        initargs=(),
+        initfunction=None,
+        initform=None,
+        allocation="INSTANCE",
+        type=True,
+        documentation=None,
+        readers=(),
+        writers=(),
+    ):
+        self.name, self.initargs, self.initfunction, self.initform = name, initargs, initfunction, initform
+        self.allocation, self.type, self.documentation = allocation, type, documentation
+        self.readers, self.writers = readers, writers
+        self.cell = None
+
+
+class Slot:
+    """A slot as instances of one class have it: `DirectSlot` definitions of all superclasses combined (ANSI 7.5.3)."""
+
+    def __init__(self, name, attribute, initargs=(), initfunction=None, initform=None, type=True, owner=None):
+        self.name, self.attribute, self.initargs = name, attribute, initargs
+        self.initfunction, self.initform, self.type = initfunction, initform, type
+        self.cell = self.documentation = None
+        self.owner = owner
+        self.direct: list = []
+
+
+class ClassSlot:
+    """The Python attribute for a slot with ``:allocation :class``: one value for all instances."""
+
+    def __init__(self, name):
+        self.name, self.value = name, UNBOUND
+
+    def __get__(self, instance, owner):
+        if instance is None:
+            return self
+        if self.value is UNBOUND:
+            return protocol_functions.slot_unbound(type(instance), instance, self.name)
+        return self.value
+
+    def __set__(self, instance, value):
+        self.value = value
+
+    def __delete__(self, instance):
+        self.value = UNBOUND
+
+
+class InstanceSlot:
+    """The Python attribute for a slot of instances that hides a class slot of a superclass: one value for each instance."""
+
+    def __init__(self, attribute):
+        self.attribute = attribute
+
+    def __get__(self, instance, owner):
+        if instance is None:
+            return self
+        try:
+            return instance.__dict__[self.attribute]
+        except KeyError:
+            raise AttributeError(self.attribute) from None  # so Python asks `StandardObject.__getattr__`
+
+    def __set__(self, instance, value):
+        instance.__dict__[self.attribute] = value
+
+    def __delete__(self, instance):
+        instance.__dict__.pop(self.attribute, None)
+
+
+class StandardObject(metaclass=StandardClass):
+    """STANDARD-OBJECT: the root of the classes of ``defclass``."""
+
+    lisp_name = "STANDARD-OBJECT"
+
+    def __init__(self, *initargs, **keywords):
+        """For subclasses written in Python: ``super().__init__(name="x")`` sets slots as ``make-instance`` does."""
+        from .instances import initialize_from_python
+
+        initialize_from_python(self, initargs, keywords)
+
+    def __repr__(self):
+        return prin1_to_string(self)
+
+    def __getattr__(self, attribute):
+        # Called only when the attribute is missing: the slot is unbound, or the class was defined again with more slots.
+        slot = slot_of_attribute(type(self), attribute)
+        if slot is None:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {attribute!r}")
+        from .slots import missing_value
+
+        return missing_value(self, slot)
+
+
+builtin_classes.set_standard_object(StandardObject)
+
+
+# ------------------------------------------------------------------------------------------------------ slots of a class
+
+_slots: dict = {}
+
+
+def touch_classes():
+    """Forget everything that was computed about classes."""
+    _slots.clear()
+    builtin_classes.forget()
+    classes.touch_classes()
+
+
+def effective_slots(cls):
+    """The slots of instances of ``cls``: a dict from slot name (a Symbol) to `Slot`, in order of definition."""
+    found = _slots.get(cls)
+    if found is None:
+        found = _slots[cls] = _compute_slots(cls)
+    return found
+
+
+def slot_of_attribute(cls, attribute):
+    for slot in effective_slots(cls).values():
+        if slot.attribute == attribute:
+            return slot
+    return None
+
+
+def find_slot(cls, name):
+    """The `Slot` named by the Symbol ``name``, or ``None``.
+
+    Slots of runtime classes are also found by a symbol of the same name in another package, because a page of the reference
+    may not say in which package the original has its symbol.
+    """
+    slots = effective_slots(cls)
+    found = slots.get(name)
+    if found is None and isinstance(name, Symbol):
+        for slot in slots.values():
+            if slot.owner is not None and slot.name.name == name.name:
+                return slot
+    return found
+
+
+def direct_slots(cls):
+    """The slots that ``cls`` itself defines, a list of `DirectSlot`."""
+    own = vars(cls).get("lisp_direct_slots")
+    if own is not None:
+        return own
+    return [DirectSlot(_runtime_symbol(cls, name), (keyword(name),)) for name in vars(cls).get("initargs", ())]
+
+
+def _runtime_symbol(cls, name):
+    if "::" in name:
+        return sym(name)
+    package = vars(cls).get("lisp_name", "").rpartition("::")[0]
+    return sym(f"{package}::{name}" if package else name)
+
+
+def _compute_slots(cls):
+    slots: dict = {}
+    taken = _python_attributes(cls)
+    kept = vars(cls).get("lisp_attributes", {})  # the attributes before the class was defined again
+    lisp_defined = [base for base in cls.__mro__ if "lisp_direct_slots" in vars(base)]
+    for base in reversed(cls.__mro__):
+        if base not in lisp_defined:
+            for name, attribute in vars(base).get("initargs", {}).items():
+                symbol = _runtime_symbol(base, name)
+                slots[symbol] = Slot(symbol, attribute, (keyword(name.rpartition("::")[2]),), owner=base)
+                taken.add(attribute)
+    for base in reversed(lisp_defined):
+        for direct in base.lisp_direct_slots:
+            slot = slots.get(direct.name)
+            if slot is None:
+                attribute = kept.get(direct.name) or _free_attribute(direct.name, taken)
+                slot = slots[direct.name] = Slot(direct.name, attribute)
+                taken.add(attribute)
+            _inherit(slot, direct)
+    return slots
+
+
+def _free_attribute(symbol, taken):
+    attribute = python_name(symbol.name)
+    while attribute in taken:
+        attribute += "_"
+    return attribute
+
+
+def _inherit(slot, direct):
+    # Called from the least to the most specific class: the later definition wins, initargs add up.
+    slot.direct.insert(0, direct)
+    slot.initargs = tuple(dict.fromkeys((*direct.initargs, *slot.initargs)))
+    if direct.initfunction is not None:
+        slot.initfunction, slot.initform = direct.initfunction, direct.initform
+    if direct.type is not True:
+        slot.type = direct.type
+    slot.cell = direct.cell
+    slot.documentation = direct.documentation if direct.documentation is not None else slot.documentation
+
+
+def _python_attributes(cls):
+    """Names that a slot may not take as its attribute: those that Python code of runtime superclasses uses.
+
+    A subclass that somebody wrote in Python knows the slots by their names and takes none away.
+    """
+    taken = set()
+    lisp_defined = tuple(base for base in cls.__mro__ if "lisp_direct_slots" in vars(base))
+    for base in cls.__mro__:
+        if base is object or lisp_defined and issubclass(base, lisp_defined) and base not in lisp_defined:
+            continue
+        for name, value in vars(base).items():
+            if isinstance(value, (ClassSlot, InstanceSlot)):
+                continue
+            taken.add(name)
+            code = getattr(value, "__code__", None)
+            if code is not None and base is not StandardObject and "lisp_direct_slots" not in vars(base):
+                taken.update(code.co_names)
+    return taken

@@ -1,0 +1,317 @@
+"""Making, initializing and changing instances.
+
+``make-instance`` works from a plan per class: which initarg sets which attributes, which slots have initforms, which initargs
+are valid. Where users defined methods for INITIALIZE-INSTANCE or SHARED-INITIALIZE that apply to the class, the protocol of
+ANSI 7.1 runs as generic functions; else the plan is carried out directly, with the same result. A runtime class (plain Python)
+with an ``__init__`` gets the initargs that are parameters of it as Python keywords. Texts are SBCL's.
+"""
+
+from __future__ import annotations
+
+from . import protocol_functions
+import copy
+
+from cramhy_runtime.ground.condition_types import Condition, Error, shown
+from cramhy_runtime.ground.conditions import SimpleError, error, program_error
+from cramhy_runtime.ground.data import UNBOUND, list_from, one, python_list
+from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
+from .builtin_classes import BuiltInClass, lisp_mro
+from .class_definition import default_initargs
+from .class_objects import StandardObject, effective_slots, find_slot
+from cramhy_runtime.ground.classes import when_classes_change
+from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
+from cramhy_runtime.ground.generic_functions import ALLOW_OTHER_KEYS, other_keys_allowed, when_methods_change
+
+
+class InitargError(Error):
+    """An initialization argument that no slot and no method takes."""
+
+    lisp_name = "SB-PCL::INITARG-ERROR"
+    initargs = {"CLASS": "class_", "INITARGS": "invalid"}
+
+    def __init__(self, class_=None, invalid=(), **slots):
+        super().__init__(**slots)
+        self.class_, self.invalid = class_, invalid
+
+    def report(self):
+        names = ", ".join(shown(name) for name in self.invalid)
+        plural = "s" if len(self.invalid) > 1 else ""
+        return (
+            f"Invalid initialization argument{plural}:\n  {names}\nin call for class {shown(self.class_)}.\nSee also:\n"
+            f"The ANSI Standard, Section 7.1.2"
+        )
+
+
+_plans: dict = {}
+
+
+@when_classes_change
+def _forget_plans():
+    _plans.clear()
+
+
+@when_methods_change
+def _methods_changed(generic_function):
+    name = generic_function.__lisp_name__
+    if is_symbol(name) and symbol_name(name) in _PROTOCOL:
+        _plans.clear()
+
+
+_PROTOCOL = ("INITIALIZE-INSTANCE", "SHARED-INITIALIZE", "ALLOCATE-INSTANCE", "REINITIALIZE-INSTANCE")
+
+
+class Plan:
+    """How instances of one class are made."""
+
+    def __init__(self, cls):
+        self.cls = cls
+        _check_finalized(cls)
+        slots = effective_slots(cls).values()
+        self.targets: dict = {}  # initarg -> slots that it sets
+        for slot in slots:
+            for key in slot.initargs:
+                self.targets.setdefault(key, []).append(slot)
+        self.initforms = [(slot, slot.initfunction) for slot in slots if slot.initfunction is not None and slot.cell is None]
+        self.defaults = default_initargs(cls)
+        self.python_init, self.parameters = _python_init(cls, slots)
+        methods = [
+            method
+            for function in (protocol_functions.initialize_instance, protocol_functions.shared_initialize)
+            for method in applicable_user_methods(function, cls)
+        ]
+        self.custom = bool(methods) and not issubclass(cls, Condition)
+        self.valid = None
+        if not issubclass(cls, Condition) and not any(method.shape.allow_other_keys for method in methods):
+            self.valid = {*self.targets, *self.parameters, ALLOW_OTHER_KEYS, *(key for method in methods for key in method.shape.keys)}
+        self.version = vars(cls).get("lisp_version", 0)
+
+    def check(self, initargs):
+        if len(initargs) % 2:
+            program_error("odd number of &KEY arguments")
+        if self.valid is None:
+            return
+        wrong = [key for key in initargs[::2] if key not in self.valid]
+        if wrong and not other_keys_allowed(initargs):
+            error(InitargError(self.cls, list(reversed(dict.fromkeys(wrong)))))
+
+    def allocate(self, initargs):
+        """A new object, for which Python's ``__init__`` has run, if the class has one."""
+        obj = self.cls.__new__(self.cls)
+        if self.python_init is not None:
+            given = {}
+            for index in range(0, len(initargs), 2):
+                parameter = self.parameters.get(initargs[index])
+                if parameter is not None:
+                    given.setdefault(parameter, initargs[index + 1])
+            try:
+                self.python_init(obj, **given)
+            except TypeError as problem:
+                if "required" not in str(problem):
+                    raise
+                missing = [shown(key) for key, name in self.parameters.items() if name not in given and repr(name) in str(problem)]
+                error(SimpleError("~S needs the initialization argument~P ~A.", class_name(self.cls), len(missing), ", ".join(missing)))
+        if self.version:
+            obj.__dict__["lisp_version"] = self.version
+        return obj
+
+    def with_defaults(self, initargs):
+        if self.defaults:
+            given = set(initargs[::2])
+            for key, thunk in self.defaults.items():
+                if key not in given:
+                    initargs = (*initargs, key, one(thunk()))
+        return initargs
+
+    def fill(self, obj, initargs, wanted=True):
+        """Set the slots: from ``initargs``, else from the initforms of unbound slots in ``wanted`` (names, or True for all)."""
+        given = set()
+        for index in range(0, len(initargs), 2):
+            for slot in self.targets.get(initargs[index], ()):
+                if slot.name not in given:
+                    given.add(slot.name)
+                    if slot.cell is not None:
+                        slot.cell.value = initargs[index + 1]
+                    elif initargs[index] not in self.parameters:
+                        setattr(obj, slot.attribute, initargs[index + 1])
+        for slot, initfunction in self.initforms:
+            if slot.name not in given and (wanted is True or slot.name in wanted) and slot.attribute not in obj.__dict__:
+                setattr(obj, slot.attribute, one(initfunction()))
+
+
+def _check_finalized(cls):
+    for base in cls.__mro__:
+        if vars(base).get("lisp_forward_reference"):
+            error(
+                SimpleError(
+                    "While computing the class precedence list of the class named ~A.~%The class named ~A is a forward "
+                    "referenced class.~%The class named ~A is a direct superclass of the class named ~A.",
+                    qualified(class_name(cls)),
+                    qualified(class_name(base)),
+                    qualified(class_name(base)),
+                    qualified(class_name(_child(cls, base))),
+                )
+            )
+
+
+def _child(cls, base):
+    """The class among ``cls`` and its superclasses that names ``base`` as its superclass."""
+    return next(each for each in cls.__mro__ if base in each.__bases__)
+
+
+def _python_init(cls, slots):
+    """(the ``__init__`` of the runtime class behind ``cls``, or None; its parameters by initarg)"""
+    for base in cls.__mro__:
+        if base in (object, BaseException, Exception, StandardObject):
+            continue
+        init = vars(base).get("__init__")
+        if init is None or "lisp_direct_slots" in vars(base):
+            continue
+        import inspect  # 5 ms, and most programs make no instance of a Python class
+
+        names = [
+            name
+            for name, parameter in list(inspect.signature(init).parameters.items())[1:]
+            if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
+        ]
+        parameters = {}
+        for slot in slots:
+            if slot.attribute in names:
+                parameters.update((key, slot.attribute) for key in slot.initargs)
+        for name in names:
+            if name not in parameters.values():
+                parameters[keyword(name.rstrip("_").replace("_", "-").upper())] = name
+        return init, parameters
+    return None, {}
+
+
+def applicable_user_methods(generic_function, cls):
+    """The methods of users that could apply to an instance of ``cls`` as first argument."""
+    mro = lisp_mro(cls)
+    return [
+        method
+        for method in generic_function.methods
+        if method.specializers[0] in mro and not getattr(method.function, "lisp_default", False)
+    ]
+
+
+def plan_for(cls):
+    plan = _plans.get(cls)
+    if plan is None:
+        plan = _plans[cls] = Plan(cls)
+    return plan
+
+
+# -------------------------------------------------------------------------------------------------------------- make-instance
+
+
+def make_instance(class_, *initargs, **keywords):
+    """``cl:make-instance`` for a class or its name. Python callers may give initargs as keywords: ``make_instance(cls, x=1)``."""
+    cls = class_ if isinstance(class_, type) else find_class_or_error(class_)
+    if keywords:
+        initargs = _with_keywords(initargs, keywords)
+    plan = _plans.get(cls) or _plan_or_error(cls)
+    if isinstance(cls, StructureClass):
+        return cls.lisp_structure.construct(*initargs)
+    initargs = plan.with_defaults(initargs)
+    plan.check(initargs)
+    obj = plan.allocate(initargs)
+    if plan.custom:
+        protocol_functions.initialize_instance(obj, *initargs)
+    else:
+        plan.fill(obj, initargs)
+    return obj
+
+
+def _with_keywords(initargs, keywords):
+    return (*initargs, *(part for name, value in keywords.items() for part in (keyword(name.rstrip("_").replace("_", "-").upper()), value)))
+
+
+def initialize_from_python(instance, initargs, keywords):
+    """Set the slots of an instance of a Python subclass, whose ``__init__`` is running, from initargs and initforms."""
+    plan = plan_for(type(instance))
+    initargs = plan.with_defaults(_with_keywords(initargs, keywords))
+    plan.check(initargs)
+    if plan.custom:
+        protocol_functions.initialize_instance(instance, *initargs)
+    else:
+        plan.fill(instance, initargs)
+
+
+def _plan_or_error(cls):
+    if isinstance(cls, BuiltInClass) or cls is object or issubclass(cls, type):
+        return error(SimpleError("Cannot allocate an instance of ~S.", cls))
+    return plan_for(cls)
+
+
+def default_initialize_instance(instance, *initargs):
+    protocol_functions.shared_initialize(instance, True, *initargs)
+    return instance
+
+
+def default_shared_initialize(instance, slot_names, *initargs):
+    wanted = True if slot_names is True else set(python_list(slot_names))
+    plan = plan_for(type(instance))
+    parameters = plan.parameters
+    plan.fill(instance, initargs, wanted)
+    for index in range(0, len(initargs), 2):  # after the Python __init__, reinitialization sets its attributes too
+        if initargs[index] in parameters:
+            setattr(instance, parameters[initargs[index]], initargs[index + 1])
+    return instance
+
+
+def default_reinitialize_instance(instance, *initargs):
+    plan = plan_for(type(instance))
+    if plan.valid is not None:
+        keys = {
+            key for method in applicable_user_methods(protocol_functions.reinitialize_instance, type(instance)) for key in method.shape.keys
+        }
+        wrong = [key for key in initargs[::2] if key not in plan.valid and key not in keys]
+        if wrong and not other_keys_allowed(initargs):
+            error(InitargError(type(instance), list(reversed(wrong))))
+    protocol_functions.shared_initialize(instance, None, *initargs)
+    return instance
+
+
+def default_allocate_instance(cls, *initargs):
+    return _plan_or_error(cls).allocate(initargs)
+
+
+# --------------------------------------------------------------------------------------------------------------- change-class
+
+
+def default_change_class(instance, new_class, *initargs):
+    """Make ``instance`` an instance of ``new_class``, keeping the slots that both have (ANSI 7.2)."""
+    cls = find_class_or_error(new_class)
+    old = type(instance)
+    previous = copy.copy(instance)
+    values = {
+        slot.name: vars(instance).get(slot.attribute, UNBOUND) if slot.cell is None else slot.cell.value
+        for slot in effective_slots(old).values()
+    }
+    for slot in effective_slots(old).values():
+        vars(instance).pop(slot.attribute, None)
+    try:
+        instance.__class__ = cls
+    except TypeError:
+        vars(instance).update(vars(previous))
+        return error(SimpleError("An instance of ~S cannot become one of ~S: Python stores them differently.", class_of(previous), cls))
+    vars(instance).pop("lisp_version", None)
+    version = vars(cls).get("lisp_version", 0)
+    if version:
+        vars(instance)["lisp_version"] = version
+    for name, value in values.items():
+        slot = find_slot(cls, name)
+        if slot is not None and slot.cell is None and value is not UNBOUND:
+            setattr(instance, slot.attribute, value)
+    protocol_functions.update_instance_for_different_class(previous, instance, *initargs)
+    return instance
+
+
+def default_update_for_different_class(previous, current, *initargs):
+    before = effective_slots(type(previous))
+    added = [name for name in effective_slots(type(current)) if name not in before]
+    protocol_functions.shared_initialize(current, list_from(added), *initargs)
+
+
+def default_update_for_redefined_class(instance, added_slots, discarded_slots, property_list, *initargs):
+    protocol_functions.shared_initialize(instance, added_slots, *initargs)

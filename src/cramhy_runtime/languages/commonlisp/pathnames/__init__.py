@@ -1,0 +1,1 @@
+"""Pathnames: their parts, their text, wild and logical ones (ANSI chapter 19)."""

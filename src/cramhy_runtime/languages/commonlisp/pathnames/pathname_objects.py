@@ -1,0 +1,116 @@
+"""Pathnames as objects: names of files taken apart into host, device, directory, name, type and version (ANSI 19.2).
+
+A component is a string, ``None``, a keyword such as ``:wild``, or a `Pattern` (``"b*"``); a directory is a tuple that begins with
+``:absolute`` or ``:relative``. Unlike a ``pathlib`` path, ``a/`` and ``a`` differ here, as in Lisp; ``pathlib`` paths that Python
+code hands in are accepted wherever a pathname is. A `Pathname` is itself accepted by Python's ``open`` and ``pathlib.Path``.
+This is the ground: how names are written is in ``namestrings.py``, what is done with them in ``pathnames.py``.
+"""
+
+from __future__ import annotations
+
+import re
+
+from cramhy_runtime.ground.packages import keyword
+
+ABSOLUTE, RELATIVE, UP, BACK, HOME = map(keyword, "ABSOLUTE RELATIVE UP BACK HOME".split())
+WILD, WILD_INFERIORS, NEWEST, UNSPECIFIC = map(keyword, "WILD WILD-INFERIORS NEWEST UNSPECIFIC".split())
+
+
+class UnixHost:
+    """The one host of ordinary files."""
+
+    lisp_name = "SB-IMPL::UNIX-HOST"
+
+
+class LogicalHost:
+    """A host of logical pathnames: ``rules`` is a list of (pattern, target), both pathnames."""
+
+    lisp_name = "SB-KERNEL::LOGICAL-HOST"
+
+    def __init__(self, name):
+        self.name = name
+        self.rules = []
+
+
+UNIX = UnixHost()
+
+
+class Pattern:
+    """A component with wild cards in it: pieces are strings, ``"*"`` as :multi-char-wild, ``"?"`` as :single-char-wild, or a
+    pair (:character-set, characters).
+    """
+
+    lisp_name = "SB-IMPL::PATTERN"
+
+    def __init__(self, pieces):
+        self.pieces = tuple(pieces)
+        self._expression = re.compile("".join(map(_expression, self.pieces)), re.DOTALL)
+
+    def match(self, text):
+        """What the wild pieces stand for if ``text`` fits, a list; else ``None``."""
+        found = self._expression.fullmatch(text)
+        return None if found is None else list(found.groups())
+
+    def __eq__(self, other):
+        return isinstance(other, Pattern) and self.pieces == other.pieces
+
+    def __hash__(self):
+        return hash(self.pieces)
+
+
+MULTI_CHAR, SINGLE_CHAR, CHARACTER_SET = map(keyword, "MULTI-CHAR-WILD SINGLE-CHAR-WILD CHARACTER-SET".split())
+
+
+def _expression(piece):
+    if piece.__class__ is str:
+        return re.escape(piece)
+    if isinstance(piece, tuple):
+        return "([" + re.sub(r"([\\\]\[^])", r"\\\1", piece[1]) + "])"
+    return "(.*)" if piece is MULTI_CHAR else "(.)"
+
+
+class Pathname:
+    """The name of a file. Never changed after it was made; ``equal`` pathnames are ``==``."""
+
+    lisp_name = "PATHNAME"
+
+    def __init__(self, host=UNIX, device=None, directory=None, name=None, type=None, version=None):
+        self.host, self.device, self.directory = host, device, directory
+        self.name, self.type, self.version = name, type, version
+
+    def replace(self, **parts):
+        """This pathname with other ``parts``."""
+        return type(self)(**{**vars(self), **parts})
+
+    @property
+    def key(self):
+        return (self.host, self.device, self.directory, self.name, self.type)
+
+    def __eq__(self, other):
+        return isinstance(other, Pathname) and self.key == other.key
+
+    def __hash__(self):
+        return hash(self.key)
+
+    def __fspath__(self):
+        from .namestrings import native_namestring
+
+        return native_namestring(self)
+
+    def __str__(self):
+        from .namestrings import namestring
+
+        return namestring(self)
+
+    def __repr__(self):
+        return f"Pathname({str(self)!r})"
+
+
+class LogicalPathname(Pathname):
+    """A pathname of a `LogicalHost`; what it stands for is decided by the host's translations."""
+
+    lisp_name = "LOGICAL-PATHNAME"
+
+    @property
+    def key(self):
+        return (*super().key, self.version)

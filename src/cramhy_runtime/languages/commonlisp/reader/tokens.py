@@ -1,0 +1,232 @@
+"""Tokens: which number or which name a run of characters means.
+
+Source: ANSI 2.3. A token is a number when it has the syntax of one in the current radix; otherwise, unless it consists of dots
+only, it names a symbol. Floats without an exponent marker, or with ``e``, have the format that
+``*read-default-float-format*`` says; ``d`` and ``l`` make doubles, ``f`` and ``s`` singles, which keep the digits of their
+literal (see ``ground/data.py``) but not a magnitude that a single-float cannot have.
+"""
+
+from __future__ import annotations
+
+from ..collections.sequence_types import BoundingIndicesBad
+from cramhy_runtime.ground.condition_types import SimpleParseError
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.conditions import type_error
+import math
+import re
+import string
+import unicodedata
+from fractions import Fraction
+
+from cramhy_runtime.ground.data import DoubleFloat, LispString, MultipleValues
+from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.packages import sym
+
+_DECIMAL = re.compile(
+    r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
+    r"|([+-]?(?:[0-9]*\.[0-9]+|[0-9]+(?:\.[0-9]*)?(?=[a-zA-Z])))(?:([esfdlESFDL])([+-]?[0-9]+))?"
+)
+DIGITS = string.digits + string.ascii_lowercase
+_rationals: dict = {}
+SINGLE_LIMIT = 3.4028235677973366e38
+"""The smallest magnitude that rounds to no single-float."""
+SINGLE_ZERO = 2.0**-150
+"""The largest magnitude that rounds to the single-float zero."""
+
+READ_BASE = special("*READ-BASE*", 10)
+FLOAT_FORMAT = special("*READ-DEFAULT-FLOAT-FORMAT*", sym("SINGLE-FLOAT"))
+_DOUBLES = (sym("DOUBLE-FLOAT"), sym("LONG-FLOAT"))
+
+
+class NumberError(ValueError):
+    """A token with the syntax of a number that no number can represent; ``hint`` says what to write instead."""
+
+    def __init__(self, text, hint):
+        super().__init__(text)
+        self.hint = hint
+
+
+def integer(digits, base=10):
+    """The integer of ``digits``, however many; Python itself refuses more than some thousands."""
+    if len(digits) <= 1000:
+        return int(digits, base)
+    sign, digits = (-1, digits[1:]) if digits[0] == "-" else (1, digits.lstrip("+"))
+    return sign * _long_integer(digits, base)
+
+
+def _long_integer(digits, base):
+    if len(digits) <= 1000:
+        return int(digits, base)
+    low = len(digits) // 2
+    return _long_integer(digits[:-low], base) * base**low + _long_integer(digits[-low:], base)
+
+
+def ratio(numerator, denominator):
+    """The rational number; an integer when it is one."""
+    if denominator == 0:
+        raise NumberError("failed to build ratio", "The denominator of a ratio must not be zero.")
+    value = Fraction(numerator, denominator)
+    return value.numerator if value.denominator == 1 else value
+
+
+def number(token, base=None):
+    """The number that ``token`` (without escapes) means, or ``None`` if it is none. Raises NumberError."""
+    base = READ_BASE.value if base is None else base
+    if base != 10:
+        if base.__class__ is not int or not 2 <= base <= 36:
+            type_error(base, "(INTEGER 2 36)")
+        found = rational(token, base)
+        if found is not None:
+            return found
+    match = _DECIMAL.fullmatch(token)
+    if match is None:
+        return None
+    whole, dot, denominator, mantissa, marker, exponent = match.groups()
+    if whole is not None:
+        if base != 10 and not dot:
+            return None
+        return integer(whole) if denominator is None else ratio(integer(whole), integer(denominator))
+    if marker is None and mantissa[-1] not in "0123456789":
+        return None
+    return _float(token, mantissa, marker, exponent)
+
+
+def rational(token, base):
+    """The integer or ratio that ``token`` is in ``base``, or ``None``."""
+    pattern = _rationals.get(base)
+    if pattern is None:
+        digits = DIGITS[:base] + DIGITS[10:base].upper()
+        pattern = _rationals[base] = re.compile(f"([+-]?[{digits}]+)(?:/([{digits}]+))?")
+    match = pattern.fullmatch(token)
+    if match is None:
+        return None
+    whole = integer(match[1], base)
+    return whole if match[2] is None else ratio(whole, integer(match[2], base))
+
+
+def looks_numeric(token, base=None):
+    """Whether ``token`` has the syntax of a number in ``base``, by default ``*read-base*``."""
+    try:
+        return number(token, base) is not None
+    except NumberError:
+        return True
+
+
+def _float(token, mantissa, marker, exponent):
+    marker = "e" if marker is None else marker.lower()
+    double = marker in "dl" or (marker == "e" and FLOAT_FORMAT.value in _DOUBLES)
+    value = float(mantissa if exponent is None else f"{mantissa}e{exponent}")
+    if double:
+        if value in (float("inf"), float("-inf")):
+            raise NumberError(f"failed to build float from {token}", "The largest double-float is about 1.8d308.")
+        return DoubleFloat(value)
+    if not -SINGLE_LIMIT < value < SINGLE_LIMIT:
+        raise NumberError(
+            f"failed to build float from {token}",
+            "The largest single-float is about 3.4e38; write the exponent with d for a double-float: 1d39.",
+        )
+    return value if abs(value) > SINGLE_ZERO else math.copysign(0.0, value)
+
+
+# -------------------------------------------------------------------------------------------------------------------- names
+
+
+def upcase(text):
+    """``text`` in upper case, character by character: what has no single upper-case character stays."""
+    if text.isascii():
+        return text.upper()
+    return "".join([_other_case(character, str.upper) for character in text])
+
+
+def downcase(text):
+    return text.lower() if text.isascii() else "".join([_other_case(character, str.lower) for character in text])
+
+
+def _other_case(character, convert):
+    other = convert(character)
+    return other if len(other) == 1 else character
+
+
+def invert(text):
+    """Readtable case :invert: a name all of whose letters have one case gets the other."""
+    letters = [character for character in text if _other_case(character, str.upper) != _other_case(character, str.lower)]
+    if all(character.isupper() for character in letters):
+        return downcase(text)
+    if all(character.islower() for character in letters):
+        return upcase(text)
+    return text
+
+
+CASES = {"UPCASE": upcase, "DOWNCASE": downcase, "PRESERVE": str, "INVERT": invert}
+
+
+def normalized(text):
+    """Names are compared after compatibility normalization, as in SBCL: composed and decomposed accents are one name."""
+    return text if text.isascii() else unicodedata.normalize("NFKC", text)
+
+
+# ------------------------------------------------------------------------------------------------------------ parse-integer
+
+
+def parse_integer(string_, *, start=0, end=None, radix=10, junk_allowed=None):
+    """``cl:parse-integer``: the integer written in ``string_``, and the index where reading ended (two values).
+
+    White space around it is skipped. Anything else is a parse-error, or with ``junk_allowed`` ends the number; then the
+    first value is nil if there was no digit.
+    """
+    if not isinstance(string_, (str, LispString)):
+        return type_error(string_, "STRING")
+    whole = str(string_)
+    start, end = bounds(whole, start, end)
+    index = start
+    while index < end and whole[index] in WHITESPACE:
+        index += 1
+    first = index
+    if index < end and whole[index] in "+-":
+        index += 1
+    digits_from = index
+    while index < end and _digit(whole[index], radix):
+        index += 1
+    if index == digits_from:
+        if junk_allowed is not None:
+            return MultipleValues((None, index))
+        return _no_digits(whole[start:end]) if index == end else _junk(whole[start:end])
+    value = integer("".join([_ascii_digit(character) for character in whole[first:index]]), radix)
+    if junk_allowed is None:
+        while index < end and whole[index] in WHITESPACE:
+            index += 1
+        if index < end:
+            return _junk(whole[start:end])
+    return MultipleValues((value, index))
+
+
+WHITESPACE = " \t\n\r\f\v"
+
+
+def _digit(character, radix):
+    weight = unicodedata.digit(character, None) if not character.isascii() else DIGITS.find(character.lower())
+    return weight is not None and 0 <= weight < radix
+
+
+def _ascii_digit(character):
+    return character if character.isascii() else str(unicodedata.digit(character))
+
+
+def _junk(text):
+    return error(SimpleParseError("junk in string ~S", text))
+
+
+def _no_digits(text):
+    what = "no digits in string ~S" if text.strip(WHITESPACE) else "no non-whitespace characters in string ~S."
+    return error(SimpleParseError(what, text))
+
+
+def bounds(text, start, end):
+    """``start`` and ``end`` of a part of ``text``, ``end`` ``None`` being its end; an error when they are none."""
+    stop = len(text) if end is None else end
+    if isinstance(start, int) and isinstance(stop, int) and 0 <= start <= stop <= len(text):
+        return start, stop
+    return error(BoundingIndicesBad(start, end, len(text)))
+
+
+LISP_NAMES = "parse-integer"

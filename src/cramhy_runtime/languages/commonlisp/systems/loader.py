@@ -1,0 +1,305 @@
+"""Loading files of Lisp: read a form, compile it, run it, go on with the next.
+
+``.lisp`` files are read by our reader from the first character on; in ``.hy`` files the line ``(require cramhy *)`` says that
+what follows ``(in-package ...)`` is the same language, so they are loaded in the same way (run by ``hy`` itself, the macro
+``in-package`` takes the reader over: see ``hy_src/cramhy/language.hy``). A ``.hy`` file that goes into no package, or comes back by
+``(in-hy)``, is Hy's alone.
+
+What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written or belongs to another user, in the user's
+cache folder). A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system,
+cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.sealed`). `why_not_kept` tells
+why one was not used. So an unchanged system loads without compiling, and without importing Hy.
+"""
+
+from __future__ import annotations
+
+import errno
+import importlib.util
+import linecache
+import marshal
+import os
+import functools
+import re
+import runpy
+import sys
+from pathlib import Path
+
+from cramhy_runtime import storage
+from cramhy_runtime.storage.sealed import Unusable, distrust_of_folder, sealed, unsealed
+from cramhy_runtime.ground.function_codes import note_code
+from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
+from cramhy_runtime.ground.data import Cons, all_values
+from cramhy_runtime.ground.dynamic import binding, special
+from ..compiler.compilation_unit import compilation_unit, current as compilation_unit_of_load
+from ..evaluation.evaluator import PACKAGE, Unit, new_namespace
+from cramhy_runtime.ground.source_places import file_of_text, locate as locate_by_traceback
+from ..files.files import lisp_path
+from cramhy_runtime.ground.packages import symbol_name
+from ..reader.readtables import READTABLE
+
+LOAD_PATHNAME, LOAD_TRUENAME = special("*LOAD-PATHNAME*"), special("*LOAD-TRUENAME*")
+
+FIRST_LINE = b"# cramhy kept code 1\n"
+
+_not_used = {}
+
+
+def _sha256(text):
+    import hashlib  # a prompt that loads nothing does without it, and is there 2 ms sooner
+
+    return hashlib.sha256(text.encode(errors="surrogatepass"))
+
+
+@functools.cache
+def stamp():
+    """A fingerprint of cramhy itself: kept files made by another version are not used."""
+    digest = _sha256(sys.version)
+    here, libraries = Path(__file__).parents[1], Path(__file__).parents[3] / "libraries"
+    rooms = (here, here / "faces", libraries)
+    folders = [here, here.parents[1] / "ground", *(entry for room in rooms for entry in room.iterdir() if entry.is_dir())]
+    language = importlib.util.find_spec("cramhy")
+    if language and language.submodule_search_locations:
+        folders += map(Path, language.submodule_search_locations)
+    for folder in folders:
+        for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
+            if entry.name.endswith((".py", ".hy", ".lisp")):
+                status = entry.stat()
+                digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode(errors="surrogatepass"))
+    return digest.hexdigest()
+
+
+def kept_path(path):
+    """Where the compiled form of ``path`` is kept: beside it if that is possible and safe. `OSError` if there is no place at all."""
+    folder = path.parent / "__pycache__"
+    name = f"{path.name}.{sys.implementation.cache_tag}.cramhy"
+    there = os.path.lexists(folder)
+    if os.access(folder if there else path.parent, os.W_OK) and not (there and distrust_of_folder(folder)):
+        return folder / name
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    base = base if os.path.isabs(base) else os.path.expanduser("~/.cache")
+    if not os.path.isabs(base):
+        raise FileNotFoundError(errno.ENOENT, "This user has no folder", base)
+    return Path(base, "cramhy") / f"{_sha256(str(path)).hexdigest()[:16]}-{name}"
+
+
+def decoded(path, encoding=None):
+    """The text of a source file, UTF-8 if nothing else is said. What cannot be read is a file-error."""
+    try:
+        data = path.read_bytes()
+        return data.decode(encoding or "utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except OSError as problem:
+        return error(FileError(lisp_path(path), "Cannot load ~A: ~A.", str(path), problem.strerror))
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        return error(
+            FileError(
+                lisp_path(path),
+                "Cannot load ~A: it is no UTF-8 text (line ~D, byte ~D of the file). Save it as UTF-8.",
+                str(path),
+                line,
+                problem.start,
+            )
+        )
+
+
+def load_file(path, chain="", finished=None, show=None, encoding=None):
+    """Load a ``.lisp`` or ``.hy`` file; ``*package*`` and ``*readtable*`` are the same afterwards as before.
+
+    path: the file. chain: fingerprint of what was loaded before it and may define macros that it uses. finished: called with
+    the package that is current at the end of the file. show: called with the values of each form. encoding: UTF-8 if not given.
+    Returns the fingerprint of this file with its chain. A missing file is a file-error, a broken one an error with its place.
+    """
+    path = Path(path).absolute()
+    text = decoded(path, encoding)
+    if path.suffix == ".hy" and _is_plain_hy(text):
+        _run_hy(path)
+        return chain
+    fingerprint = _fingerprint(path, text, chain)
+    with binding(
+        PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))
+    ):
+        _not_used.pop(str(path), None)
+        codes = _kept(path, fingerprint) if show is None else None
+        if codes is not None:
+            namespace = new_namespace(str(path))
+            for code in codes:
+                note_code(code)
+                exec(code, namespace)
+        else:
+            with compilation_unit("file"):
+                codes = load_text(text, str(path), stored=True, show=show)
+            if codes is not None:
+                _keep(path, fingerprint, codes)
+        if finished is not None:
+            finished(PACKAGE.value)
+    return fingerprint
+
+
+def _fingerprint(path, text, chain=""):
+    return _sha256(f"{stamp()}{chain}{path}{text}").hexdigest()
+
+
+def load_part(text, filename, line, column):
+    """Load ``text``, which stands in the file ``filename`` from ``line`` and ``column`` on, in the current package; its code is kept."""
+    path = Path(f"{filename}.rest")
+    fingerprint = _sha256(f"{stamp()}{path}{line}:{column}{PACKAGE.value}{text}").hexdigest()
+    codes = _kept(path, fingerprint)
+    if codes is None:
+        with compilation_unit("file"):
+            codes = load_text(text, filename, stored=True, line=line, column=column)
+        if codes is not None:
+            _keep(path, fingerprint, codes)
+        return
+    namespace = new_namespace(filename)
+    for code in codes:
+        note_code(code)
+        exec(code, namespace)
+
+
+def load_text(text, filename, stored=False, show=None, line=1, column=1):
+    """Load the forms of ``text``; with ``stored`` return their code objects, or ``None`` if they cannot be kept.
+
+    show: called with the values of each form. line, column: where in ``filename`` the text begins.
+    """
+    from ..reader.reader import Reader
+
+    reader = Reader(text, filename=filename, line=line, column=column)
+    unit = Unit(filename, reader.positions, stored=stored)
+    if not os.path.isfile(filename):
+        linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
+    end, codes = object(), []
+    while True:
+        form = reader.read(eof_error=False, eof_value=end)
+        if form is end:
+            return None if reader.positions.left_out else codes  # so that it is told the next time, too
+        if _is_hy_requirement(form):
+            continue
+        try:
+            values = ()
+            unit.refuse_circle(form)
+            for part in unit.toplevel_parts(form):
+                code = _compile(unit, part)
+                if not unit.stored:
+                    codes = None
+                if codes is not None:
+                    codes.append(code)
+                values = all_values(unit.run(code))
+            if show is not None:
+                show(values)
+        except BaseException as problem:
+            extent, noticed = reader.positions.get(id(form)), compilation_unit_of_load()
+            if noticed is not None and extent is not None:
+                noticed.failed(filename, extent)
+            if isinstance(problem, Condition):
+                locate(problem, filename, extent)
+                if getattr(problem, "read_in", None) is None:
+                    problem.read_in = PACKAGE.value
+            raise
+
+
+def _compile(unit, form):
+    from ..compiler.constants import NotStorable
+
+    try:
+        return unit.compile(form)
+    except NotStorable:
+        # an object that code cannot rebuild: run this file from now on without keeping it
+        unit.stored = False
+        unit.constants = type(unit.constants)("KK")
+        return unit.compile(form)
+
+
+def locate(problem, filename, position):
+    """Give a condition the innermost place that it passed, or else that of the top-level form it left."""
+    locate_by_traceback(problem, problem)
+    if getattr(problem, "position", None) is None and position is not None:
+        try:
+            problem.position = (filename, *position[:2])
+        except AttributeError:
+            pass
+
+
+def _is_hy_requirement(form):
+    """Whether ``form`` is ``(require cramhy *)`` or another line that only Hy itself needs."""
+    return (
+        isinstance(form, Cons)
+        and symbol_name(form.car) == "REQUIRE"
+        and isinstance(form.cdr, Cons)
+        and symbol_name(form.cdr.car).startswith("CRAMHY")
+        if isinstance(form, Cons) and hasattr(form.car, "name")
+        else False
+    )
+
+
+def speaks_lisp(filename):
+    """Whether the text of that name, a file or what was typed, is Common Lisp, and not Hy or Python."""
+    filename = file_of_text(filename)
+    if filename.endswith(".hy"):
+        return not _is_plain_hy("".join(linecache.getlines(filename)))
+    return filename.endswith((".lisp", ".asd")) or filename.startswith("<") and not filename.startswith("<stdin>")
+
+
+def _is_plain_hy(text):
+    """Whether a ``.hy`` file stays Hy: it never goes into a package of Lisp, or comes back."""
+    return bool(re.search(r"^\(in-hy\)", text, re.M | re.I)) or not re.search(r"^\((in-package|defpackage)\b", text, re.M | re.I)
+
+
+def _run_hy(path):
+    """Run a file of Hy as ``hy FILE`` does: with its name in ``sys.argv``, and the modules in its folder can be imported."""
+    import hy  # noqa: F401  teaches `runpy` to run .hy files
+
+    words, folder = sys.argv, str(path.parent.resolve())
+    sys.argv = [str(path)]
+    sys.path.insert(0, folder)
+    try:
+        runpy.run_path(str(path), run_name="__main__")
+    finally:
+        sys.argv = words
+        if folder in sys.path:
+            sys.path.remove(folder)
+
+
+def _kept(path, fingerprint):
+    """The code objects that are kept for ``path``, or ``None``."""
+    try:
+        return marshal.loads(unsealed(kept_path(path), FIRST_LINE, fingerprint))
+    except Unusable as problem:
+        _not_used[str(path)] = problem
+    except (OSError, ValueError, EOFError, TypeError) as problem:
+        _not_used[str(path)] = Unusable("unreadable", f"no code is kept for {path}: {problem}")
+    return None
+
+
+def kept_codes(path):
+    """The code objects that were kept when the file ``path`` was loaded last by itself, if it has not changed since; else ``None``."""
+    path = Path(path).absolute()
+    return _kept(path, _fingerprint(path, decoded(path)))
+
+
+def why_not_kept(path):
+    """Why the kept code of the file ``path`` was not used when it was loaded last, an `Unusable`; ``None`` if it was used."""
+    return _not_used.get(str(Path(path).absolute()))
+
+
+def _keep(path, fingerprint, codes):
+    if sys.dont_write_bytecode:
+        return
+    try:
+        target = kept_path(path)
+        if not target.parent.is_dir():
+            os.makedirs(target.parent.parent, mode=0o755, exist_ok=True)
+            os.mkdir(target.parent, 0o755)  # others must not be able to write there, whatever the umask is
+        if distrust_of_folder(target.parent):
+            return
+        # without waiting for the disk: the checksum shows what a breakdown left
+        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(codes)), mode=0o644, durable=False, follow=False)
+    except OSError:
+        pass  # a folder that cannot be written only means compiling again next time
+
+
+def folder_of_load():
+    """The folder of the file being loaded, else the working directory."""
+    return Path(LOAD_TRUENAME.value).parent if LOAD_TRUENAME.value is not None else Path.cwd()
+
+
+__all__ = ["CompileError", "load_file", "load_text", "locate"]

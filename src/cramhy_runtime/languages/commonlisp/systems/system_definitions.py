@@ -1,0 +1,387 @@
+"""What a system consists of, as its ``defsystem`` form says: components, what they depend on, and what its operations do.
+
+The classes are those of the package ASDF, so that methods such as ``(defmethod asdf:perform ((o asdf:test-op) (s (eql
+(asdf:find-system :x)))) ...)`` can be written. Shapes that are wrong are errors that say what was expected. Source: the ASDF
+manual, chapter 6.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground.conditions import CompileError, error, style_warn
+from cramhy_runtime.ground.data import Cons, Symbol, list_from, lisp_list
+from ..evaluation.evaluator import evaluate
+from cramhy_runtime.ground.generic_functions import EqlSpecializer, add_method, generic, remove_method
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
+from ..printer.printer import define_printer
+from ..reader.dispatch_macros import FEATURES
+
+ensure_package("UIOP", "UIOP/DRIVER", use=[COMMON_LISP])
+ensure_package("ASDF", "ASDF/INTERFACE", use=[COMMON_LISP, ensure_package("UIOP")])
+
+
+class Operation:
+    """What can be done with a system."""
+
+    lisp_name = "ASDF::OPERATION"
+
+
+class LoadOp(Operation):
+    lisp_name = "ASDF::LOAD-OP"
+
+
+class LoadSourceOp(Operation):
+    lisp_name = "ASDF::LOAD-SOURCE-OP"
+
+
+class CompileOp(Operation):
+    lisp_name = "ASDF::COMPILE-OP"
+
+
+class PrepareOp(Operation):
+    lisp_name = "ASDF::PREPARE-OP"
+
+
+class TestOp(Operation):
+    lisp_name = "ASDF::TEST-OP"
+    __test__ = False  # pytest takes classes of this name for tests
+
+
+OPERATIONS = {cls.lisp_name.partition("::")[2]: cls for cls in (LoadOp, LoadSourceOp, CompileOp, PrepareOp, TestOp)}
+
+
+class Component:
+    """A part of a system. name, and ``depends_on``: the names of siblings that come first; ``path``: where it lies, if it says so."""
+
+    lisp_name = "ASDF::COMPONENT"
+
+    def __init__(self, name, parent=None, depends_on=(), path=None):
+        self.name, self.parent, self.depends_on, self.path = name, parent, list(depends_on), path
+
+    @property
+    def pathname(self):
+        """The file or folder."""
+        return self.parent.pathname / (self.name if self.path is None else self.path)
+
+    @property
+    def system(self):
+        return self if self.parent is None else self.parent.system
+
+
+class StaticFile(Component):
+    lisp_name = "ASDF::STATIC-FILE"
+
+
+class DocFile(StaticFile):
+    lisp_name = "ASDF::DOC-FILE"
+
+
+class HtmlFile(DocFile):
+    lisp_name = "ASDF::HTML-FILE"
+
+
+class SourceFile(Component):
+    lisp_name = "ASDF::CL-SOURCE-FILE"
+
+    @property
+    def pathname(self):
+        """The ``.lisp`` or ``.hy`` file; the ``.lisp`` file if there is none of them."""
+        folder, name = self.parent.pathname, self.name if self.path is None else self.path
+        candidates = [folder / name, folder / f"{name}.lisp", folder / f"{name}.hy"]
+        return next(
+            (candidate for candidate in candidates if candidate.is_file()),
+            candidates[0] if name.endswith((".lisp", ".hy")) else candidates[1],
+        )
+
+
+class Module(Component):
+    lisp_name = "ASDF::MODULE"
+
+    def __init__(self, name, parent=None, depends_on=(), path=None):
+        super().__init__(name, parent, depends_on, path)
+        self.components = []
+
+
+class System(Module):
+    """A system: its folder, the systems that it depends on, what it does for operations, and the options of its form."""
+
+    lisp_name = "ASDF::SYSTEM"
+
+    def __init__(self, name, folder=None):
+        super().__init__(name)
+        self.folder, self.file = folder, None
+        self.options, self.in_order_to, self.methods = {}, {}, []
+
+    @property
+    def pathname(self):
+        return self.folder if self.path is None else self.folder / self.path
+
+    @property
+    def version(self):
+        return self.options.get("VERSION")
+
+
+define_printer(
+    Component,
+    lambda component, stream: stream.write(
+        f'#<ASDF/{"SYSTEM:SYSTEM" if isinstance(component, System) else "COMPONENT:COMPONENT"} "{component.name}">'
+    ),
+)
+
+PERFORM = generic("ASDF::PERFORM", "(operation component)")
+
+
+@PERFORM.method(object, object)
+def perform(operation, component):
+    """``asdf:perform`` of a system that says nothing about an operation does nothing."""
+
+
+systems: dict = per_image({})
+"""Name → `System`; a definition that is read again changes the object, so methods on it stay valid."""
+
+_TEXT_OPTIONS = {
+    "NAME",
+    "AUTHOR",
+    "MAINTAINER",
+    "LICENSE",
+    "LICENCE",
+    "DESCRIPTION",
+    "LONG-DESCRIPTION",
+    "VERSION",
+    "LONG-NAME",
+    "MAILTO",
+    "HOMEPAGE",
+    "BUG-TRACKER",
+    "SOURCE-CONTROL",
+}
+
+
+def define_system(form, folder, file=None, positions=None, load=None):
+    """Enter the system of a ``(defsystem name . options)`` form.
+
+    folder: where its files lie. file and positions: where the form stands, for the forms inside it. load: called with the name
+    of each system that the definition needs before it can be read (``:defsystem-depends-on``).
+    """
+    if not isinstance(form.cdr, Cons) or not isinstance(form.cdr.car, (str, Symbol)):
+        return error(CompileError("DEFSYSTEM: the name of a system comes first, a string or a symbol, in ~S.", form))
+    name = component_name(form.cdr.car)
+    items = list(form.cdr.cdr or ())
+    if len(items) % 2:
+        return error(CompileError("DEFSYSTEM ~A: the options must be pairs of a keyword and a value.", name))
+    table = _options(name, items)
+    for other in _listed(name, "DEFSYSTEM-DEPENDS-ON", table.get("DEFSYSTEM-DEPENDS-ON")):
+        if load is not None and (needed := _dependency(name, other)):
+            load(needed[0])
+    made = System(name, folder)
+    made.file = file
+    made.path = _path(table.get("PATHNAME"))
+    made.options = {key: value for key, value in table.items() if key in _TEXT_OPTIONS}
+    made.options["VERSION"] = _version(table.get("VERSION"), folder)
+    made.depends_on = [needed for item in _listed(name, "DEPENDS-ON", table.get("DEPENDS-ON")) if (needed := _dependency(name, item))]
+    made.components = _components(made, table)
+    _in_order_to(made, table.get("IN-ORDER-TO"))
+    system = systems.get(name)
+    if system is None:
+        system = systems[name] = made
+    else:
+        for method in system.methods:
+            remove_method(PERFORM, method)
+        vars(system).update(vars(made))
+        for component in system.components:
+            component.parent = system
+    for key, value in zip(items[::2], items[1::2]):
+        if symbol_name(key) == "PERFORM":
+            _perform_method(system, value, positions)
+    return system
+
+
+def _options(system, items):
+    """The options in the list ``items`` of keywords and values, by name."""
+    table = {}
+    for key, value in zip(items[::2], items[1::2]):
+        if not isinstance(key, Symbol):
+            error(CompileError("DEFSYSTEM ~A: the name of an option is a keyword such as :COMPONENTS, not ~S.", system, key))
+        table[symbol_name(key)] = value
+    return table
+
+
+def _listed(system, option, value):
+    """The elements of the ``value`` of an option that must be a list."""
+    if value is not None and not isinstance(value, Cons):
+        error(CompileError("DEFSYSTEM ~A: :~A must be a list, but it is ~S.", system, option, value))
+    return list(value or ())
+
+
+def component_name(designator):
+    """As a string; a symbol stands for its name in lower case, as for ASDF."""
+    name = string_designator(designator)
+    return name if isinstance(designator, str) else name.lower()
+
+
+def _path(value):
+    """The path in an option ``:pathname``, a string or a pathname; ``None`` without one."""
+    return None if value is None else Path(value)
+
+
+def _version(value, folder):
+    """The version: a string, or ``(:read-file-form "file")``, ``(:read-file-line "file")``."""
+    if isinstance(value, Cons) and is_symbol(value.car) and isinstance(value.cdr, Cons):
+        text = (Path(folder) / str(value.cdr.car)).read_text(encoding="utf-8")
+        line = next((line for line in text.splitlines() if line.strip() and not line.startswith(";")), "")
+        return line.strip().strip('"')
+    return value if isinstance(value, str) else None
+
+
+def holds(expression):
+    """Whether a feature expression holds."""
+    if isinstance(expression, Cons):
+        operator, operands = symbol_name(expression.car), list(expression.cdr or ())
+        if operator == "NOT":
+            return not holds(operands[0])
+        return (all if operator == "AND" else any)(map(holds, operands))
+    return any(present is keyword(symbol_name(expression)) for present in FEATURES.value or ())
+
+
+def _dependency(system, item):
+    """(name, least version or ``None``) of a system; ``None`` when a feature that it is needed for is missing."""
+    if isinstance(item, Cons) and is_symbol(item.car) and isinstance(item.cdr, Cons):
+        kind, parts = symbol_name(item.car), list(item)
+        if kind == "FEATURE" and len(parts) == 3:
+            return _dependency(system, parts[2]) if holds(parts[1]) else None
+        if kind == "VERSION" and len(parts) == 3 and isinstance(parts[2], str):
+            return component_name(parts[1]), parts[2]
+        if kind == "REQUIRE" and len(parts) == 2:
+            return string_designator(parts[1]).lower(), None
+    elif isinstance(item, (str, Symbol)):
+        return component_name(item), None
+    return error(
+        CompileError(
+            'DEFSYSTEM ~A: a system to depend on is a name, (:version name "1.0"), (:feature feature name) or (:require name), not ~S.',
+            system,
+            item,
+        )
+    )
+
+
+# ------------------------------------------------------------------------------------------------------------- components
+
+
+def _components(parent, table):
+    """The components of a system or module, those that its features allow, each with ``parent``."""
+    system, form = parent.system.name, table.get("COMPONENTS")
+    if isinstance(form, Cons) and isinstance(form.car, Symbol):
+        style_warn(
+            "DEFSYSTEM ~A: :COMPONENTS should be a list of components, but it is the single component (~S ...); taken as a list of one.",
+            system,
+            form.car,
+        )
+        form = Cons(form, None)
+    made = [component for item in _listed(system, "COMPONENTS", form) if (component := _component(parent, item)) is not None]
+    if table.get("SERIAL") is not None:
+        for earlier, later in zip(made, made[1:]):
+            later.depends_on.append(earlier.name)
+    return made
+
+
+_KINDS = {
+    "FILE": SourceFile,
+    "CL-SOURCE-FILE": SourceFile,
+    "CL-SOURCE-FILE.CL": SourceFile,
+    "CL-SOURCE-FILE.LSP": SourceFile,
+    "MODULE": Module,
+    "DOC-FILE": DocFile,
+    "HTML-FILE": HtmlFile,
+}
+
+
+def _component(parent, form):
+    system = parent.system.name
+    if (
+        not isinstance(form, Cons)
+        or not isinstance(form.cdr, Cons)
+        or not isinstance(form.car, Symbol)
+        or not isinstance(form.cdr.car, (str, Symbol))
+    ):
+        return error(CompileError('DEFSYSTEM ~A: a component is (:file "name" ...) or (:module "name" ...), not ~S.', system, form))
+    options = _component_options(system, form)
+    if "IF-FEATURE" in options and not holds(options["IF-FEATURE"]):
+        return None
+    depends = [
+        component_name(item.cdr.cdr.car if isinstance(item, Cons) else item)
+        for item in _listed(system, "DEPENDS-ON", options.get("DEPENDS-ON"))
+        if not isinstance(item, Cons) or holds(item.cdr.car)
+    ]  # (:feature f "x")
+    made = _KINDS.get(symbol_name(form.car), StaticFile)(component_name(form.cdr.car), parent, depends, _path(options.get("PATHNAME")))
+    if isinstance(made, Module):
+        made.components = _components(made, options)
+    return made
+
+
+def _component_options(system, form):
+    options, rest = {}, form.cdr.cdr
+    while isinstance(rest, Cons) and isinstance(rest.cdr, Cons) and isinstance(rest.car, Symbol):
+        name = symbol_name(rest.car)
+        options[name] = rest.cdr.car
+        if name == "COMPONENTS" and isinstance(rest.cdr.car, Cons) and isinstance(rest.cdr.car.car, Symbol):
+            # (:module "src" :components (:file ...) (:file ...)): the list was forgotten, as on a slide of lecture 38
+            style_warn(
+                "DEFSYSTEM ~A: :COMPONENTS of ~S should be a list of components; the components that follow are taken as that list.",
+                system,
+                form.cdr.car,
+            )
+            options["COMPONENTS"] = rest.cdr
+            return options
+        rest = rest.cdr.cdr
+    if rest is not None:
+        error(CompileError("DEFSYSTEM ~A: after its name, the component ~S has pairs of a keyword and a value.", system, form))
+    return options
+
+
+# ------------------------------------------------------------------------------------------------------------- operations
+
+
+def _in_order_to(system, form):
+    """``:in-order-to ((test-op (test-op "x")))``: what is done first. What loading needs is another dependency."""
+    for entry in _listed(system.name, "IN-ORDER-TO", form):
+        if (
+            not isinstance(entry, Cons)
+            or not is_symbol(entry.car)
+            or not all(isinstance(step, Cons) and is_symbol(step.car) for step in entry.cdr or ())
+        ):
+            return error(
+                CompileError("DEFSYSTEM ~A: :IN-ORDER-TO is a list of (operation (operation system ...) ...), not ~S.", system.name, form)
+            )
+        for step in entry.cdr or ():
+            names = [component_name(name) for name in step.cdr or ()]
+            if symbol_name(entry.car) == "TEST-OP":
+                system.in_order_to.setdefault("TEST-OP", []).append((symbol_name(step.car), names))
+            else:
+                system.depends_on += [(name, None) for name in names]
+
+
+def _perform_method(system, form, positions):
+    """``:perform (test-op [qualifier] (operation component) . body)``: a method for this system."""
+    parts = list(form) if isinstance(form, Cons) else []
+    qualifiers = [parts.pop(1)] if len(parts) > 1 and isinstance(parts[1], Symbol) else []
+    if len(parts) < 2 or not is_symbol(parts[0]) or not isinstance(parts[1], Cons) or len(list(parts[1])) != 2:
+        return error(CompileError("DEFSYSTEM ~A: :PERFORM is (operation (o c) form ...), not ~S.", system.name, form))
+    operation = OPERATIONS.get(symbol_name(parts[0]))
+    if operation is None:
+        return error(
+            CompileError(
+                "DEFSYSTEM ~A: :PERFORM of the unknown operation ~S; there are ~{~A~^, ~}.",
+                system.name,
+                parts[0],
+                list_from([name.lower() for name in OPERATIONS]),
+            )
+        )
+    variables = [item.car if isinstance(item, Cons) else item for item in parts[1]]
+    function = evaluate(
+        lisp_list(sym("LAMBDA"), list_from(variables), lisp_list(sym("DECLARE"), lisp_list(sym("IGNORABLE"), *variables)), *parts[2:]),
+        str(system.file) if system.file else None,
+        positions,
+    )
+    system.methods.append(add_method(PERFORM, qualifiers, [operation, EqlSpecializer(system)], function, uses_next=False))
+    return None

@@ -1,0 +1,316 @@
+"""Systems: ``.asd`` files, where they are found, and loading what they name in the right order.
+
+A system is a set of files with an order, described by ``defsystem``. Packages (folders with a ``package.xml``) and systems
+are found below the folders of ``ROS_PACKAGE_PATH``, below ``src`` of the workspace and in the current folder, and in
+``tutorials``. Systems of CRAM and ROS that cramhy itself contains are known by name and need no file. Sources: the ASDF
+manual; roslisp.md section 12.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from pathlib import Path
+
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground.conditions import CompileError, SimpleError, error
+from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.ground.dynamic import binding
+from ..compiler.compilation_unit import compilation_unit
+from ..evaluation.evaluator import PACKAGE, evaluate
+from ..files.files import lisp_path
+from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
+from . import loader
+from cramhy_runtime.ros.search_folders import SKIPPED, entries, is_file, is_folder, search_folders
+from .system_definitions import Module, SourceFile, System, define_system, systems
+
+
+class MissingComponent(SimpleError):
+    lisp_name = "ASDF::MISSING-COMPONENT"
+
+
+built_in: set = per_image(set())
+"""Names of systems that are part of cramhy; rooms add theirs with `provide_system`."""
+_finders: list = []
+_read: dict = per_image({})
+"""``.asd`` file → its time and size when it was read."""
+_reading: list = per_image([])
+_loaded: dict = per_image({})
+_loading: list = per_image([])
+CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
+NOT_TO_BE_HAD = {
+    "cffi": "it calls functions of C, which cramhy cannot; import the Python module for that library instead",
+    "trivial-garbage": "it needs SBCL's garbage collector; Python's weakref and gc modules do its work",
+    "bordeaux-threads": "the tasks of CRAM run on cramhy's kernel; use par, pursue and fluents instead of threads",
+    "sb-posix": "it is part of SBCL; Python's os module does its work",
+}
+"""Systems that cannot be had here, and why."""
+
+
+def provide_system(names):
+    """Note systems that cramhy contains, so that nothing is looked for or loaded: ``names`` is one text."""
+    built_in.update(names.split())
+
+
+def provide_systems_on_demand(find, names):
+    """Systems that cramhy makes when somebody asks for them: ``find(name)`` tells whether there is one of that name and loads it,
+    ``names()`` gives the names of all, for "did you mean"."""
+    _finders.append((find, names))
+
+
+def is_provided(name):
+    """Whether the system ``name`` is part of cramhy, or was just made by it."""
+    return name in built_in or any(find(name) for find, _ in _finders)
+
+
+def central_registry():
+    """The folders that ``asdf:*central-registry*`` lists: strings, pathnames, or forms that give one."""
+    entries = CENTRAL_REGISTRY.value
+    values = [evaluate(entry) if isinstance(entry, (Cons, Symbol)) else entry for entry in (entries if isinstance(entries, Cons) else ())]
+    return [Path(value) for value in values if value is not None]
+
+
+LIBRARIES = Path(__file__).parents[3] / "libraries"
+"""The libraries that come with cramhy, each a folder with a ``.asd``; they are loaded when somebody asks for them."""
+LIBRARY_PACKAGES = {
+    "ALEXANDRIA": "alexandria",
+    "ALEXANDRIA-1": "alexandria",
+    "ALEXANDRIA-2": "alexandria",
+    "LISP-UNIT": "lisp-unit",
+    "SPLIT-SEQUENCE": "split-sequence",
+    "CL-UTILITIES": "cl-utilities",
+    "CRAM-MATH": "cram-math",
+    "CMA": "cram-math",
+    "FIVEAM": "fiveam",
+    "5AM": "fiveam",
+    "IT.BESE.FIVEAM": "fiveam",
+}
+"""Their packages: the library is loaded when its package is first named."""
+
+
+@functools.cache
+def libraries():
+    """The ``.asd`` files in `LIBRARIES`: the path there by the file's name."""
+    return {path.name: path.relative_to(LIBRARIES) for path in LIBRARIES.glob("*/*.asd")}
+
+
+def _asd_files(folder, depth=4):
+    found = entries(folder)
+    for entry in found:
+        if entry.name.endswith(".asd") and is_file(entry):
+            yield Path(entry.path)
+    for entry in found:
+        if depth and is_folder(entry) and not entry.name.startswith((".", "__")) and entry.name not in SKIPPED:
+            yield from _asd_files(entry.path, depth - 1)
+
+
+def find_asd(name):
+    """The ``.asd`` file that defines the system ``name`` (its file name, or its secondary name after the slash), or ``None``."""
+    wanted = name.partition("/")[0] + ".asd"
+    if wanted in libraries():
+        return LIBRARIES / libraries()[wanted]
+    for folder in central_registry():
+        if os.path.isfile(folder / wanted):
+            return folder / wanted
+    for folder in search_folders():
+        for path in _asd_files(folder):
+            if path.name == wanted:
+                return path
+    return None
+
+
+def find_package_folder(name):
+    """The folder of the ROS package ``name``: it is called so, or its ``package.xml`` says so; ``None`` if there is none."""
+    for folder in search_folders():
+        for candidate in [folder, *(Path(entry.path) for entry in entries(folder) if is_folder(entry))]:
+            if candidate.name == name and (os.path.exists(candidate / "package.xml") or any(candidate.glob("*.asd"))):
+                return candidate
+    return None
+
+
+def known_systems():
+    """Names of all systems that could be loaded, for "did you mean"."""
+    return {
+        *built_in,
+        *(name for _, names in _finders for name in names()),
+        *(name.removesuffix(".asd") for name in libraries()),
+        *(path.stem for folder in search_folders() for path in _asd_files(folder)),
+    }
+
+
+# --------------------------------------------------------------------------------------------------------------- reading
+
+
+def load_asd(path, force=False):
+    """Read a ``.asd`` file unless that was done and it has not changed: define its systems, evaluate its other forms."""
+    path = Path(path).absolute()
+    status = path.stat()
+    if path in _reading or not force and _read.get(path) == (status.st_mtime_ns, status.st_size):
+        return
+    _reading.append(path)
+    try:
+        _read_definitions(path)
+    finally:
+        _reading.remove(path)
+    _read[path] = (status.st_mtime_ns, status.st_size)
+
+
+def _read_definitions(path):
+    from ..reader.reader import Reader
+
+    reader = Reader(path.read_text(encoding="utf-8"), filename=str(path))
+    end = object()
+    with binding(PACKAGE, asdf_user(), loader.LOAD_PATHNAME, lisp_path(path), loader.LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
+        while (form := reader.read(eof_error=False, eof_value=end)) is not end:
+            if isinstance(form, Cons) and isinstance(form.car, Symbol) and form.car.name == "DEFSYSTEM":
+                define_system(form, path.parent, path, reader.positions, load_system)
+            else:
+                evaluate(form, str(path), reader.positions)
+
+
+def asdf_user():
+    """The package ASDF-USER, in which ``.asd`` files are read."""
+    return find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package(name) for name in ("COMMON-LISP", "ASDF", "UIOP")]))
+
+
+# ----------------------------------------------------------------------------------------------------------------- loading
+
+
+def find_system(name, required_by=None):
+    """The `System` called ``name``; an unknown one is an error that names who asked for it, where it was searched, and its neighbours."""
+    if is_provided(name):
+        return systems.setdefault(name, System(name, Path(__file__).parents[3]))
+    path = find_asd(name)
+    if path is not None:
+        load_asd(path)
+    system = systems.get(name)
+    if system is None:
+        by = f", required by #<SYSTEM {required_by!r}>".replace("'", '"') if required_by else ""
+        return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path))
+    return system
+
+
+def _why_missing(name, path):
+    near = near_names(name, known_systems())
+    hint = f" Did you mean {' or '.join(near)}?" if near else ""
+    if path is not None:
+        there = ", ".join(sorted(system.name for system in systems.values() if system.file == path)) or "no system"
+        return f"{path} defines {there}.{hint}"
+    if name in NOT_TO_BE_HAD:
+        return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
+    where = ", ".join(str(folder) for folder in [*central_registry(), *search_folders()])
+    return f"There is no file {name.partition('/')[0]}.asd below {where}.{hint}"
+
+
+def check_version(system, least, required_by):
+    """Check that ``system`` is of version ``least`` or later; those that are part of cramhy are of any version."""
+    if least is None or system.name in built_in or "/libraries/" in str(system.file).replace(os.sep, "/"):
+        return
+    if system.version is None or _numbers(system.version) < _numbers(least):
+        has = f"it is version {system.version}" if system.version else "it has no version"
+        error(
+            MissingComponent(f'Component ~S does not match version ~A, required by #<SYSTEM "{required_by}">', system.name, least),
+            hint=f"In {system.file} {has}.",
+        )
+
+
+def _numbers(version):
+    return [int(part) if part.isdigit() else 0 for part in version.split(".")]
+
+
+def load_system(name, force=False, version=None):
+    """Load the system ``name`` and what it depends on, each file that has changed or was not loaded yet.
+
+    Returns the fingerprint of all that was loaded. A circle of dependencies is an error.
+    """
+    with compilation_unit("file"):
+        return _load_system(name, force, version=version)
+
+
+def _load_system(name, force=False, required_by=None, version=None):
+    name = string_designator(name).lower()
+    if is_provided(name):
+        return name
+    if name in _loading:
+        return error("Circular dependency: ~{~A~^ -> ~} -> ~A", list_from(_loading[_loading.index(name) :]), name)
+    _loading.append(name)
+    try:
+        system = find_system(name, required_by)
+        check_version(system, version, required_by)
+        chain = "".join(_load_system(other, required_by=name, version=least) for other, least in system.depends_on)
+        for component in files_of(system):
+            chain = _load_component(component.pathname, chain, force)
+        loaded[name] = chain
+        return chain
+    finally:
+        _loading.pop()
+
+
+loaded: dict = per_image({})
+"""Name of each system that was loaded → its fingerprint."""
+
+
+def _load_component(path, chain, force):
+    status = path.stat() if path.exists() else None
+    key = (status.st_mtime_ns, status.st_size, chain) if status else None
+    kept = _loaded.get(path)
+    if kept is not None and kept[0] == key and not force:
+        return kept[1]
+    _loaded.pop(path, None)
+    fingerprint = loader.load_file(path, chain)
+    _loaded[path] = (key, fingerprint)
+    return fingerprint
+
+
+def forget_system(name):
+    """Forget the definition of the system ``name`` and that its files were loaded; whether there was one."""
+    system = systems.pop(name, None)
+    loaded.pop(name, None)
+    if system is None:
+        return False
+    for component in files_of(system):
+        _loaded.pop(component.pathname, None)
+    _read.pop(system.file, None)
+    return True
+
+
+def files_of(module):
+    """The source files of a system or module, in the order of loading."""
+    for component in _ordered(module):
+        if isinstance(component, Module):
+            yield from files_of(component)
+        elif isinstance(component, SourceFile):
+            yield component
+
+
+def _ordered(module):
+    """The components of ``module`` so that each comes after those it depends on, otherwise as they stand."""
+    by_name = {component.name: component for component in module.components}
+    done, active, order = set(), [], []
+
+    def visit(component):
+        if component.name in done:
+            return
+        if component.name in active:
+            error(
+                "Circular dependency in system ~A: ~{~A~^ -> ~} -> ~A",
+                module.system.name,
+                list_from(active[active.index(component.name) :]),
+                component.name,
+            )
+        active.append(component.name)
+        for other in component.depends_on:
+            if other not in by_name:
+                error(
+                    CompileError(
+                        "DEFSYSTEM ~A: ~S depends on ~S, which is not a component beside it.", module.system.name, component.name, other
+                    )
+                )
+            visit(by_name[other])
+        active.pop()
+        done.add(component.name)
+        order.append(component)
+
+    for component in module.components:
+        visit(component)
+    return order

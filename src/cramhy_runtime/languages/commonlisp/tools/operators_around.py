@@ -1,0 +1,57 @@
+"""Which operators a place in Lisp text stands inside of, found in the text itself.
+
+``(def-fact-group animals (legs))`` in a package that has no such macro is a call of a function. Its arguments are evaluated before
+anybody looks for the function, so all that is signalled is that ``animals`` is unbound. Where that happened the text tells the rest.
+"""
+
+from __future__ import annotations
+
+import linecache
+import re
+
+from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from ..printer.print_controls import PACKAGE
+
+TOKEN = re.compile(r'"(?:\\.|[^"\\])*"|;[^\n]*|#\|.*?\|#|#\\.[\w-]*|\(|\)|[^\s()"]+', re.S)
+_FORMS_INSIDE = frozenset(
+    """PROGN PROG1 IF WHEN UNLESS AND OR NOT SETF SETQ LET LET* RETURN DEFVAR DEFPARAMETER TOP-LEVEL SEQ PAR PURSUE
+    TRY-ALL PERFORM DEF-FACT-GROUP""".split()
+)
+"""Operators that are no functions, but evaluate what stands in them, the lists of lists of ``let`` apart."""
+
+
+def operators_around(position):
+    """The first tokens of the lists that ``position`` (file, line, column) stands in, the outermost first; "" where a list begins one."""
+    filename, line, column = (*position, None)[:3]
+    text = "".join(linecache.getlines(filename)[: line - 1]) + linecache.getline(filename, line)[: (column or 1) - 1]
+    stack, opened = [], False
+    for token in TOKEN.findall(text):
+        if token == "(":
+            if opened:
+                stack[-1] = ""
+            stack.append("")
+        elif token == ")":
+            del stack[-1:]
+        elif opened:
+            stack[-1] = token
+        opened = token == "("
+    return stack
+
+
+def undefined_operator(position):
+    """The symbol of the outermost operator around ``position`` that nobody has defined, so that it is taken for a function; or ``None``."""
+    if not position:
+        return None
+    for token in operators_around(position):
+        prefix, _, name = token.upper().rpartition(":")
+        package = find_package(prefix.rstrip(":")) if prefix else PACKAGE.value
+        symbol = package.lookup(name)[0] if package is not None else None
+        if not isinstance(symbol, Symbol):
+            return None
+        undefined = symbol.macro is None and isinstance(symbol.function, UndefinedFunction)
+        if undefined and symbol.package is not COMMON_LISP:
+            return symbol
+        if (undefined or symbol.macro is not None) and name not in _FORMS_INSIDE:
+            return None
+    return None

@@ -1,0 +1,32 @@
+"""What the user is told and asked beside the values of forms: warnings that nobody muffled, and forms for restarts."""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.condition_types import StyleWarning
+from cramhy_runtime.ground.data import one
+from ..evaluation.evaluator import evaluate
+from ..format.format import format_
+from ..reader.reader import read_from_stream
+from ..streams.streams import ERROR_OUTPUT, QUERY_IO, output_stream
+
+
+def warning_line(condition):
+    """Print ``condition`` to ``*error-output*`` as ``warn`` does: ``WARNING: `` and its report on a line of its own.
+
+    Below that stand its ``where`` and its ``hint``, if somebody noted what more there is to say.
+    """
+    badness = "STYLE-WARNING" if isinstance(condition, StyleWarning) else "WARNING"
+    format_(ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
+    stream = output_stream(ERROR_OUTPUT.value)
+    for line in filter(None, (getattr(condition, "where", None), getattr(condition, "hint", None))):
+        stream.write("".join(f"  {part}\n" for part in line.splitlines()))
+    stream.flush()
+
+
+def ask_for_form(prompt):
+    """Print ``prompt`` to ``*query-io*``, read a form from there and return the value of it."""
+    stream = QUERY_IO.value
+    stream.fresh_line()
+    stream.write(prompt)
+    stream.flush()
+    return one(evaluate(read_from_stream(stream)))

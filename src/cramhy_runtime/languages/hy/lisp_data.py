@@ -1,0 +1,192 @@
+"""Hy models as Lisp data, and Lisp data in Hy code.
+
+Names in designators, facts and quoted arguments are symbols of Lisp, upcased, in the package of the Hy module: its own, which uses the
+packages of the plan language, or the one that ``(lisp-package :tut)`` chose. So a plan in Hy and one in Common Lisp speak of the same
+process modules, facts and designators.
+"""
+
+from __future__ import annotations
+
+import re
+
+from hy import models
+
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.packages import common, find_package, find_package_or_error, intern, make_package, symbol_name
+from cramhy_runtime.kernel.images import per_image
+from ..commonlisp.syntax.hy_models import atom
+
+USED = (
+    "CRAM-PROLOG",
+    "CRAM-LANGUAGE",
+    "CRAM-DESIGNATORS",
+    "CRAM-PROCESS-MODULES",
+    "CRAM-EXECUTIVE",
+    "CRAM-UTILITIES",
+    "CRAM-LANGUAGE-DESIGNATOR-SUPPORT",
+    "ROSLISP",
+    "ROSLISP-UTILS",
+    "ROSLISP-UTILITIES",
+    "CL-TRANSFORMS",
+)
+"""The packages that the package of a Hy module uses. Where two of them have different symbols of one name, the first counts."""
+
+_chosen: dict[str, str] = per_image({})
+"""Module → the package that it chose."""
+
+_constants: dict[str, object] = per_image({})
+"""Text → the Lisp object that it means, for the constants of Hy code."""
+
+
+def package_of(module):
+    """The Lisp package of the Hy module of that name; it is made when there is none."""
+    return plan_package(_chosen.get(module) or default_package_name(module))
+
+
+def default_package_name(module):
+    """``turtlesim_in_hy.control`` has the package TURTLESIM-IN-HY, as all modules of a Python package; a program HY-USER."""
+    if module in ("__main__", "__console__", "builtins"):
+        return "HY-USER"
+    return module.partition(".")[0].replace("_", "-").upper()
+
+
+def choose_package(module, name):
+    """Let the symbols of a Hy module be those of the package ``name``, which is made if there is none."""
+    _chosen[module] = name.upper()
+    return plan_package(name.upper())
+
+
+def plan_package(name):
+    """The package ``name``; a new one uses the packages of the plan language."""
+    package = find_package(name)
+    if package is None:
+        package = make_package(name)
+        package.use = [used for used in map(find_package, USED) if used is not None]
+        package.use.append(find_package_or_error("COMMON-LISP"))
+    return package
+
+
+def symbol_of(text, package):
+    """The symbol, or the object NIL or T, that a name of Hy means in ``package``; ``cpl:par`` is one of CRAM-LANGUAGE."""
+    prefix, colons, name = text.partition("::") if "::" in text else text.partition(":")
+    if colons and prefix and name:
+        return intern(name.upper(), find_package_or_error(prefix.upper()).name)
+    if text in ("None", "False", "nil"):
+        return None
+    if text in ("True", "t"):
+        return True
+    return package.intern(text.upper())
+
+
+def lisp_data(model, package):
+    """The Lisp object that a Hy model means as data: brackets and parentheses are lists, names are symbols of ``package``."""
+    if isinstance(model, (models.Expression, models.List, models.Tuple)):
+        items = list(model)
+        if len(items) > 2 and items[-2] == models.Symbol(".") and items[0] != models.Symbol("."):
+            return list_from([lisp_data(item, package) for item in items[:-2]], lisp_data(items[-1], package))
+        return list_from([lisp_data(item, package) for item in items])
+    if isinstance(model, models.Symbol):
+        return symbol_of(str(model), package)
+    data = atom(model)
+    if isinstance(data, models.Object):  # a set, a dictionary, an f-string, bytes
+        raise ValueError(f"{type(model).__name__.lower()}s are no Lisp data; write a list, a name, a keyword, a string or a number")
+    return data
+
+
+# --------------------------------------------------------------------------------------------------------------- constants
+
+
+def is_simple(data):
+    """Whether ``data`` is an object that Hy can write itself."""
+    return data is None or data is True or type(data) in (str, int, float)
+
+
+def constant_form(data):
+    """A Hy form for the Lisp object ``data``; the same object each time it is evaluated in an image."""
+    if is_simple(data):
+        return models.as_model(data)
+    find = _CONSTANT if _is_shared(data) else call_of("constant")
+    return models.Expression([find, models.String(text_of(data))])
+
+
+def _is_shared(data):
+    """Whether all images share an object: each has its own symbols of the users' packages."""
+    while isinstance(data, Cons):
+        if not _is_shared(data.car):
+            return False
+        data = data.cdr
+    return not isinstance(data, Symbol) or common(data)
+
+
+_OURS, _CONSTANT = (models.Expression(map(models.Symbol, (".", "hy", "R", "cramhy", name))) for name in ("_ours", "_constant"))
+"""The macros of `module_names`."""
+
+
+BRANCHING = "TOP-LEVEL NAMED-TOP-LEVEL PAR PURSUE TRY-ALL TRY-IN-ORDER TRY-EACH-IN-ORDER PAR-LOOP PARTIAL-ORDER WITH-TASK".split()
+"""The functions of CRAMHY that raise what a branch failed with: in Hy it is the exception that the branch raised."""
+
+
+def call_of(name):
+    """A Hy form for what `calls` calls ``name``."""
+    return _ours("calls", name)
+
+
+def _ours(*path):
+    return models.Expression([_OURS, *map(models.Symbol, path)])
+
+
+def function_form(package, name):
+    """A Hy form for the function that a symbol of a package of ours names now."""
+    if name != name.upper() or "_" in name or "." in name or "." in package:
+        return models.Expression([call_of("function"), models.String(package), models.String(name)])
+    if package == "CRAMHY" and name in BRANCHING:
+        return _ours("branching", name.lower())
+    symbol = _ours("symbols", package.lower(), name.lower())
+    return models.Expression([models.Symbol("."), symbol, models.Symbol("function")])
+
+
+def text_of(data):
+    """``data`` in Lisp's syntax, whole: floats with all digits, symbols with their packages."""
+    if isinstance(data, Cons):
+        parts = []
+        while isinstance(data, Cons):
+            parts.append(text_of(data.car))
+            data = data.cdr
+        if data is not None:
+            parts += [".", text_of(data)]
+        return "(" + " ".join(parts) + ")"
+    if data is None:
+        return "NIL"
+    if data is True:
+        return "T"
+    if isinstance(data, str):
+        return '"' + data.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(data, Keyword):
+        return ":" + _bars(data.name)
+    if isinstance(data, Symbol):
+        return _bars(data.package.name) + "::" + _bars(symbol_name(data))
+    return repr(data)
+
+
+def _bars(name):
+    return "|" + name.replace("\\", "\\\\").replace("|", "\\|") + "|"
+
+
+def constant(text):
+    """The Lisp object that ``text`` means, the same one each time in an image."""
+    found = _constants.get(text, _constants)
+    if found is _constants:
+        found = _constants[text] = _read(text)
+    return found
+
+
+def _read(text):
+    from ..commonlisp.reader.reader import Reader  # a program whose constants are all simple needs no reader
+
+    return Reader(_with_packages(text), filename="<constant>").read()
+
+
+def _with_packages(text):
+    for name in re.findall(r"\|([^|]*)\|::", text):
+        plan_package(name)
+    return text

@@ -1,0 +1,94 @@
+"""The names under which the compiled code of a Hy file has what is ours: functions of `calls`, symbols, constants of Lisp.
+
+The macros of plain Hy write ``(hy.R.cramhy._ours calls block)`` for what is found in the package ``cramhy`` under that path, and
+``(hy.R.cramhy._constant "text")`` for an object of Lisp that all images share. In a file both become global variables of the module. They
+are assigned before the first form of the file that needs them, as those of compiled Common Lisp are, so a plan finds them as quickly. At a
+prompt and in ``hy.eval`` there is no such place: there the code asks the package each time.
+"""
+
+from __future__ import annotations
+
+import re
+from weakref import WeakKeyDictionary
+
+from hy import models
+
+from .users_names import variables
+
+_WORD = re.compile(r"[^\W_]+")
+
+_names: WeakKeyDictionary[object, ModuleNames] = WeakKeyDictionary()
+"""Hy's compiler of a file → the names of its module."""
+
+CRAMHY = models.Expression([models.Symbol("__import__"), models.String("cramhy")])  # much quicker than hy.I, and Python that runs
+
+
+class ModuleNames:
+    """The names that one file has so far. variables: the mangled names that may be variables in the form that is compiled now."""
+
+    def __init__(self):
+        self.variables = frozenset()
+        self._known = {}  # what it is: a path or the text of a constant → its name
+        self._new = []  # name, value, name, value ... : what the form is the first to need
+
+    def name(self, key, written, value):
+        """The symbol for what ``key`` stands for. written: what its name says; value: the form that finds it."""
+        found = self._known.get(key)
+        if found is None:
+            found = "_".join(["_cramhy", *_WORD.findall(written.lower())])
+            if found in self._known.values():
+                found += f"_{len(self._known)}"
+            self._known[key] = found
+            self._new += [models.Symbol(found), value]
+        return models.Symbol(found)
+
+    def assigned_before(self, made, compiler, form):
+        """``made``, what Hy's compiler made of ``form``, behind the assignments of the names that it is the first to need."""
+        pairs, self._new = self._new, []
+        if not pairs:
+            return made
+        assignments = compiler.compile(models.Expression([models.Symbol("setv"), *pairs]).replace(form))
+        return assignments + assignments.expr_as_stmt() + made
+
+
+def compiled(compiler, form):
+    """What Hy's compiler makes of ``form``, one of the forms of a file, with the names that it needs."""
+    names = _names.get(compiler)
+    if names is None:
+        names = _names[compiler] = ModuleNames()
+    names.variables = frozenset(variables(form))
+    return names.assigned_before(compiler.compile(form), compiler, form)
+
+
+def ours(_hy_compiler, *path):
+    """The macro that stands for what the package ``cramhy`` has under ``path``, which are symbols of Hy."""
+    names = _names.get(_hy_compiler)
+    if names is None:
+        return _attribute(CRAMHY, *path)
+    package = names.name((), "", CRAMHY)
+    return names.name(path, " ".join(path), _attribute(package, *path))
+
+
+def constant(_hy_compiler, text):
+    """The macro that stands for the object of Lisp that ``text`` means, which all images share."""
+    found = models.Expression([ours(_hy_compiler, models.Symbol("calls"), models.Symbol("constant")), text])
+    names = _names.get(_hy_compiler)
+    return found if names is None else names.name(str(text), str(text), found)
+
+
+def if_global(compiler, name):
+    """A Hy form that tells whether the module has a variable of that mangled name; ``None`` if it may be a variable of a function."""
+    names = _names.get(compiler)
+    if names is None or name in names.variables:
+        return None
+    globals_ = names.name("globals", "globals", models.Expression([models.Symbol("globals")]))
+    return models.Expression([models.Symbol("in"), models.String(name), globals_])
+
+
+def _attribute(value, *path):
+    return models.Expression([models.Symbol("."), value, *path])
+
+
+MACROS = {"_ours": ours, "_constant": constant}
+
+__all__ = ["MACROS", "compiled", "if_global"]

@@ -1,0 +1,80 @@
+"""A Lisp text that Hy compiles ahead, and its rest, which is loaded form by form when the module runs.
+
+Hy compiles a whole file before anything in it runs. Common Lisp loads a file form by form, so a form may need what an earlier one
+did: ``(asdf:load-system :my-plans)`` makes the package in whose name the next form calls. What follows such a form is therefore loaded
+when its turn comes, and so is a form that cannot be read or compiled ahead, with all that follows it. If it is wrong, the error comes
+where ``cramhy run`` gives it: after what the forms before it have printed.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from hy import models, read
+
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
+
+from ..commonlisp.compiler import compilation_unit
+from ..commonlisp.systems import loader
+
+_LOADING = {"LOAD", "LOAD-SYSTEM", "REQUIRE", "QUICKLOAD", "OPERATE", "OOS", "TEST-SYSTEM"}
+
+
+def loads(form):
+    """Whether the top-level ``form`` loads other files, on which the forms after it may depend."""
+    return isinstance(form, Cons) and is_symbol(form.car) and symbol_name(form.car) in _LOADING
+
+
+class Ahead:
+    """How far the text of ``reader``, a Lisp reader, has been compiled ahead, and what the compiler noticed. ``None``: nobody knows.
+
+    before: the `Ahead` of an earlier part of the same file, whose functions this part may call.
+    """
+
+    def __init__(self, reader, before=None):
+        self.reader = reader
+        self.start = None
+        self.unit = compilation_unit.CompilationUnit("file") if before is None else before.unit
+        self.whole = True
+
+    @property
+    def known(self):
+        """Whether it is known where in the text the last form begins."""
+        return self.start is not None
+
+    @contextmanager
+    def noticing(self):
+        """While the block runs, what the compiler notices belongs to this text."""
+        with binding(compilation_unit.CURRENT, self.unit):
+            yield
+
+    def begin_form(self):
+        """The next form begins here."""
+        self.reader.skip_blank()
+        self.start = self.reader.offset
+
+    def rest(self, after=False):
+        """The Hy form that loads the text from the last form on, or what comes after it, when the module runs. Nothing more is read."""
+        start = self.reader.offset if after else self.start
+        text, (line, column) = self.reader.text[start:], self.reader.place(start)[:2]
+        self.start, self.whole, self.reader.offset = None, False, len(self.reader.text)
+        if not text.strip():
+            return models.Symbol("None")
+        where = models.String(text), models.String(self.reader.filename), models.Integer(line), models.Integer(column)
+        return models.Expression([read("hy.I.cramhy_runtime/languages/hy/rest_of_file.load_rest"), *where])
+
+    def finish(self):
+        """The text is over: tell what the compiler noticed. Functions that the rest may define are not missed."""
+        with self.noticing():
+            self.unit.settle(undefined=self.whole)
+        self.unit.show()
+
+
+def load_rest(text, filename, line, column):
+    """Load the forms of ``text``, which stands in ``filename`` from ``line`` and ``column`` on. Returns ``None``."""
+    loader.load_part(text, filename, line, column)
+
+
+__all__ = ["Ahead", "load_rest", "loads"]

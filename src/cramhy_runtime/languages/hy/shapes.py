@@ -1,0 +1,118 @@
+"""How forms of Hy are written, for those who have written them otherwise: mostly as in Common Lisp.
+
+The operators of the plan language say their shape themselves. Here are Hy's own, and the words of Common Lisp that Hy has not.
+"""
+
+from __future__ import annotations
+
+import re
+
+import hy
+
+from cramhy_runtime.ground.packages import COMMON_LISP
+
+HY = {
+    "cond": "(cond test value ...)",
+    "defclass": "(defclass Name [Base ...] form...)",
+    "defmacro": "(defmacro name [parameter ...] form...)",
+    "defn": "(defn name [parameter ...] form...)",
+    "dfor": "(dfor name values key value)",
+    "except": "(except [name Class] form...)",
+    "fn": "(fn [parameter ...] form...)",
+    "for": "(for [name values] form...)",
+    "if": "(if test then else)",
+    "in-hy": "(in-hy)",
+    "in-package": "(in-package name)",
+    "let": "(let [name value ...] form...)",
+    "lfor": "(lfor name values value)",
+    "lisp": "(lisp form)",
+    "lisp-package": "(lisp-package name)",
+    "match": "(match value pattern result ...)",
+    "setv": "(setv name value ...)",
+    "setx": "(setx name value)",
+    "try": "(try form... (except [name Class] form...) (finally form...))",
+    "when": "(when test form...)",
+    "while": "(while test form...)",
+    "with": "(with [name value] form...)",
+}
+"""Hy's own operators, and those that lead to Lisp and back, by their names."""
+
+LISP = {
+    "defconstant": "(setv name value)",
+    "defgeneric": "functools.singledispatch, or a method of a class",
+    "define-condition": "(defclass Name [SimplePlanFailure])",
+    "defmethod": "(defn name [self parameter ...] form...) in a defclass",
+    "defparameter": "(setv name value)",
+    "defstruct": "(defclass Name [] ...)",
+    "defun": "(defn name [parameter ...] form...)",
+    "defvar": "(setv name value)",
+    "destructuring-bind": "(setv [a b] values)",
+    "dolist": "(for [name values] form...)",
+    "dotimes": "(for [name (range count)] form...)",
+    "flet": "(defn name [parameter ...] form...) where it is used",
+    "funcall": "(function argument ...)",
+    "handler-case": "(try form... (except [problem Class] form...))",
+    "in-package": "(in-package name) at the beginning of a line, after (require cramhy *)",
+    "incf": "(+= name 1)",
+    "decf": "(-= name 1)",
+    "labels": "(defn name [parameter ...] form...) where it is used",
+    "lambda": "(fn [parameter ...] form...)",
+    "let*": "(let [name value ...] form...)",
+    "loop": "(for [name values] form...) or (while test form...)",
+    "mapcar": "(lfor name values value)",
+    "multiple-value-bind": "(setv [a b] values)",
+    "nil": "None",
+    "progn": "(do form...)",
+    "push": "(.append values value)",
+    "setf": "(setv name value)",
+    "setq": "(setv name value)",
+    "t": "True",
+    "unless": "(when (not test) form...)",
+    "unwind-protect": "(try form... (finally form...))",
+}
+"""Words of Common Lisp, and what a Hy program writes instead."""
+
+_WHERE_LISP_IS = "Common Lisp begins after (in-package name)."
+
+_LISP = {hy.mangle(name): name for name in LISP}
+
+
+def message(text, name):
+    """The text of an error of Hy's compiler about a form of ``name``, or ``None``, without the forms in it as Python prints them."""
+    found = re.match(r"parse error for pattern macro .*?: got unexpected (end of macro call|token).*expected: (.*)\Z", text, re.S)
+    if not found:
+        return text
+    there = "it ends too early" if found[1] != "token" else "a part of it has another shape"
+    return f"The {name} form is malformed: {there}; expected: {' '.join(found[2].split())}."
+
+
+def hint(name):
+    """How the form ``name`` is written, or ``None``."""
+    shape = HY.get(name)
+    return f"It is written {shape}." if shape else None
+
+
+def hint_for_name(name, known):
+    """What to try where Python says that the name ``name`` is not defined. known: the names that are there."""
+    if name in _LISP:
+        return f"{_LISP[name]} is Common Lisp. In Hy it is written {LISP[_LISP[name]]}. {_WHERE_LISP_IS}"
+    written = hy.unmangle(name)
+    if written.upper() in COMMON_LISP.external:
+        return f"{written} is Common Lisp, and Hy has nothing of that name. {_WHERE_LISP_IS}"
+    if re.match(r"\?\w", written):
+        return f"In a designator {written} is the value of a variable of Hy: (let [{written} value] form...)."
+    import difflib
+
+    near = difflib.get_close_matches(written, sorted({hy.unmangle(each) for each in known} - {written}), n=2, cutoff=0.7)
+    return f"Did you mean {' or '.join(near)}?" if near else None
+
+
+def hint_for_text(text):
+    """What to try where Hy's reader says ``text``: a ``#`` of Common Lisp is another one in Hy."""
+    found = re.match(r"reader macro '(#['\\(:+|-])", text)
+    if not found:
+        return None
+    return f"{found[1]} is Common Lisp" + (", where Hy writes the name alone." if found[1] == "#'" else ".") + f" {_WHERE_LISP_IS}"
+
+
+__all__ = ["hint", "hint_for_name", "hint_for_text", "message"]

@@ -1,1 +1,0 @@
-"""Lists, arrays, strings, sequences and hash tables (ANSI chapters 13 to 18)."""

@@ -1,1 +1,0 @@
-"""Pathnames and files (ANSI chapters 19 and 20)."""

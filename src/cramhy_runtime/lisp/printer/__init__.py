@@ -1,1 +1,0 @@
-"""The printer and the pretty printer: objects in, text out (ANSI chapter 22)."""

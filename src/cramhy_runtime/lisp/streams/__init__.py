@@ -1,1 +1,0 @@
-"""Streams (ANSI chapter 21)."""

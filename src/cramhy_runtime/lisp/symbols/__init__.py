@@ -1,1 +1,0 @@
-"""What one does with symbols and packages (ANSI chapters 10 and 11)."""

@@ -1,1 +1,0 @@
-"""Files and systems of programs: loading, ASDF, and Lisp packages as Python modules."""

@@ -1,0 +1,172 @@
+"""Calling Lisp from a proof: ``lisp-fun``, ``lisp-pred`` and the comparisons.
+
+A variable among the arguments is replaced by its value, or passed as its symbol when it has none; everything else, lists with
+variables in them too, is passed as it is written. The first value is unified with the result; variables in returned data are
+the variables of the proof. An ``error`` in the call becomes a warning and the goal fails, unless ``*break-on-lisp-errors*``;
+plan failures and other conditions that are no errors go through. Source: prolog.md section 8.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.conditions import (
+    Condition,
+    Error,
+    HandlerExit,
+    SimpleWarning,
+    StorageCondition,
+    caught,
+    enter_case,
+    foreign_case,
+    type_error,
+    undefined_function,
+    warn,
+)
+from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, lisp_list, truth
+from cramhy_runtime.ground.dynamic import special, unbind
+
+from cramhy_runtime.utilities.lazy_lists import force_ll
+from ..engine.failing_calls import note_place
+from ..symbols import CUT, PROLOG, sym
+from ..terms.terms import TermTail, Var, import_term, raw, resolve, undo, unify
+
+BREAK_ON_LISP_ERRORS = special(PROLOG.intern("*BREAK-ON-LISP-ERRORS*"))
+
+
+def resolve_argument(m, term):
+    """What a Lisp function gets for a variable."""
+    kind = term.__class__
+    if kind is Symbol or kind is int or kind is str:
+        return term
+    return resolve(term, m.names)
+
+
+def raw_argument(m, term):
+    """What a Lisp function gets for a list that is written in the goal: the list as it is written."""
+    return raw(term, m.names)
+
+
+def as_variable(term):
+    """``term`` if it is a variable, else a variable with that value: so that a list that is passed as it is written shows one."""
+    if term.__class__ is Var:
+        return term
+    variable = Var()
+    variable.ref = term
+    return variable
+
+
+def argument(m, term):
+    """What a Lisp function gets for an argument term of a goal."""
+    return resolve(term, m.names) if term.__class__ is Var else raw(term, m.names) if term.__class__ is Cons else term
+
+
+def call_lisp(function, arguments, kind, written, m=None):
+    """(True, value) of a call, or (False, condition) after the warning about the error in it.
+
+    ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it, ``m`` the proof that the goal is of.
+    """
+    if BREAK_ON_LISP_ERRORS.value is not None and truth(BREAK_ON_LISP_ERRORS.value):
+        return True, _apply(function, arguments)
+    case = enter_case(_ERRORS)
+    try:
+        try:
+            return True, _apply(function, arguments)
+        except (Condition, Exception) as exception:  # raised by Python code without being signalled
+            foreign_case(exception, case)
+        finally:
+            unbind()
+    except HandlerExit as left:
+        problem = caught(left, case)
+    except RecursionError:
+        problem = StorageCondition("Control stack exhausted.")
+    warning = SimpleWarning(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
+    if m is not None:
+        note_place(warning, m, kind, written, arguments, problem)
+    warn(warning)
+    return False, problem
+
+
+_ERRORS = lisp_list(Error)
+
+
+def _apply(function, arguments):
+    if function.__class__ is not Symbol and function.__class__ is not Keyword:
+        return type_error(function, "SYMBOL")
+    if function.package is not CUT:
+        for item in arguments:
+            if item.__class__ is Cons:
+                arguments = [_whole(item) for item in arguments]
+                break
+    code = function.function
+    if code.__class__ is UndefinedFunction:
+        return undefined_function(function, tuple(arguments), {})
+    value = code(*arguments)
+    if value.__class__ is MultipleValues:
+        return value[0] if value else None
+    return value
+
+
+def _whole(item):
+    """A list that ``findall`` bound, completely computed: what plan code expects of a list."""
+    if item.__class__ is Cons:
+        cell = item
+        while cell.__class__ is Cons:
+            cell = cell.cdr
+        if cell.__class__ is TermTail:
+            force_ll(item)
+    return item
+
+
+def lisp_value(m, function, arguments):
+    """The term of the first value of a call of ``function``; ``NotImplemented`` after the warning about an error in it."""
+    done, value = call_lisp(function, arguments, "function", function, m)
+    if not done:
+        return NotImplemented
+    kind = value.__class__
+    if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
+        return import_term(value, m.names)
+    return value
+
+
+def lisp_fun(m, function, arguments, result):
+    """Call ``function`` and unify its first value with ``result``. For compiled code: the arguments are prepared."""
+    value = lisp_value(m, function, arguments)
+    if value is NotImplemented:
+        return False
+    trail = m.trail
+    height = len(trail)
+    if unify(result, value, trail):
+        return True
+    undo(trail, height)
+    return False
+
+
+def lisp_pred(m, predicate, arguments):
+    """Whether ``predicate`` is true of the arguments. The predicate is taken as it is written, never a variable's value."""
+    done, value = call_lisp(predicate, arguments, "predicate", predicate, m)
+    return done and truth(value)
+
+
+_COMPARISONS = {sym("<"): int.__lt__, sym(">"): int.__gt__, sym("<="): int.__le__, sym(">="): int.__ge__}
+_FLOAT_COMPARISONS = {sym("<"): float.__lt__, sym(">"): float.__gt__, sym("<="): float.__le__, sym(">="): float.__ge__}
+
+
+def compare(m, operator, a, b):
+    """A comparison of two numbers; anything else goes through the Lisp function, which signals what is wrong."""
+    if a.__class__ is int and b.__class__ is int:
+        return _COMPARISONS[operator](a, b)
+    if isinstance(a, float) and isinstance(b, float):
+        return _FLOAT_COMPARISONS[operator](a, b)
+    return lisp_pred(m, operator, (a, b))
+
+
+def lisp_fun_goal(m, *terms):
+    """``(lisp-fun function argument... result)`` as a goal with argument terms."""
+    if not terms:
+        return False
+    function = resolve(terms[0], m.names)
+    return lisp_fun(m, function, [argument(m, term) for term in terms[1:-1]], terms[-1] if len(terms) > 1 else None)
+
+
+def lisp_pred_goal(m, predicate, *terms):
+    """``(lisp-pred predicate argument...)`` as a goal with argument terms."""
+    return lisp_pred(m, raw(predicate, m.names), [argument(m, term) for term in terms])

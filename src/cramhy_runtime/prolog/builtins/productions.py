@@ -1,0 +1,358 @@
+"""Productions: conjunctions of fact patterns whose handlers are called when matches come and go.
+
+From the registration of its first handler on a production keeps its matches. Each of its patterns has a store of the facts that match
+it, shared with every production that has the same pattern but for the names of variables, and indexed by the values that joins ask
+for. So a fact that comes is joined, from each pattern that it matches, only with facts that fit; one that goes takes back exactly the
+matches that it is in. First all matches are brought up to date, then handlers are called: these may assert, retract and wait
+themselves, and each hears ``:assert`` of a match before its ``:retract``, or neither. Source: prolog.md section 12.2.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.ground.conditions import SimpleError, error, style_warn
+from cramhy_runtime.ground.data import Cons, list_from, python_list
+from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.ground.equality import eql_key
+from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.printing import define_printer
+from cramhy_runtime.ground.printing import print_slots
+from cramhy_runtime.utilities.patterns import ANONYMOUS, variable, variables_of
+
+from .rete import identity, match_fact, memory
+from ..symbols import PROLOG, sym
+
+_definitions = special(PROLOG.intern("*PRODUCTION-DEFINITIONS*"), {})
+_ASSERT, _RETRACT = keyword("ASSERT"), keyword("RETRACT")
+
+
+def _named(pattern):
+    """The variables of a pattern that have names, in order of occurrence."""
+    return [item for item in variables_of(pattern) if item is not ANONYMOUS]
+
+
+class Store:
+    """The facts that match one ``pattern``: occurrence → the values of its variables. Shared by the productions that have it."""
+
+    def __init__(self, pattern):
+        self.pattern, self.variables = pattern, _named(pattern)
+        self.rows = {}
+        self.indexes = {}
+        self.users = []  # (production, place of the pattern in it)
+
+    def add(self, occurrence):
+        """Keep ``occurrence`` if it matches; whether it does."""
+        found = match_fact(self.pattern, occurrence.fact, {})
+        if found is None:
+            return False
+        row = self.rows[occurrence] = [found[item] for item in self.variables]
+        for columns, index in self.indexes.items():
+            index.setdefault(_key(row, columns), {})[occurrence] = row
+        return True
+
+    def remove(self, occurrence):
+        row = self.rows.pop(occurrence, None)
+        if row is None:
+            return False
+        for columns, index in self.indexes.items():
+            key = _key(row, columns)
+            del index[key][occurrence]
+            if not index[key]:
+                del index[key]
+        return True
+
+    def having(self, columns, key):
+        """The (occurrence, row) pairs whose values in ``columns`` have ``key``."""
+        if not columns:
+            return list(self.rows.items())
+        index = self.indexes.get(columns)
+        if index is None:
+            index = self.indexes[columns] = {}
+            for occurrence, row in self.rows.items():
+                index.setdefault(_key(row, columns), {})[occurrence] = row
+        return list(index.get(key, {}).items())
+
+
+def _key(row, columns):
+    return tuple([eql_key(identity(row[column])) for column in columns])
+
+
+class Network:
+    """The stores, found by the first element of a fact where the pattern has a constant there."""
+
+    def __init__(self):
+        self.stores = {}
+        self.by_first = {}
+        self.watching = {}  # productions, in order
+
+    def store(self, pattern):
+        """The store for ``pattern``, with the facts that hold."""
+        shape = _shape(pattern)
+        found = self.stores.get(shape)
+        if found is None:
+            found = self.stores[shape] = Store(pattern)
+            self.by_first.setdefault(_first_key(pattern), []).append(found)
+            for occurrence in memory.matching(pattern):
+                found.add(occurrence)
+        return found
+
+    def drop(self, production):
+        """Forget a production, and the stores that no other one uses."""
+        if production not in self.watching:
+            return
+        del self.watching[production]
+        for store in set(production.stores):
+            store.users = [user for user in store.users if user[0] is not production]
+            if not store.users:
+                del self.stores[_shape(store.pattern)]
+                self.by_first[_first_key(store.pattern)].remove(store)
+
+    def changed(self, operation, occurrence):
+        """What the memory tells: first every store and match is brought up to date, then the handlers hear of it."""
+        if operation == "CLEAR":
+            self.__init__()
+            return
+        if not self.watching:
+            return
+        stores = [*self.by_first.get(eql_key(identity(occurrence.fact.car)), ()), *self.by_first.get(None, ())]
+        asserted = operation == "ASSERT"
+        touched = [store for store in stores if (store.add(occurrence) if asserted else store.remove(occurrence))]
+        places = {}
+        for store in touched:
+            for production, place in store.users:
+                places.setdefault(production, []).append(place)
+        news = []
+        for production in sorted(places, key=lambda production: production.number):
+            found = production.gained(occurrence, sorted(places[production])) if asserted else production.lost(occurrence)
+            news += [(production, match) for match in found]
+        _tell_all([match.announce if asserted else match.take_back for _, match in news])
+
+
+def _shape(pattern):
+    """A key that is the same for patterns that differ in the names of variables only."""
+    numbers, shape = {}, []
+    while isinstance(pattern, Cons):
+        shape.append(_part(pattern.car, numbers))
+        pattern = pattern.cdr
+    return (*shape, "." if pattern is not None else None, _part(pattern, numbers))
+
+
+def _part(item, numbers):
+    if item is ANONYMOUS:
+        return "_"
+    return ("?", numbers.setdefault(item, len(numbers))) if variable(item) else ("c", eql_key(identity(item)))
+
+
+def _first_key(pattern):
+    """The key of the first element that all facts of the pattern have; ``None`` if they differ in it."""
+    return None if not isinstance(pattern, Cons) or variable(pattern.car) else eql_key(identity(pattern.car))
+
+
+_network = per_image(Network())
+memory.watchers.append(lambda operation, occurrence: _network.changed(operation, occurrence))
+
+
+def _tell_all(calls):
+    """Make all calls, as cleanup forms are run: one that is left by an error or any other exit does not keep the others."""
+    for index, call in enumerate(calls):
+        try:
+            call()
+        except BaseException:
+            _tell_all(calls[index + 1 :])
+            raise
+
+
+class Match:
+    """One match of a production: the values of its variables. ``waiting``: handlers that are still to hear of it."""
+
+    __slots__ = ("production", "occurrences", "values", "holds", "waiting")
+
+    def __init__(self, production, occurrences, values):
+        self.production, self.occurrences, self.values = production, occurrences, values
+        self.holds, self.waiting = True, None
+
+    def announce(self):
+        """Tell the handlers, newest first, as long as the match holds."""
+        self.waiting = list(self.production.callbacks)
+        try:
+            while self.waiting and self.holds:
+                self.tell(self.waiting.pop(0), _ASSERT)
+        finally:
+            if self.holds:
+                self.waiting = []
+
+    def take_back(self):
+        """Tell the handlers that have heard of it that it is gone."""
+        unaware = [*self.production.callbacks] if self.waiting is None else self.waiting
+        for callback in [callback for callback in self.production.callbacks if callback not in unaware]:
+            self.tell(callback, _RETRACT)
+
+    def tell(self, callback, operation):
+        arguments = [item for v in self.production.variables for item in (keyword(v.name), self.values.get(v))]
+        function_of(callback)(operation, *arguments)
+
+
+class Production:
+    """A named conjunction of patterns with its handlers and, once there is a handler, its matches."""
+
+    count = 0
+
+    def __init__(self, name, patterns):
+        self.name, self.patterns = name, patterns
+        self.variables = _named(list_from(patterns))
+        self.callbacks = []
+        self.stores = []
+        self.matches = {}  # occurrence -> its matches
+
+    def start(self):
+        """Keep matches from now on; those that exist are told at once."""
+        Production.count += 1
+        self.number, self.matches = Production.count, {}
+        _network.watching[self] = None
+        self.stores = [_network.store(pattern) for pattern in self.patterns]
+        self.names = [_named(pattern) for pattern in self.patterns]
+        for place, store in enumerate(self.stores):
+            store.users.append((self, place))
+        self.orders = [self._order(first) for first in range(len(self.patterns))]
+        seeds = list(self.stores[0].rows) if self.stores else []
+        existing = [match for occurrence in seeds for match in self._joined(occurrence, 0, False)]
+        _tell_all([match.announce for match in existing])
+
+    def _order(self, first):
+        """In which order the other patterns are joined from ``first``: always the one that has most variables known."""
+        known, order, left = set(self.names[first]), [], [place for place in range(len(self.patterns)) if place != first]
+        while left:
+            place = max(left, key=lambda place: len(known & set(self.names[place])))
+            left.remove(place)
+            columns = tuple(i for i, name in enumerate(self.names[place]) if name in known)
+            order.append((place, columns))
+            known |= set(self.names[place])
+        return order
+
+    def _joined(self, occurrence, first, excluding=True):
+        """The matches with ``occurrence`` at ``first`` and, if ``excluding``, not before; they are kept from now on."""
+        found = []
+
+        def join(step, occurrences, values):
+            if step == len(self.orders[first]):
+                match = Match(self, occurrences, values)
+                found.append(match)
+                for each in occurrences:
+                    self.matches.setdefault(each, {})[match] = None
+                return
+            place, columns = self.orders[first][step]
+            names = self.names[place]
+            key = tuple([eql_key(identity(values[names[column]])) for column in columns])
+            for other, row in self.stores[place].having(columns, key):
+                if not (excluding and other is occurrence and place < first):
+                    join(step + 1, (*occurrences, other), {**values, **dict(zip(names, row))})
+
+        join(0, (occurrence,), dict(zip(self.names[first], self.stores[first].rows[occurrence])))
+        return found
+
+    def gained(self, occurrence, places):
+        return [match for place in places for match in self._joined(occurrence, place)]
+
+    def lost(self, occurrence):
+        """The matches that ``occurrence`` is in; they are kept no more."""
+        found = list(self.matches.pop(occurrence, ()))
+        for match in found:
+            match.holds = False
+            for other in match.occurrences:
+                if other in self.matches:
+                    self.matches[other].pop(match, None)
+                    if not self.matches[other]:
+                        del self.matches[other]
+        return found
+
+
+# ------------------------------------------------------------------------------------------------------- what a program calls
+
+
+def register_production(name, definition):
+    """``(register-production name definition)``: define a production by its list of patterns; a redefinition warns."""
+    if name in _definitions.value:
+        remove_production(name)
+        style_warn("Redefining production `~S'.", name)
+    production = _definitions.value[name] = Production(name, python_list(definition))
+    return production
+
+
+def remove_production(name):
+    """``(remove-production name)``: forget a production; nothing fires for it any more. ``nil`` for a name that nobody defined."""
+    production = _definitions.value.pop(name, None)
+    if production is not None:
+        _network.drop(production)
+    return True if production else None
+
+
+def clear_productions():
+    """``(clear-productions)``: forget all productions."""
+    for name in list(_definitions.value):
+        remove_production(name)
+
+
+def with_productions(productions, body):
+    """The work of the macro: call ``body`` with productions, a list of (name, list of patterns), that only it sees."""
+    own = {name: Production(name, python_list(patterns)) for name, patterns in productions}
+    with binding(_definitions, {**_definitions.value, **own}):
+        try:
+            return body()
+        finally:
+            for production in own.values():
+                _network.drop(production)
+
+
+def _production(name):
+    found = _definitions.value.get(name)
+    return found if found is not None else error(SimpleError("Production `~a' unknown.", name))
+
+
+def register_production_handler(production_name, callback):
+    """``(register-production-handler name callback)``: call ``(callback operation :?variable value...)`` when matches come and go.
+
+    The operation is ``:assert`` or ``:retract``. The first handler of a production gets the matches that exist. Returns the production.
+    """
+    production = _production(production_name)
+    production.callbacks.insert(0, callback)
+    if production not in _network.watching:
+        production.start()
+    return production
+
+
+def remove_production_handler(production_name, callback):
+    """``(remove-production-handler name callback)``: do not call ``callback`` any more."""
+    production = _production(production_name)
+    if callback in production.callbacks:
+        production.callbacks.remove(callback)
+
+
+def with_production_handlers(handlers, body):
+    """The work of the macro: call ``body`` with handlers in force, a list of (production name, function)."""
+    registered = []
+    try:
+        for name, function in handlers:
+            registered.append((register_production_handler(name, function), function))
+        return body()
+    finally:
+        for production, function in registered:
+            if function in production.callbacks:
+                production.callbacks.remove(function)
+
+
+def _print_production(production, stream):
+    print_slots(
+        sym("CRAM-PROLOG::PRODUCTION-DEFINITION"),
+        [
+            ("NAME", production.name),
+            ("VAR-BINDINGS", list_from(production.variables)),
+            ("BODY", list_from(production.patterns)),
+            ("NODE", None),
+            ("CALLBACKS", list_from(production.callbacks)),
+        ],
+        stream,
+    )
+
+
+define_printer(Production, _print_production)

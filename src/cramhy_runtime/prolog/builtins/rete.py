@@ -1,0 +1,318 @@
+"""Rete's memory: facts that come and go, and the patterns that are asked of them.
+
+A fact is a proper list of constants; the memory counts how often each was asserted. It is a tree that branches by the elements of
+the facts (the original's alpha network), so a pattern walks only where its constants lead. Elements are compared by ``eql`` of their
+`object_id`, so strings and lists never match by content. Who wants to know of facts that come and go (see ``productions.py``)
+watches the memory. Source: prolog.md section 12.1.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import list_end
+from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_from, one, python_list, truth
+from cramhy_runtime.ground.equality import eql, eql_key
+from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
+from cramhy_runtime.ground.generic_functions import generic, specializer_of, when_methods_change
+from cramhy_runtime.utilities.lazy_lists import from_iterator
+from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, vars_in
+from cramhy_runtime.kernel.images import Cell, per_image
+
+from .native_predicates import predicate
+from ..symbols import sym
+from ..terms.terms import import_term, raw
+
+object_id = generic(
+    "CRAM-PROLOG::OBJECT-ID",
+    "(obj)",
+    documentation="""
+    What identifies ``obj`` as an element of a fact: itself, unless a method for its class says otherwise.""",
+)
+object_id.method(object)(lambda obj: obj)
+
+_ATOMS = frozenset([Symbol, Keyword, int, str, float, DoubleFloat, bool, type(None)])
+_plain = Cell(_ATOMS)  # the classes whose objects are their own identity
+
+
+@when_methods_change
+def _see_who_has_identity(function):
+    """While no method of `object_id` is about atoms, nobody need be asked for the identity of one."""
+    if function is object_id:
+        special = [method.specializers[0] for method in function.methods if method.specializers[0] is not specializer_of(object)]
+        about_atoms = any(not isinstance(cls, type) or any(issubclass(atom, cls) for atom in _ATOMS) for cls in special)
+        _plain.value = frozenset() if about_atoms else _ATOMS
+
+
+def identity(obj):
+    """The `object_id` of ``obj``."""
+    return obj if obj.__class__ in _plain.value else one(object_id(obj))
+
+
+class Node:
+    """A node of the tree: the facts that start alike. At the end of a fact, ``occurrences`` are its assertions that stand."""
+
+    __slots__ = ("parent", "identity", "children", "fact", "occurrences")
+
+    def __init__(self, parent=None, identity=None):
+        self.parent, self.identity = parent, identity  # an `eql_key` is only good while the object lives
+        self.children = {}
+        self.fact = None
+        self.occurrences = []
+
+    def copy(self):
+        """The same tree of nodes of its own."""
+        made = Node(self.parent, self.identity)
+        made.fact, made.occurrences = self.fact, list(self.occurrences)
+        for key, child in self.children.items():
+            made.children[key] = copied = child.copy()
+            copied.parent = made
+        return made
+
+    def size(self):
+        count, nodes = 0, [self]
+        while nodes:
+            count += 1
+            nodes += nodes.pop().children.values()
+        return count
+
+    def leaves(self, pattern=None):
+        """The nodes of the facts that hold and may match ``pattern`` by its constants (all, without one), newest first."""
+        stack = [(self, pattern)]
+        while stack:
+            node, cell = stack.pop()
+            if node.occurrences and not (pattern is not None and isinstance(cell, Cons)):
+                yield node
+            if isinstance(cell, Cons):
+                item, rest = cell.car, cell.cdr
+                if not variable(item):
+                    child = node.children.get(eql_key(identity(item)))
+                    if child is not None:
+                        stack.append((child, rest))
+                    continue
+            elif cell is None and pattern is not None:
+                continue
+            else:
+                rest = cell
+            stack += [(child, rest) for child in node.children.values()]
+
+
+_ALPHA_NODE = sym("CRAM-PROLOG::ALPHA-NODE")
+
+
+def _print_node(node, stream):
+    print_unreadable(node, stream, identity=True, body=lambda: output_object(_ALPHA_NODE, stream))
+
+
+define_printer(Node, _print_node)
+
+
+class Occurrence:
+    """One assertion of a fact."""
+
+    __slots__ = ("fact",)
+
+    def __init__(self, fact):
+        self.fact = fact
+
+
+class Memory:
+    """The facts that hold. ``watchers`` are called as ``watcher(operation, occurrence)`` with ``"ASSERT"`` and ``"RETRACT"``."""
+
+    def __init__(self):
+        self.watchers = []
+        self.clear()
+
+    def clear(self):
+        self.root = Node()
+        self.occurrences = {}  # in order of assertion
+
+    def matching(self, pattern):
+        """The occurrences of the facts that may match ``pattern``, oldest first."""
+        found = [occurrence for leaf in self.root.leaves(pattern) for occurrence in leaf.occurrences]
+        return found[::-1]
+
+    def tell(self, operation, occurrence):
+        for watcher in self.watchers:
+            watcher(operation, occurrence)
+
+
+memory = per_image(Memory())
+
+
+def match_fact(pattern, fact, bindings, test=eql):
+    """``bindings``, a dict, extended so that ``pattern`` is ``fact``; ``None`` if it cannot be."""
+    extended = dict(bindings)
+    while pattern.__class__ is Cons and fact.__class__ is Cons:
+        item = pattern.car
+        if item.__class__ is Symbol and item is fact.car and item.name[:1] != "?" and test is eql:
+            pass
+        elif not _element_matches(item, fact.car, extended, test):
+            return None
+        pattern, fact = pattern.cdr, fact.cdr
+    if pattern is None and fact is None or (pattern is not None and _element_matches(pattern, fact, extended, test)):
+        return extended
+    return None
+
+
+def _element_matches(item, value, bindings, test):
+    if variable(item):
+        if item is ANONYMOUS:
+            return True
+        if item not in bindings:
+            bindings[item] = value
+            return True
+        item = bindings[item]
+    return truth(one(test(identity(item), identity(value))))
+
+
+# -------------------------------------------------------------------------------------------------------------------- facts
+
+
+def _leaf(fact, create):
+    node = memory.root
+    for element in python_list(fact):
+        known = identity(element)
+        key = eql_key(known)
+        child = node.children.get(key)
+        if child is None:
+            if not create:
+                return None
+            child = node.children[key] = Node(node, known)
+        node = child
+    return node
+
+
+def _check(fact):
+    if fact is None:
+        error("The assertion FACT failed: a fact is a list with at least one element.")
+    if not isinstance(fact, Cons):
+        type_error(fact, "LIST", "\nwhen binding LIST")
+    end = list_end(fact)
+    if end is not None and not isinstance(end, Cons):
+        type_error(end, "LIST")
+    if end is not None:
+        error("The list that starts with ~s is circular: a fact is a proper list.", fact.car)
+    if any(element is ANONYMOUS for element in python_list(fact)):
+        error("The assertion (NOT (FIND '?_ FACT)) failed: the fact ~s contains ?_.", fact)
+
+
+def rete_assert(fact):
+    """``(rete-assert fact)``: add one occurrence of ``fact`` and tell the productions; returns the memory node.
+
+    Errors: ``nil``, what is not a proper list, and a fact that contains ``?_``.
+    """
+    _check(fact)
+    node, occurrence = _leaf(fact, True), Occurrence(fact)
+    node.fact = fact
+    node.occurrences.append(occurrence)
+    memory.occurrences[occurrence] = None
+    memory.tell("ASSERT", occurrence)
+    return node
+
+
+def rete_retract(fact):
+    """``(rete-retract fact)``: remove one occurrence of ``fact``, the newest, and tell the productions. An absent fact is an error."""
+    node = _leaf(fact, False) if isinstance(fact, Cons) and list_end(fact) is None else None
+    if node is None or not node.occurrences:
+        return error("wme-memory already empty. Cannot retract.")
+    occurrence = node.occurrences.pop()
+    del memory.occurrences[occurrence]
+    empty = node
+    while not empty.occurrences and not empty.children and empty.parent is not None:  # what no fact needs takes no room
+        del empty.parent.children[eql_key(empty.identity)]
+        empty = empty.parent
+    memory.tell("RETRACT", occurrence)
+    return node
+
+
+def with_facts_asserted(fact_thunks, body):
+    """The work of the macro of this name: assert what the thunks give, call ``body``, retract in the same order on any exit.
+
+    A fact that the body has retracted itself is an error as in `rete_retract`, when the others are retracted.
+    """
+    asserted = []
+    try:
+        for thunk in fact_thunks:
+            fact = one(thunk())
+            rete_assert(fact)
+            asserted.append(fact)
+        return body()
+    finally:
+        _retract_all(asserted)
+
+
+def _retract_all(facts):
+    for index, fact in enumerate(facts):
+        try:
+            rete_retract(fact)
+        except BaseException:
+            _retract_all(facts[index + 1 :])
+            raise
+
+
+def clear_alpha_network():
+    """``(clear-alpha-network)``: retract everything and empty the memory; productions registered before do not fire any more."""
+    try:
+        _retract_all([occurrence.fact for occurrence in memory.occurrences])
+    finally:
+        memory.clear()
+        memory.tell("CLEAR", None)
+
+
+def alpha_network_size(node=None):
+    """``(alpha-network-size &optional node)``: the number of nodes, the root included."""
+    return (node or memory.root).size()
+
+
+def _pairs(bindings, tail=None):
+    return list_from([Cons(symbol, value) for symbol, value in reversed(bindings.items())], tail)
+
+
+def rete_holds(fact_pattern, test=None, processed=None, node=None):
+    """``(rete-holds fact-pattern)``: the lazy list of bindings under which the pattern is a fact, the newest fact first.
+
+    ``test`` compares the identities of elements (default: ``eql``); ``node``: only the facts below this node of the memory.
+    """
+    compare = eql if test is None else function_of(test)
+    if compare is eql and node is None and vars_in(fact_pattern) is None:
+        leaf = _leaf(fact_pattern, False) if isinstance(fact_pattern, Cons) else None
+        return Cons(None) if leaf is not None and leaf.occurrences else None
+
+    def matches():
+        by_constants = fact_pattern if compare is eql and node is None else None
+        for leaf in list((node or memory.root).leaves(by_constants)):
+            bindings = match_fact(fact_pattern, leaf.fact, {}, compare)
+            if bindings is not None:
+                yield _pairs(bindings)
+
+    return from_iterator(matches())
+
+
+def rete_prove(expr, bdgs=None):
+    """``(rete-prove expr &optional bdgs)``: the lazy list of bindings under which all patterns of the list ``expr`` are facts."""
+
+    def join(patterns, bindings):
+        if patterns is None:
+            yield bindings
+            return
+        pattern = substitute_vars(patterns.car, bindings)
+        for leaf in list(memory.root.leaves(pattern)):
+            found = match_fact(pattern, leaf.fact, {})
+            if found is not None:
+                yield from join(patterns.cdr, _pairs(found, bindings))
+
+    return from_iterator(join(expr, bdgs)) if expr is not None else Cons(bdgs)
+
+
+@predicate("CRAM-PROLOG::RETE-HOLDS")
+def _rete_holds(m, pattern):
+    written = raw(pattern, m.names)
+    if not isinstance(written, Cons):
+        error("The pattern ~a of a RETE-HOLDS goal is not a list.", written)
+    for leaf in list(memory.root.leaves(written)):
+        bindings = match_fact(written, leaf.fact, {})
+        if bindings is not None:
+            pairs = [term for symbol, value in bindings.items() for term in (import_term(symbol, m.names), value)]
+            if m.unify(*pairs):
+                yield

@@ -1,0 +1,410 @@
+"""The clause compiler: the clauses of a predicate become one Python function.
+
+For each predicate Python source is written and compiled. It looks at the first argument that tells the clauses apart, and goes to
+the code of those that can match; where that argument is unset, it goes by the next one that does. A clause is tried together with
+the tests that its body begins with, and only when these succeed and other clauses could match too is a choice point made, so calls
+that one clause answers leave none. A clause that ends by calling its own predicate becomes a loop.
+
+Clauses that are too many or too long to stand in that function are functions of their own, which tables of candidates name. Ground
+facts without bodies are tables altogether, see ``engine/relations.py``. What stands in a clause is compiled by
+``head_matching.py`` and ``clause_bodies.py``.
+
+Why source, and why clauses stand inside the function of their predicate: naive reverse runs at 2.1 M inferences a second; with
+one more Python call per clause, which closures would need at least, at 1.2 M.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.utilities.patterns import variable
+
+from ..engine import database
+from .clause_bodies import CALL, CONSTRUCTS, CUT, FILTER, IF, OR, SOFT_IF, Bodies, Context, direct, flat, is_test, known_goal, may_cut
+from .list_building import FILL, Holes, can_wait, hole_positions
+from ..engine.machine import fail
+from .head_matching import A_LIST, SAME, UNBOUND
+from ..engine.relations import compile_relation, index_key
+from ..engine.services import SERVICES
+from .generated_code import Rest, is_ground
+
+LOOP = range(100)
+_HEAVY = 90
+"""Conses of clauses that are still written out where they may be tried."""
+
+_ANY, _LIST, _OTHER = object(), object(), object()
+"""What a clause can match by an argument, where that is no key of the index: anything, lists, other atoms."""
+
+
+def compile_clauses(predicate, clauses):
+    """The call function of ``predicate`` for ``clauses``, a list of `Clause`, and its `Relation` if it is one."""
+    arity, fitting = predicate.arity, []
+    for clause in clauses:
+        arguments = _head_arguments(clause.head, arity)
+        if arguments is not None:
+            fitting.append((arguments, clause))
+    if not fitting:
+        return lambda m, step: fail(m), None
+    if all(clause.goals is None and is_ground(arguments) for arguments, clause in fitting):
+        relation = compile_relation([arguments for arguments, _ in fitting])
+        return relation.call_function(), relation
+    return PredicateCode(predicate, fitting).function(), None
+
+
+SERVICES.install(compile_clauses=compile_clauses)
+
+
+def clause_functions(predicate, clauses):
+    """For who chooses among the clauses itself: (clause, function) pairs, called ``function(m, k, barrier, *arguments)``."""
+    fitting = [(arguments, clause) for clause in clauses if (arguments := _head_arguments(clause.head, predicate.arity)) is not None]
+    return PredicateCode(predicate, fitting).each() if fitting else []
+
+
+def _head_arguments(head, arity):
+    """The argument patterns of ``head`` for goals of ``arity`` arguments, or ``None`` if it cannot match such a goal."""
+    arguments, cell = [], head.cdr
+    while isinstance(cell, Cons) and len(arguments) <= arity:
+        arguments.append(cell.car)
+        cell = cell.cdr
+    if cell is None:
+        return arguments if len(arguments) == arity else None
+    if len(arguments) > arity or isinstance(cell, Cons) or not variable(cell):
+        return None
+    return [*arguments, Rest(cell, arity - len(arguments))]
+
+
+def _mentions(item, functor):
+    stack = list(item or ())
+    while stack:
+        item = stack.pop()
+        while isinstance(item, Cons):
+            stack.append(item.cdr)
+            item = item.car
+        if item is functor:
+            return True
+    return False
+
+
+def _weight(item):
+    """The number of conses in Lisp data or a list of it."""
+    count, stack = 0, list(item or ())
+    while stack:
+        item = stack.pop()
+        while isinstance(item, Cons):
+            count += 1
+            stack.append(item.cdr)
+            item = item.car
+    return count
+
+
+class PredicateCode(Holes, Bodies):
+    """The code of one predicate in the making. ``fitting``: pairs (argument patterns, clause)."""
+
+    waiting = False  # whether the clause to come may find a hole
+
+    def __init__(self, predicate, fitting):
+        super().__init__(f"clauses of {predicate.functor!r}/{predicate.arity}")
+        self.predicate, self.fitting = predicate, fitting
+        self.arity = predicate.arity
+        self.goals = [list(flat(clause.goals)) for _, clause in fitting]
+        self.weights = [_weight([clause.head, *(clause.goals or ())]) for _, clause in fitting]
+        self.arguments = "".join(f", a{i}" for i in range(self.arity))
+        self.looping = predicate.functor not in database.traced and any(map(self._repeats, self.goals))
+        self.repeating = Context(repeat="continue")
+        positions = [hole_positions(predicate.functor, patterns, goals) for (patterns, _), goals in zip(fitting, self.goals)]
+        telling = self._telling(range(len(fitting)), {})
+        self.hole = next((i for i in sum(positions, []) if i != telling), None) if self.looping else None
+        self.builders = {n for n, found in enumerate(positions) if self.hole in found}
+        self.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses)
+        self.tries, self.buckets, self.clause_names = {}, {}, {}
+
+    def function(self):
+        """Write and compile it all; the call function."""
+
+        def body():
+            self.emit(f"_, k{self.arguments} = step")
+            self.emit("trail = m.trail")
+            if self.looping:
+                self._loop(lambda: self._dispatch(list(range(len(self.fitting))), {}))
+            else:
+                self._dispatch(list(range(len(self.fitting))), {})
+
+        self.define("predicate", "m, step", body)
+        self.make()
+        for name, content in self.buckets.values():
+            if isinstance(content, dict):
+                self.space[name] = {key: tuple([self.space[self.clause_names[n]] for n in numbers]) for key, numbers in content.items()}
+            else:
+                self.space[name] = tuple([self.space[self.clause_names[n]] for n in content])
+        return self.space["predicate"]
+
+    def each(self):
+        """Write and compile a function for each clause."""
+        for n in range(len(self.fitting)):
+            self._clause_function(n)
+        self.make()
+        return [(clause, self.space[self.clause_names[n]]) for n, (_, clause) in enumerate(self.fitting)]
+
+    def _loop(self, body):
+        if self.hole is not None:
+            self.emit("hole = None")
+        self.emit("for _ in LOOP:")
+        self.depth += 1
+        body()
+        self.depth -= 1
+        if self.hole is not None:
+            self.emit(FILL.format(self.hole))
+        self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
+        self.emit("if not m.choices: trail.clear()")
+        self.emit(f"return P.call, k{self.arguments}")
+
+    def _repeats(self, goals):
+        """Whether a body may end by calling its own predicate in this function."""
+        if not goals:
+            return False
+        goal = goals[-1]
+        if direct(goal):
+            return goal.car is self.predicate.functor and len(goal.cdr or ()) == self.arity
+        arguments = known_goal(goal, CONSTRUCTS)
+        return (
+            arguments is not None and goal.car in (IF, SOFT_IF, OR, CALL) and any(self._repeats(list(flat([part]))) for part in arguments)
+        )
+
+    # ------------------------------------------------------------------------------------------------- choosing the clauses
+
+    def _kind(self, n, position):
+        """What clause ``n`` can match at an argument."""
+        patterns = self.fitting[n][0]
+        if position >= len(patterns):
+            return _ANY
+        pattern = patterns[position]
+        if isinstance(pattern, Rest) or variable(pattern):
+            return _ANY
+        if isinstance(pattern, Cons):
+            return _LIST
+        key = index_key(pattern)
+        return _OTHER if key is NotImplemented else key
+
+    def _telling(self, numbers, known):
+        """The first argument that tells the clauses apart, and is not ``known`` yet."""
+        for position in range(self.arity):
+            if position not in known and any(self._kind(n, position) is not _ANY for n in numbers):
+                return position
+        return None
+
+    def _discriminates(self, position):
+        """Whether some clauses can match values of an argument that others cannot."""
+        return any(self._kind(n, position) is not self._kind(0, position) for n in range(len(self.fitting)))
+
+    def _dispatch(self, numbers, known):
+        position = self._telling(numbers, known)
+        if position is None:
+            self._candidates(numbers, known)
+            return
+        a, c = f"a{position}", f"c{position}"
+        self.emit(f"while {a}.__class__ is Var:")
+        self.emit(f"    r = {a}.ref")
+        self.emit("    if r is UNSET: break")
+        self.emit(f"    {a} = r")
+        self.emit(f"{c} = {a}.__class__")
+        kinds = {n: self._kind(n, position) for n in numbers}
+
+        def fit(*wanted):
+            return [n for n in numbers if kinds[n] is _ANY or any(kinds[n] is kind or kinds[n] == kind for kind in wanted)]
+
+        outermost = not known
+        telling = position if outermost else None
+        self._case(f"if {c} is Cons:", lambda: self._candidates(fit(_LIST), {**known, position: A_LIST}, telling))
+        self._case(f"elif {c} is Var:", lambda: (self._fill(outermost), self._dispatch(numbers, {**known, position: UNBOUND})))
+        keys = {kinds[n]: self.fitting[n][0][position] for n in numbers if kinds[n] not in (_ANY, _LIST, _OTHER)}
+        if len(keys) <= 4:
+            for key, value in list(keys.items()):
+                chosen = fit(_OTHER, key)
+                test = (
+                    f"{a} is {self.constant(value)}"
+                    if isinstance(value, Symbol) or value is None or value is True
+                    else f"{c} is int and {a} == {self.constant(value)}"
+                    if value.__class__ is int
+                    else None
+                )
+                if test and self._light(chosen):
+                    self._case(f"elif {test}:", lambda: self._candidates(chosen, {**known, position: SAME}, telling))
+                    del keys[key]
+        self._case(
+            f"elif {c} is LazyTail or {c} is TermTail:",
+            lambda: (self._fill(outermost), self.emit(f"{a} = {a}.force()"), self.emit(f"return P.call, k{self.arguments}")),
+        )
+        self.emit("else:")
+        self.depth += 1
+        self._fill(outermost)
+        if keys:
+            index = self._bucket({key: fit(_OTHER, key) for key in keys})
+            others = self._bucket(fit(_OTHER))
+            self.emit(f"found = {index}.get({a} if {c} is Symbol else index_key({a}), {others})")
+            self.emit(f"return try_clauses(m, k, found{self.arguments})")
+        else:
+            self._candidates(fit(_OTHER), {**known, position: None})
+        self.depth -= 1
+
+    def _case(self, test, body):
+        self.emit(test)
+        self.depth += 1
+        body()
+        self.depth -= 1
+
+    def _light(self, numbers):
+        return len(self.fitting) == 1 or sum(self.weights[n] for n in numbers) <= _HEAVY
+
+    def _fill(self, outermost):
+        if outermost and self.hole is not None:
+            self.emit(FILL.format(self.hole))
+
+    def _candidates(self, numbers, known, telling=None):
+        """Code that tries the clauses ``numbers``. ``telling``: the argument that chose them, where there may be a hole."""
+        if telling is not None and self.hole is not None:
+            if len(numbers) == 1 and numbers[0] in self.builders and known[telling] is A_LIST:
+                self._owned(numbers[0], lambda: self.turn_with_hole(numbers[0], self.hole, telling))
+                return
+            if len(numbers) == 1 and can_wait(self.fitting[numbers[0]][0], self.hole) and self._light(numbers):
+                self.waiting = True
+            elif numbers:
+                self._fill(True)
+        if not numbers:
+            self.emit("return fail(m)")
+        elif self._light(numbers) and not any(kind is UNBOUND and self._discriminates(position) for position, kind in known.items()):
+            self._chain(numbers, known, "continue" if self.looping else None)
+        else:
+            self.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")
+
+    def _bucket(self, content):
+        """The name of a tuple of clause functions, or of a dict of such: ``content`` has the numbers of the clauses."""
+        found = self.buckets.get(repr(content))
+        if found is None:
+            found = self.buckets[repr(content)] = f"B{len(self.buckets)}", content
+            for numbers in content.values() if isinstance(content, dict) else [content]:
+                for n in numbers:
+                    self._clause_function(n)
+        return found[0]
+
+    # ------------------------------------------------------------------------------------------------------ trying clauses
+
+    def _clause_function(self, n):
+        if n in self.clause_names:
+            return
+        self.clause_names[n] = f"clause_{n}"
+        patterns, _ = self.fitting[n]
+
+        def body():
+            self.emit("trail = m.trail")
+            names = {}
+            self.match_head(patterns, names)
+            self.body(self.goals[n], names, Context())
+
+        self._owned(n, lambda: self.define(f"clause_{n}", f"m, k, b{self.arguments}", body))
+
+    def _owned(self, n, write):
+        """Write code of clause ``n``."""
+        clause = self.fitting[n][1]
+        outer = self.owner, self.keep_variables, self.failing
+        self.owner, self.failing = clause, "return fail(m)"
+        self.keep_variables = _mentions(clause.goals, FILTER)
+        write()
+        self.owner, self.keep_variables, self.failing = outer
+
+    def _known(self, n, known):
+        """What is known of the arguments, as far as it helps clause ``n``."""
+        return {position: kind for position, kind in known.items() if not (kind is SAME and self._kind(n, position) is _OTHER)}
+
+    def _chain(self, numbers, known, repeat):
+        """The clauses ``numbers`` one after the other: the first whose head and first tests succeed is taken."""
+        n = numbers[0]
+        patterns, names, goals = self.fitting[n][0], {}, self.goals[n]
+        if any(map(may_cut, goals)):
+            self.emit("b = len(m.choices)")
+        if len(numbers) == 1:
+
+            def last():
+                waiting, self.waiting = self.waiting, False
+                self.match_head(patterns, names, self._known(n, known), self.hole if waiting else None)
+                self.body(goals, names, Context(repeat=repeat))
+
+            self._owned(n, last)
+            return
+        height = self.fresh("t")
+
+        def first():
+            self.emit(f"{height} = len(trail)")
+            self.emit("for _ in ONCE:")
+            self.depth += 1
+            count, self.failing = len(self.lines), "break"
+            self.match_head(patterns, names, self._known(n, known))
+            tests = 0
+            while tests < len(goals) and is_test(goals[tests]):
+                self.test(goals[tests], names)
+                tests += 1
+            if len(self.lines) == count:
+                self.emit("pass")
+            self.depth -= 1
+            self.emit("else:")
+            self.depth += 1
+            self.failing = "return fail(m)"
+            following = goals[tests:]
+            if not (following and known_goal(following[0], {CUT: (0, 0)}) is not None):
+                self.emit(f"m.choices.append(({self._try(numbers[1:], known)}, k, {height}{self.arguments}))")
+            self.body(following, names, Context(repeat=repeat))
+            self.depth -= 1
+
+        self._owned(n, first)
+        self.emit(f"while len(trail) > {height}: trail.pop().ref = UNSET")
+        self._chain(numbers[1:], known, repeat)
+
+    def _try(self, numbers, known):
+        """The name of the function of a choice point that tries ``numbers``."""
+        key = (tuple(numbers), tuple(known.items()))
+        name = self.tries.get(key)
+        if name is not None:
+            return name
+        name = self.tries[key] = self.fresh("try_")
+
+        def body():
+            self.emit(f"_, k, _{self.arguments} = step")
+            self.emit("m.choices.pop()")
+            self.emit("trail = m.trail")
+            if self.looping and any(self._repeats(self.goals[n]) for n in numbers):
+                self.emit("entering = True")
+                self._loop(enter_the_loop)
+            else:
+                self._chain(numbers, known, None)
+
+        def enter_the_loop():
+            self.emit("if entering:")
+            self.depth += 1
+            self.emit("entering = False")
+            self._chain(numbers, known, "continue")
+            self.depth -= 1
+            self._dispatch(list(range(len(self.fitting))), {})
+
+        self.define(name, "m, step", body)
+        return name
+
+
+def try_clauses(m, k, clauses, *arguments):
+    """Call the first of ``clauses``, with a choice point for the others."""
+    count = len(clauses)
+    height = len(m.choices)
+    if count == 1:
+        return clauses[0](m, k, height, *arguments)
+    if not count:
+        return fail(m)
+    m.choices.append((_next_clause, k, len(m.trail), clauses, 1, arguments))
+    return clauses[0](m, k, height, *arguments)
+
+
+def _next_clause(m, step):
+    _, k, trail_height, clauses, i, arguments = step
+    choices = m.choices
+    height = len(choices) - 1
+    if i + 1 < len(clauses):
+        choices[height] = (_next_clause, k, trail_height, clauses, i + 1, arguments)
+    else:
+        choices.pop()
+    return clauses[i](m, k, height, *arguments)

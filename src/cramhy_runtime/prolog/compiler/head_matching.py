@@ -1,0 +1,196 @@
+"""Code that matches the arguments of a goal with the head of a clause, and code that builds terms.
+
+Unification with a pattern that is known when the clause is compiled is spelled out, test by test. What is known of an argument,
+because the choice among the clauses has looked at it already, is left out. A variable of the clause is a Python variable that holds
+a term: the argument itself, a part of it, or a new `Var` where a term must be built before the variable has a value.
+
+``names`` maps the variables that have occurred to Python expressions; ``self.failing`` is the statement that leaves on failure.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
+
+from ..engine.database import traced
+from .generated_code import Rest, Source, is_ground, variables
+
+_DEEP = 4
+UNKNOWN, A_LIST, UNBOUND, SAME = "unknown", "a list", "unbound", "same"
+"""What is known of an argument: nothing; that it is a cons; an unset variable; or the atom that the clause has there."""
+
+
+class Matching(Source):
+    failing = "return fail(m)"
+
+    def fail_unless(self, test):
+        self.emit(f"if not {test}: {self.failing}")
+
+    def match_head(self, patterns, names, known=None, hole=None):
+        """Code for the arguments ``a0``, ``a1``, ...; ``known``: argument → what is known of it; ``hole``: see ``list_building.py``."""
+        for i, pattern in enumerate(patterns):
+            if isinstance(pattern, Rest):
+                break
+            if variable(pattern) and pattern is not ANONYMOUS and pattern not in names:
+                names[pattern] = f"a{i}"
+        # A variable that stands alone as an argument is that argument; the other occurrences must be the same as it.
+        # Arguments may be the same variable, so once something is matched none is known to be unset.
+        count = len(self.lines)
+        if hole is not None:
+            self.emit(f"if hole is not None: hole.cdr = {self.build(patterns[hole], names)}")
+            self.emit("else:")
+            self.depth += 1
+            self.match(patterns[hole], f"a{hole}", names, 0)
+            self.depth -= 1
+        for i, pattern in enumerate(patterns):
+            if i == hole:
+                continue
+            if isinstance(pattern, Rest):
+                self._match_rest(i, pattern, names)
+            elif not (variable(pattern) and (pattern is ANONYMOUS or names[pattern] == f"a{i}")):
+                kind = (known or {}).get(i)
+                self.match(pattern, f"a{i}", names, 0, None if kind is UNBOUND and len(self.lines) > count else kind)
+
+    def _match_rest(self, i, pattern, names):
+        built = "None"
+        for j in reversed(range(i, i + pattern.count)):
+            built = f"Cons(a{j}, {built})"
+        if pattern.name is not ANONYMOUS:
+            if pattern.name in names:
+                self.fail_unless(f"unify({names[pattern.name]}, {built}, trail)")
+            else:
+                names[pattern.name] = self.fresh("rest")
+                self.emit(f"{names[pattern.name]} = {built}")
+
+    def match(self, pattern, x, names, depth, known=None):
+        """Code that unifies ``pattern`` with the term in the Python variable ``x``, which is dereferenced when something is ``known``."""
+        if variable(pattern):
+            if pattern is ANONYMOUS:
+                return
+            if pattern in names:
+                known_term = names[pattern]
+                self.emit(f"if {x}.__class__ is not Var and {known_term}.__class__ is Var and {known_term}.ref is UNSET:")
+                self.emit(f"    {known_term}.ref = {x}; trail.append({known_term})")
+                self.emit(f"elif not unify({known_term}, {x}, trail): {self.failing}")
+            else:
+                names[pattern] = x
+            return
+        if known is SAME:
+            return
+        if isinstance(pattern, Cons) and known is None and (depth >= _DEEP or is_ground(pattern)):
+            self.fail_unless(f"unify({self.build(pattern, names)}, {x}, trail)")
+            return
+        if known is None:
+            term, x = x, self.fresh("x")
+            self.emit(f"{x} = {term}")
+            self.emit(f"while {x}.__class__ is Var:")
+            self.emit(f"    r = {x}.ref")
+            self.emit("    if r is UNSET: break")
+            self.emit(f"    {x} = r")
+        if isinstance(pattern, Cons):
+            self._match_list(pattern, x, names, depth, known)
+            return
+        value = self.constant(pattern)
+        if known is UNBOUND:
+            self._set(x, value)
+            return
+        same = f"{x} is {value}" if isinstance(pattern, Symbol) or pattern is None or pattern is True else f"same_atom({x}, {value})"
+        self.emit(f"if not ({same}):")
+        self.emit(f"    if {x}.__class__ is Var:")
+        self.depth += 2
+        self._set(x, value)
+        self.depth -= 2
+        self.emit(f"    elif not unify({x}, {value}, trail): {self.failing}")
+
+    def _set(self, x, value):
+        self.emit(f"{x}.ref = {value}")
+        self.emit(f"trail.append({x})")
+
+    def _match_list(self, pattern, x, names, depth, known):
+        if known is A_LIST:
+            self._match_parts(pattern, x, names, depth)
+            return
+        if known is UNBOUND:
+            self._set(x, self._cell(pattern, names))
+            return
+        kind = self.fresh("c")
+        self.emit(f"{kind} = {x}.__class__")
+        self.emit(f"if {kind} is LazyTail or {kind} is TermTail:")
+        self.emit(f"    {x} = {x}.force()")
+        self.emit(f"    {kind} = {x}.__class__")
+        before = dict(names)
+        self.emit(f"if {kind} is Cons:")
+        self.depth += 1
+        count = len(self.lines)
+        self._match_parts(pattern, x, names, depth)
+        if len(self.lines) == count:
+            self.emit("pass")
+        self.depth -= 1
+        self.emit(f"elif {kind} is Var:")
+        self.depth += 1
+        inside = variables(pattern)
+        for name in names:
+            if name not in before and name in inside:
+                self.new_variable(names[name], name)
+        self._set(x, self._cell(pattern, dict(names)))
+        self.depth -= 1
+        self.emit(f"else: {self.failing}")
+
+    def _match_parts(self, pattern, x, names, depth):
+        for part, attribute in ((pattern.car, "car"), (pattern.cdr, "cdr")):
+            if part is ANONYMOUS:
+                continue
+            if variable(part) and part not in names:
+                names[part] = self.fresh("v")
+                self.emit(f"{names[part]} = {x}.{attribute}")
+            else:
+                piece = self.fresh("p")
+                self.emit(f"{piece} = {x}.{attribute}")
+                self.match(part, piece, names, depth + 1)
+
+    # ------------------------------------------------------------------------------------------------------------ building terms
+
+    def _cell(self, pattern, names):
+        """Code for a new cons, without the call of its constructor; returns the Python variable that holds it."""
+        car, cdr = self.build(pattern.car, names), self.build(pattern.cdr, names)
+        cell = self.fresh("n")
+        self.emit(f"{cell} = new(Cons); {cell}.car = {car}; {cell}.cdr = {cdr}")
+        return cell
+
+    def build(self, pattern, names):
+        """An expression for the term ``pattern``; new variables and conses are made on lines before it."""
+        if variable(pattern):
+            if pattern is ANONYMOUS:
+                return "Var()"
+            if pattern not in names:
+                names[pattern] = self.fresh("v")
+                self.new_variable(names[pattern], pattern)
+            return names[pattern]
+        if not isinstance(pattern, Cons) or is_ground(pattern):
+            return self.constant(pattern)
+        cells, cell = [], pattern
+        while isinstance(cell, Cons) and not is_ground(cell) and len(cells) < 40:
+            cells.append(self.build(cell.car, names))
+            cell = cell.cdr
+        end = self.build(cell, names)
+        for car in reversed(cells):
+            name = self.fresh("n")
+            self.emit(f"{name} = new(Cons); {name}.car = {car}; {name}.cdr = {end}")
+            end = name
+        return end
+
+    def first_occurrences(self, item, names):
+        """Make the variables of ``item`` that have not occurred."""
+        for name in variables(item):
+            if name not in names:
+                names[name] = self.fresh("v")
+                self.new_variable(names[name], name)
+
+    def new_variable(self, python_name, symbol):
+        """Code that makes a variable; while goals are traced it knows what it is called in the clause."""
+        self.emit(f"{python_name} = Var()")
+        self.name_variable(python_name, symbol)
+
+    def name_variable(self, python_name, symbol):
+        if traced:
+            self.emit(f"{python_name}.written = {self.constant(symbol)}")

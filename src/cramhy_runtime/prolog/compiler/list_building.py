@@ -1,0 +1,103 @@
+"""Lists that a loop builds from front to back, without a variable for each rest that is not known yet.
+
+``(<- (app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))`` gives its caller a cons whose cdr is the variable ``?r``, which the next turn of
+the loop sets at once. Nobody else has seen it. So while such a predicate loops, the cons itself is remembered, as the *hole*, and the
+next turn puts its cons into its cdr: no variable, no trail entry, and nothing to follow when the list is read. Wherever something
+else than the next such turn comes, the hole is filled with a variable first.
+
+The one way to see the hole would be a list argument that runs along the list being built; that is tested. The law: whatever
+is answered is what would be answered without this.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
+
+from .generated_code import Rest, is_ground, variables
+
+FILL = "if hole is not None: a{0} = hole.cdr = Var(); hole = None"
+
+
+def hole_positions(functor, patterns, goals):
+    """The arguments in which a clause may build a list with a hole: where it is a cons whose cdr is new, and goes to the same
+    argument of the call of ``functor`` that is all its body; and its other arguments are variables, but for one list."""
+    fit = []
+    if len(goals) != 1 or goals[0].__class__ is not Cons or goals[0].car is not functor:
+        return fit
+    given = list(goals[0].cdr or ())
+    if len(given) != len(patterns):
+        return fit
+    for position, pattern in enumerate(patterns):
+        if not isinstance(pattern, Cons) or not variable(pattern.cdr) or pattern.cdr is ANONYMOUS or given[position] is not pattern.cdr:
+            continue
+        others = [*patterns[:position], *patterns[position + 1 :]]
+        found = [item for item in others if isinstance(item, Cons)]
+        parts = [part for item in others for part in ((item.car, item.cdr) if isinstance(item, Cons) else (item,))]
+        elsewhere = [*parts, *given[:position], *given[position + 1 :], pattern.car]
+        if (
+            len(found) == 1
+            and not any(isinstance(item, Rest) or not variable(item) for item in parts)
+            and len({id(part) for part in parts if part is not ANONYMOUS}) == sum(part is not ANONYMOUS for part in parts)
+            and (is_ground(pattern.car) or variable(pattern.car))
+            and all(pattern.cdr not in variables(item) for item in elsewhere)
+        ):
+            fit.append(position)
+    return fit
+
+
+def can_wait(patterns, position):
+    """Whether the head of a clause can be matched without a variable in the hole: the argument there is an atom, or another argument."""
+    if any(isinstance(pattern, Rest) for pattern in patterns):
+        return False
+    pattern = patterns[position]
+    return (not isinstance(pattern, Cons) and not variable(pattern)) or (
+        variable(pattern) and pattern is not ANONYMOUS and pattern in patterns[:position]
+    )
+
+
+class Holes:
+    """Code for such loops; part of the class of the compiler."""
+
+    def turn_with_hole(self, n, position, telling):
+        """Code for a turn of clause ``n``, whose list argument ``telling`` is known to be a cons."""
+        patterns, _ = self.fitting[n]
+        call = self.goals[n][0]
+        pattern, first = patterns[position], patterns[telling]
+        names = {item: f"a{i}" for i, item in enumerate(patterns) if variable(item) and item is not ANONYMOUS}
+        self.emit("if hole is not None:")
+        self.depth += 1
+        self.emit(f"if a{telling} is hole: a{position} = hole.cdr = Var(); hole = None")
+        self.emit("else:")
+        self.depth += 1
+        self._take_parts(first, telling, names)
+        self.emit(f"n = new(Cons); n.car = {self.build(pattern.car, dict(names))}; hole.cdr = n; hole = n")
+        self._next_turn(call, position, dict(names))
+        self.depth -= 2
+        self._take_parts(first, telling, names)
+        x = f"a{position}"
+        self.emit(f"while {x}.__class__ is Var:")
+        self.emit(f"    r = {x}.ref")
+        self.emit("    if r is UNSET: break")
+        self.emit(f"    {x} = r")
+        self.emit(f"if {x}.__class__ is Var:")
+        self.depth += 1
+        inside = dict(names)
+        self.emit(f"n = new(Cons); n.car = {self.build(pattern.car, inside)}; {x}.ref = n; trail.append({x}); hole = n")
+        self._next_turn(call, position, inside)
+        self.depth -= 1
+        self.match(pattern, x, names, 0)
+        self.body([call], names, self.repeating)
+
+    def _take_parts(self, first, telling, names):
+        for part, attribute in ((first.car, "car"), (first.cdr, "cdr")):
+            if part is not ANONYMOUS:
+                names[part] = self.fresh("v")
+                self.emit(f"{names[part]} = a{telling}.{attribute}")
+
+    def _next_turn(self, call, position, names):
+        given = [self.build(item, names) if i != position else None for i, item in enumerate(call.cdr)]
+        moved = [(f"a{i}", item) for i, item in enumerate(given) if item is not None and item != f"a{i}"]
+        if moved:
+            self.emit(f"{', '.join(a for a, _ in moved)} = {', '.join(item for _, item in moved)}")
+        self.emit("continue")

@@ -1,0 +1,111 @@
+"""Goals and values as the tracer and the explainer show them: on one line, short, variables by the names that the user gave them.
+
+A term may be huge, endless or still to be computed, so what is shown of it is bounded while it is read, and nothing is forced. Two
+variables of one name, which come from two uses of a clause, are told apart by a number: ``?x`` and ``?x-2``.
+"""
+
+from __future__ import annotations
+
+import re
+
+from cramhy_runtime.ground.conditions import Error, handler_case
+from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym as lisp_symbol
+from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.utilities.lazy_lists import LazyTail
+
+from .database import functors
+from ..terms.terms import UNSET, TermTail, Var
+
+MOST_ELEMENTS = 12
+"""So many elements of a list are shown."""
+MOST_DEPTH = 6
+"""So deep are lists in lists shown."""
+MOST_CHARACTERS = 240
+"""So long is a goal on a line."""
+_MORE, _ANYTHING = Symbol("..."), Symbol("?_")
+_BREAK = re.compile(r"\s*\n\s*")
+
+PRINT_PRETTY, PRINT_GENSYM, PRINT_CASE, PRINT_CIRCLE, PRINT_READABLY = (
+    lisp_symbol(f"*PRINT-{control}*") for control in ("PRETTY", "GENSYM", "CASE", "CIRCLE", "READABLY")
+)
+
+
+class Names:
+    """The symbols that stand for unset variables in one text."""
+
+    def __init__(self):
+        self.symbols, self.counts = {}, {}
+
+    def of(self, variable):
+        symbol = self.symbols.get(variable)
+        if symbol is None:
+            written = variable.written or variable.name
+            if written is None:
+                return _ANYTHING
+            count = self.counts[written.name] = self.counts.get(written.name, 0) + 1
+            symbol = self.symbols[variable] = written if count == 1 else Symbol(f"{written.name}-{count}")
+        return symbol
+
+
+def readable(term, names=None, depth=MOST_DEPTH):
+    """Lisp data to be printed for ``term``: values in place of variables, no more of it than is shown."""
+    names = names or Names()
+    while term.__class__ is Var:
+        if term.ref is UNSET:
+            return names.of(term)
+        term = term.ref
+    if term.__class__ is LazyTail or term.__class__ is TermTail:
+        return list_from([_MORE]) if term.generator is not None else readable(term.value, names, depth)
+    if term.__class__ is not Cons:
+        return term
+    if not depth:
+        return _MORE
+    items = []
+    while True:
+        kind = term.__class__
+        if kind is Cons:
+            if len(items) == MOST_ELEMENTS:
+                items.append(_MORE)
+                return list_from(items)
+            items.append(readable(term.car, names, depth - 1))
+            term = term.cdr
+        elif kind is Var and term.ref is not UNSET:
+            term = term.ref
+        elif (kind is LazyTail or kind is TermTail) and term.generator is None:
+            term = term.value
+        elif kind is LazyTail or kind is TermTail:
+            items.append(_MORE)
+            return list_from(items)
+        else:
+            return list_from(items, readable(term, names, depth))
+
+
+def line(data, case=None):
+    """``data`` printed on one line, at most `MOST_CHARACTERS` long; ``case``: ``"DOWNCASE"`` or as the user has set it."""
+    case = keyword(case) if case else PRINT_CASE.value
+    with binding(PRINT_PRETTY, None, PRINT_GENSYM, None, PRINT_CASE, case, PRINT_CIRCLE, None, PRINT_READABLY, None):
+        text = handler_case([(Error, lambda problem: f"#<{type(data).__name__} that cannot be printed>")], lambda: prin1_to_string(data))
+    text = _BREAK.sub(" ", text).replace("|...|", "...")
+    return text if len(text) <= MOST_CHARACTERS else text[: MOST_CHARACTERS - 4] + " ..."
+
+
+def show(term, names=None):
+    """``term`` as text for a student: small letters, as one types them."""
+    return line(readable(term, names), "DOWNCASE")
+
+
+def clause_name(clause, case="DOWNCASE"):
+    """``clause 2 of turtle-motions at motions.lisp:14:3``: its number among those of its functor in its group, and where it stands."""
+    place = describe(getattr(clause, "position", None))
+    return f"clause {clause_number(clause)} of {line(clause.group, case)}" + (f" at {place}" if place else "")
+
+
+def clause_number(clause):
+    """The number of a clause, from 1, among those of its functor in its group."""
+    entry = functors.get(clause.head.car)
+    clauses = [other for other in entry.clauses if other.group is clause.group] if entry is not None else []
+    return str(clauses.index(clause) + 1) if clause in clauses else "?"

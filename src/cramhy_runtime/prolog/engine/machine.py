@@ -1,0 +1,262 @@
+"""The machine: one proof in progress, with its trail and its choice points, and the loop that drives it.
+
+A *step* is a tuple ``(function, continuation, *arguments)``; ``function(machine, step)`` does a piece of work and returns the
+next step. A continuation is a step too: what to do when the goal has succeeded. So nothing recurses in Python however long
+the proof is, and a last call leaves nothing behind.
+
+A *choice point* is a step as well, ``(function, continuation, trail height, *arguments)``, on a stack. To fail means to unset the
+variables that were set since the newest one was made, and to go on with it; its function takes it off the stack when it has nothing
+more to try after this. Choice points that count through the rows of a table are lists instead of tuples, and change.
+Cut forgets the choice points above a height.
+
+A machine holds all state of its proof. A Lisp function called in the middle may park its task, or ask other queries: these
+have machines of their own. The machine stops after each solution and goes on when the next one is wanted, so solutions are lazy;
+when all that are left are wanted, it collects them without stopping (`drain`).
+"""
+
+from __future__ import annotations
+
+from itertools import islice
+from weakref import ref
+
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.budget import budget
+from cramhy_runtime.ground.dynamic import special
+
+from ..symbols import PROLOG
+from ..terms.terms import UNSET, Var, undo, unify
+
+BATCH = range(50)
+"""Steps between two looks at what is left of the task's slice; the kernel counts each step as a checkpoint."""
+_TIDY = 5_000
+"""Entries of a trail that are worth tidying."""
+DEFAULT_DEPTH = 3_000_000
+"""Goals that may wait for one another. A continuation needs 100 to 300 bytes, so this is half a gigabyte."""
+DEPTH_LIMIT = special(PROLOG.intern("*PROLOG-DEPTH-LIMIT*"), DEFAULT_DEPTH)
+
+
+class _Kept:
+    """Stands among weak references for an entry of the trail that is no plain variable, and stays."""
+
+    __slots__ = ("entry",)
+
+    def __init__(self, entry):
+        self.entry = entry
+
+    def __call__(self):
+        return self.entry
+
+
+class Machine:
+    """A proof. ``names`` maps symbols to the variables that they stand for in Lisp data."""
+
+    __slots__ = ("trail", "choices", "names", "found", "start", "collect", "until_measured", "until_tidy", "warned", "goes_on")
+
+    def __init__(self, names=None):
+        self.trail = []
+        self.choices = []
+        self.names = {} if names is None else names
+        self.found = False
+        self.start = self.collect = None
+        self.until_measured = 200  # batches
+        self.until_tidy = _TIDY  # length of the trail
+        self.warned = None
+        self.goes_on = None  # the continuation of the newest goal that called Lisp, or that nobody has defined: for messages
+
+    def prove(self, step):
+        """Prepare to prove what ``step`` does; its continuation must be `SOLVED`."""
+        self.start = step
+        return self
+
+    def nested(self, names):
+        """A machine for a proof inside of this one, whose solutions are collected."""
+        machine = Machine(names)
+        machine.warned = self.warned_of()
+        return machine
+
+    def warned_of(self):
+        """A set of what was warned of in this proof and those inside of it: a warning that is repeated tells nothing."""
+        if self.warned is None:
+            self.warned = set()
+        return self.warned
+
+    def unify(self, *sides):
+        """Make terms the same, two by two: ``unify(a, b, c, d)`` unifies a with b and c with d. All or nothing."""
+        trail = self.trail
+        height = len(trail)
+        for index in range(0, len(sides), 2):
+            if not unify(sides[index], sides[index + 1], trail):
+                undo(trail, height)
+                return False
+        return True
+
+    def next_solution(self):
+        """Go on to the next solution: True, and variables have its values; False, and there is none."""
+        step = self.start
+        self.found = False
+        budget.left -= 1
+        if budget.left < 0:
+            kernel.checkpoint()
+        if step is not None:
+            self.start = None
+        else:
+            step = fail(self)
+            if step is None:
+                return False
+        while True:
+            for _ in BATCH:
+                step = step[0](self, step)
+                if step is None:
+                    return self.found
+            self._rest(step)
+
+    @staticmethod
+    def watch(around):
+        """Let ``around(machine, next_solution)`` do the work of `next_solution` from now on.
+
+        ``None`` puts the method itself back, so that tracing costs nothing while nothing is traced.
+        """
+        Machine.next_solution = _next_solution if around is None else lambda machine: around(machine, _next_solution)
+
+    def drain(self, collect):
+        """Find all solutions that are left; ``collect`` is called at each, with the variables set."""
+        self.collect = collect
+        try:
+            self.next_solution()
+        finally:
+            self.collect = None
+
+    def _rest(self, step):
+        """What is done now and then between two steps: give way to others, forget what nobody needs, look how deep the proof is."""
+        if not self.choices:
+            self.trail.clear()
+        elif len(self.trail) > self.until_tidy:
+            self._tidy()
+        self.until_measured -= 1
+        if self.until_measured < 0:
+            self.until_measured = 200 + 2 * self._depth(step) // len(BATCH)
+        budget.left -= len(BATCH)
+        if budget.left < 0:
+            kernel.checkpoint()
+
+    def _depth(self, step):
+        """The number of goals that wait for ``step``, or of choice points if these are more; an error if it is beyond the limit.
+
+        A goal waits as a continuation of the step. They are counted so seldom that it costs a step some nanoseconds.
+        """
+        limit = DEPTH_LIMIT.value
+        if limit is None:
+            return 1_000_000
+        depth, k = 0, step[1]
+        while k is not None and depth <= limit:
+            k = k[1]
+            depth += 1
+        depth = max(depth, len(self.choices))
+        if depth <= limit:
+            return depth
+        from .depth_limit import too_deep  # which knows clauses, and these the machine
+
+        return too_deep(self, step, limit)
+
+    def _tidy(self):
+        """Forget trail entries, above the newest choice point, for variables that only the trail knows: nobody can see them unbound.
+
+        The trail lets go of them for a moment. Which of them live on is what others still know.
+        """
+        trail, height = self.trail, self.choices[-1][2]
+        watched = [ref(entry) if entry.__class__ is Var else _Kept(entry) for entry in islice(trail, height, None)]
+        del trail[height:]
+        trail += [entry for entry in [known() for known in watched] if entry is not None]
+        self.until_tidy = 2 * len(trail) + _TIDY
+
+
+_next_solution = Machine.next_solution
+
+
+def _solved(m, step):
+    collect = m.collect
+    if collect is None:
+        m.found = True
+        return None
+    collect()
+    choices = m.choices  # what `fail` does, without a call
+    if not choices:
+        return None
+    step = choices[-1]
+    height = step[2]
+    trail = m.trail
+    while len(trail) > height:
+        trail.pop().ref = UNSET
+    return step
+
+
+SOLVED = (_solved, None)
+"""The continuation of a query: stop, there is a solution."""
+
+
+def fail(m):
+    """Go back to the newest choice point: its step, or ``None`` when there is none left."""
+    choices = m.choices
+    if not choices:
+        return None
+    step = choices[-1]
+    height = step[2]
+    trail = m.trail
+    while len(trail) > height:
+        trail.pop().ref = UNSET
+    return step
+
+
+def give_up(m, step):
+    """The function of a choice point that has nothing to try."""
+    m.choices.pop()
+    return fail(m)
+
+
+def proceed(m, step):
+    """The function of a choice point that goes on with its continuation, when all that was tried after it has failed."""
+    m.choices.pop()
+    return step[1]
+
+
+def call_again(m, step):
+    """The function of a choice point ``(call_again, k, height, call, *arguments)`` that calls a goal."""
+    m.choices.pop()
+    return step[3](m, (step[3], step[1], *step[4:]))
+
+
+def settle(m, height):
+    """Make the choice point at ``height`` one that has nothing to try, whatever was made after it."""
+    choices = m.choices
+    if len(choices) == height + 1:
+        choices.pop()
+    elif height < len(choices):
+        choices[height] = (give_up, None, choices[height][2])
+
+
+def _fail_step(m, step):
+    return fail(m)
+
+
+FAIL = (_fail_step, None)
+"""A step that fails."""
+
+
+def _resume(m, step):
+    _, k, height, iterator = step
+    for _ in iterator:
+        return k
+    m.choices.pop()
+    undo(m.trail, height)
+    return fail(m)
+
+
+def retry_iterator(m, k, iterator):
+    """Go on with ``k`` for each item of ``iterator``, which sets variables; on backtracking the next item is asked for."""
+    trail = m.trail
+    height = len(trail)
+    for _ in iterator:
+        m.choices.append((_resume, k, height, iterator))
+        return k
+    undo(trail, height)
+    return fail(m)

@@ -1,0 +1,300 @@
+"""Relations: predicates that consist of ground facts only, kept as tables.
+
+A goal says which arguments it knows. For each such combination a table from the known values to rows is made when it is first
+asked for; then answering means to walk the rows that fit and set the unknown arguments. The order of answers is that of the facts.
+
+The call function of a relation is written for its number of arguments, as a tree of tests which of them are known. Lists among the
+values, and a variable that is given twice, go the general way: rows that may fit, the lists found by their first symbol, are unified.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.ground.equality import equal_key
+from cramhy_runtime.utilities.generated_functions import generated_function
+
+from .machine import fail
+from ..terms.terms import UNSET, Var, deref, unify
+
+_BY_VALUE = frozenset([int, str, float, DoubleFloat])
+_WRITTEN_OUT = 4
+"""The most arguments for which a call function is written."""
+
+
+def index_key(atom):
+    """The key of ``atom`` in an index, equal for atoms that are `same_atom`; ``NotImplemented`` for what is compared otherwise."""
+    kind = atom.__class__
+    if kind is Symbol or kind is Keyword or atom is None:
+        return atom
+    return equal_key(atom) if kind in _BY_VALUE or atom is True else NotImplemented  # `t` is Python's True, which is 1 in a dict
+
+
+def column_key(term):
+    """As `index_key`; of a list that begins with a symbol the key that all such lists have."""
+    if term.__class__ is Cons:
+        first = deref(term.car)
+        return (first,) if first.__class__ is Symbol or first.__class__ is Keyword else NotImplemented
+    return index_key(term)
+
+
+class Relation:
+    """The rows of a relation and the tables made of them. ``exact``: every value is an atom that has a key of its own."""
+
+    def __init__(self, rows):
+        self.rows = rows
+        self.arity = len(rows[0])
+        columns = range(self.arity)
+        self.keyed = [all(column_key(row[i]) is not NotImplemented for row in rows) for i in columns]
+        self.lists = [any(row[i].__class__ is Cons for row in rows) for i in columns]
+        self.exact = all(index_key(value) is not NotImplemented for row in rows for value in row)
+        self._tables = {}
+
+    def table(self, mask, kept=None):
+        """Known values → for each row that fits, the values of the columns ``kept``; the bare value when there is one.
+
+        ``mask``: bit i is set when argument i is known; when there is one, its bare value is the key. ``kept``: by default the others.
+        """
+        table = self._tables.get((mask, kept))
+        if table is None:
+            known = [i for i in range(self.arity) if mask >> i & 1]
+            columns = [i for i in range(self.arity) if not mask >> i & 1] if kept is None else kept
+            table = {}
+            for row in self.rows:
+                keys = [column_key(row[i]) for i in known]
+                rest = row[columns[0]] if len(columns) == 1 else tuple([row[i] for i in columns])
+                table.setdefault(keys[0] if len(keys) == 1 else tuple(keys), []).append(rest)
+            self._tables[mask, kept] = table
+        return table
+
+    def call_general(self, m, step):
+        """The call function for any goal."""
+        terms, mask, keys = [], 0, []
+        for i, term in enumerate(step[2:]):
+            term = deref(term)
+            terms.append(term)
+            if term.__class__ is Var or not self.keyed[i]:
+                continue
+            key = column_key(term)
+            if key is not NotImplemented:
+                mask |= 1 << i
+                keys.append(key)
+        every = tuple(range(self.arity))
+        rows = self.table(mask, every).get(keys[0] if len(keys) == 1 else tuple(keys), ())
+        return _unify_rows(m, step[1], [(row,) for row in rows] if self.arity == 1 else rows, terms, 0)
+
+    def call_function(self):
+        """The call function, written for this relation if it is simple enough."""
+        if not self.arity:
+            return _constant(len(self.rows))
+        if self.arity <= (4 if self.exact else 3) and all(self.keyed):
+            return self._written()
+        return self.call_general
+
+    def _written(self):
+        arguments = ", ".join(f"a{i}" for i in range(self.arity))
+        lines = [f"_, k, {arguments} = step"]
+        for i in range(self.arity):
+            lines += [
+                f"while a{i}.__class__ is Var:",
+                f"    r = a{i}.ref",
+                "    if r is UNSET: break",
+                f"    a{i} = r",
+                f"c{i} = a{i}.__class__",
+                f"if c{i} is Symbol: k{i} = a{i}",
+                f"elif c{i} is not Var:",
+                f"    k{i} = column_key(a{i})" if self.lists[i] else f"    k{i} = index_key(a{i})",
+                f"    if k{i} is NotImplemented: return general(m, step)",
+            ]
+
+        def tests(i, known, lists, depth):
+            indent = "    " * depth
+            if i == self.arity:
+                lines.extend(indent + line for line in self._leaf(known, lists))
+                return
+            lines.append(f"{indent}if c{i} is Var:")
+            tests(i + 1, known, lists, depth + 1)
+            if self.lists[i]:
+                lines.append(f"{indent}elif c{i} is Cons:")
+                tests(i + 1, [*known, i], [*lists, i], depth + 1)
+            lines.append(f"{indent}else:")
+            tests(i + 1, [*known, i], lists, depth + 1)
+
+        tests(0, [], [], 0)
+        space = {
+            "Var": Var,
+            "UNSET": UNSET,
+            "Symbol": Symbol,
+            "Cons": Cons,
+            "index_key": index_key,
+            "column_key": column_key,
+            "general": self.call_general,
+            "fail": fail,
+            "tables": self._tables,
+            "table": self.table,
+            "again": _again,
+            "set_1": _set_one,
+            "set_2": _set_two,
+            "set_3": _set_many,
+            "unify": unify,
+            "unify_rows": _unify_rows,
+            "unify_one": _unify_one,
+        }
+        return generated_function("call of a relation", "call", ["m", "step"], lines, space)
+
+    def _leaf(self, known, lists):
+        """The lines for goals of which the arguments ``known`` are known, and ``lists`` among them are lists."""
+        unknown = [j for j in range(self.arity) if j not in known]
+        for n, j in enumerate(unknown):
+            for other in unknown[:n]:
+                yield f"if a{other} is a{j}: return general(m, step)"
+        mask = sum(1 << j for j in known)
+        kept = tuple(j for j in range(self.arity) if j in unknown or j in lists) if lists else None
+        key = f"k{known[0]}" if len(known) == 1 else f"({', '.join(f'k{j}' for j in known)})"
+        yield f"rows = (tables.get(({mask}, {kept})) or table({mask}, {kept})).get({key})"
+        yield "if rows is None: return fail(m)"
+        if lists:
+            terms = ", ".join(f"a{j}" for j in kept)
+            yield f"return unify_one(m, k, rows, {terms}, 0)" if len(kept) == 1 else f"return unify_rows(m, k, rows, ({terms}), 0)"
+        elif not unknown:
+            yield "return again(m, k, len(rows)) if len(rows) > 1 else k"
+        else:
+            terms = ", ".join(f"a{j}" for j in unknown)
+            yield f"return set_{min(len(unknown), 3)}(m, k, rows, {f'[{terms}]' if len(unknown) > 2 else terms})"
+
+
+def compile_relation(rows):
+    """The `Relation` of the ground facts ``rows``, each the list of its arguments."""
+    return Relation([tuple(row) for row in rows])
+
+
+# ---------------------------------------------------------------------------- the rows that fit, one after the other
+
+
+def _set_one(m, k, rows, variable):
+    trail = m.trail
+    if len(rows) > 1:
+        m.choices.append([_next_one, k, len(trail), rows, 1, variable])
+    variable.ref = rows[0]
+    trail.append(variable)
+    return k
+
+
+def _next_one(m, step):
+    _, k, _, rows, i, variable = step
+    variable.ref = rows[i]
+    m.trail.append(variable)
+    i += 1
+    if i == len(rows):
+        m.choices.pop()
+    else:
+        step[4] = i
+    return k
+
+
+def _set_two(m, k, rows, first, second):
+    trail = m.trail
+    if len(rows) > 1:
+        m.choices.append([_next_two, k, len(trail), rows, 1, first, second])
+    first.ref, second.ref = rows[0]
+    trail += (first, second)
+    return k
+
+
+def _next_two(m, step):
+    _, k, _, rows, i, first, second = step
+    first.ref, second.ref = rows[i]
+    m.trail += (first, second)
+    i += 1
+    if i == len(rows):
+        m.choices.pop()
+    else:
+        step[4] = i
+    return k
+
+
+def _set_many(m, k, rows, variables):
+    if len(rows) > 1:
+        m.choices.append([_next_many, k, len(m.trail), rows, 1, variables])
+    for variable, value in zip(variables, rows[0]):
+        variable.ref = value
+    m.trail += variables
+    return k
+
+
+def _next_many(m, step):
+    _, k, _, rows, i, variables = step
+    for variable, value in zip(variables, rows[i]):
+        variable.ref = value
+    m.trail += variables
+    i += 1
+    if i == len(rows):
+        m.choices.pop()
+    else:
+        step[4] = i
+    return k
+
+
+def _again(m, k, count):
+    """Succeed ``count`` times."""
+    m.choices.append([_next_again, k, len(m.trail), count - 1])
+    return k
+
+
+def _next_again(m, step):
+    if step[3] == 1:
+        m.choices.pop()
+    else:
+        step[3] -= 1
+    return step[1]
+
+
+def _constant(count):
+    """The call function of facts without arguments: succeed once for each."""
+    return lambda m, step: _again(m, step[1], count) if count > 1 else step[1]
+
+
+def _retry(m, step):
+    m.choices.pop()
+    return _unify_rows(m, step[1], step[3], step[4], step[5])
+
+
+def _unify_rows(m, k, rows, terms, i):
+    """The general case: an argument is a list, or a variable occurs twice. No choice point is left when only one row fits."""
+    trail = m.trail
+    height = len(trail)
+    count = len(rows)
+    while i < count:
+        for term, value in zip(terms, rows[i]):
+            if term is not value and not unify(term, value, trail):
+                break
+        else:
+            i += 1
+            if i < count:
+                m.choices.append((_retry, k, height, rows, terms, i))
+            return k
+        i += 1
+        while len(trail) > height:
+            trail.pop().ref = UNSET
+    return fail(m)
+
+
+def _retry_one(m, step):
+    m.choices.pop()
+    return _unify_one(m, step[1], step[3], step[4], step[5])
+
+
+def _unify_one(m, k, rows, term, i):
+    """The same for a single argument."""
+    trail = m.trail
+    height = len(trail)
+    count = len(rows)
+    while i < count:
+        value = rows[i]
+        i += 1
+        if unify(term, value, trail):
+            if i < count:
+                m.choices.append((_retry_one, k, height, rows, term, i))
+            return k
+        while len(trail) > height:
+            trail.pop().ref = UNSET
+    return fail(m)

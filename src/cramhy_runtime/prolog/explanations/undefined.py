@@ -1,0 +1,111 @@
+"""What is said of a goal that nobody has defined: the original's warning, where the goal stands, and what may be meant.
+
+A functor is a symbol, package and all, so a name of a package that shadows it is another functor. The warning comes once for each
+place of a goal in a proof, not again when the proof comes back there. Source: prolog.md 5.1, section 1.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.conditions import SimpleStyleWarning, SimpleWarning, warn
+from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.ground.packages import COMMON_LISP, CURRENT
+from cramhy_runtime.utilities.patterns import variable
+
+from ..builtins import control
+from ..engine import database
+from ..engine.source_positions import Place
+from .failure_reasons import spelled_like
+from ..engine.goal_text import show
+from ..engine.services import SERVICES
+from ..terms.terms import raw
+
+
+def defined_functors():
+    """The functors of which goals can have solutions, all but ``t``, which is a functor, too, but Python's ``True`` and like no other."""
+    return [*control.CONTROL, *(functor for functor, entry in database.functors.items() if entry.defined and functor is not True)]
+
+
+def advice(functor):
+    """What may be meant where nobody has defined ``functor``: a sentence without its full stop, or ``None``."""
+    if functor is None:
+        return "nil is not a goal"
+    if not isinstance(functor, Symbol) or variable(functor):
+        return f"{show(functor)} is not a functor; (call ?goal) proves a goal that is the value of a variable"
+    name, known = show(functor), defined_functors()
+    twins = [other for other in known if other.name == functor.name and other is not functor]
+    if twins:
+        twin = _written(twins[0], qualified=True)
+        return f"nobody defines {name}; there is {twin}, another symbol of that name: write it so, or import it"
+    near = spelled_like(functor, known)
+    if near:
+        return f"nobody defines {name}; did you mean {' or '.join(show(symbol) for symbol in near)}?"
+    if not isinstance(functor.function, UndefinedFunction):
+        return f"{name} is a Lisp function: (lisp-fun {name} ...) is a goal that calls it, (lisp-pred {name} ...) asks whether it is true"
+    return None
+
+
+def warn_undefined(m, goal):
+    """Warn of the goal term ``goal``, whose functor nobody has defined; once for each place in a proof."""
+    functor = None if goal is None else goal.car
+    place = Place(m, goal, everywhere=True)
+    key = (functor if place.written is None else id(place.written), len(place.clauses))
+    if key in m.warned_of():
+        return
+    m.warned_of().add(key)
+    warning = SimpleWarning("Trying to prove goal ~a with undefined functor ~s.", raw(goal, m.names), raw(functor, m.names))
+    meant = advice(raw(functor, m.names))
+    if meant is not None:
+        meant = (f"N{meant[1:]}" if meant.startswith("n") else meant) + ("" if meant[-1] == "?" else ".")
+    warning.where, warning.hint = place.where, "\n".join(filter(None, [place.rule("It is a goal of"), meant]))
+    warn(warning)
+
+
+def warn_of_misspelled_functors(group, extendable, defined):
+    """Style-warn of functors that the new fact group ``group`` lists as ``extendable``, or has clauses of (``defined``), where others
+    may be meant.
+
+    A list may name functors that nobody has defined yet; so may a program say before what it will define. But a name that is
+    almost that of a predicate which is there to be extended, or the same in another package, is a slip as a rule, and nothing else
+    would tell of it: the clauses would be there, and nobody would ask them.
+    """
+    known = database.functors
+    alone = [
+        functor
+        for functor in dict.fromkeys([*extendable, *defined])
+        if functor is not True
+        and functor not in control.CONTROL
+        and not (functor in known and any(other is not group for other in known[functor].groups()))
+    ]
+    if not alone:
+        return
+    ours = {
+        functor: entry
+        for functor, entry in known.items()
+        if entry.native_group is not None and functor.package is not COMMON_LISP and functor.package.built_in
+    }
+    to_extend = [functor for functor, entry in ours.items() if not entry.native]  # nothing but what users give them
+    for functor in alone:
+        twins = [other for other in (ours if functor in extendable else to_extend) if other.name == functor.name]
+        meant = twins or (spelled_like(functor, ours) if functor in extendable else [])
+        if not meant:
+            continue
+        clause = next(iter(known[functor].clauses), None) if functor in known else None
+        warning = SimpleStyleWarning(
+            "Fact group ~a ~a ~s, which no other group defines.", group, "extends" if functor in extendable else "has clauses of", functor
+        )
+        place = describe(clause.position) if clause is not None else None
+        warning.where = f"at {place}" if place else None
+        warning.hint = f"Did you mean {' or '.join(_written(other, qualified=bool(twins)) for other in meant)}?"
+        warn(warning)
+
+
+def _written(functor, qualified=False):
+    """``functor`` as one writes it in the package that is current; with its package in any case if ``qualified``."""
+    package = functor.package
+    if package is None or not qualified and CURRENT.value.lookup(functor.name)[0] is functor:
+        return functor.name.lower()
+    return f"{min(package.names, key=len).lower()}:{functor.name.lower()}"
+
+
+SERVICES.install(warn_undefined=warn_undefined)

@@ -1,0 +1,252 @@
+"""Facts, rules and queries from Python.
+
+    with fact_group("family") as family:
+        family.fact(P.parent("tom", "bob"), P.parent("bob", "ann"))
+        family.rule(P.ancestor(V.x, V.y), P.parent(V.x, V.y))
+        family.rule(P.ancestor(V.x, V.z), P.parent(V.x, V.y), P.ancestor(V.y, V.z))
+
+    for answer in solve(P.ancestor("tom", V.who)):
+        print(answer.who)
+
+A group is defined as a whole when its block ends, and not at all when the block fails; it replaces the group of that name, if there is
+one. Answers come one after the other, each when it is asked for. None of this needs a plan or a kernel; what is called on the way may.
+Source: prolog.md sections 5 and 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Self, overload
+
+from cramhy_runtime import kernel
+from cramhy_runtime.ground.condition_types import SimpleError, StyleWarning
+from cramhy_runtime.ground.conditions import handler_bind
+from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.restarts import muffle_warning
+from ..builtins import control
+from ..explanations import explanations
+from ..engine import fact_groups as facts
+from .. import query
+from ..builtins import builtins as _builtins, productions as _productions, rete as _rete  # noqa: F401  the built-in predicates are there
+from ..engine.database import functors
+from ..explanations.explanations import Explanation
+from .ground import reasoning
+from .terms import USER, Goal, Name, Variable, goal_form, import_predicates, in_python_names, show, to_lisp, to_python
+from cramhy_runtime.utilities.patterns import ANONYMOUS
+from ..symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+# As far as this room has come, the functors are the predicates that come with it.
+import_predicates(*control.CONTROL, *functors, sym("CRAM-PROLOG::EXPLAIN"), ANONYMOUS)
+
+
+class UnknownPredicate(LookupError):
+    """A query asks a predicate that nobody has defined."""
+
+
+# ---------------------------------------------------------------------------------------------------------------- fact groups
+
+
+class FactGroup:
+    """The facts and rules of a group while its ``with`` block runs; made by `fact_group`."""
+
+    def __init__(self, name: str | Name | Symbol, extends: Iterable[Name | Symbol]):
+        self.name = _group_name(name)
+        self.extends: list[Symbol] = [to_lisp(predicate) for predicate in extends]
+        self.clauses: list[Cons] = []
+
+    def fact(self, *heads: Goal) -> None:
+        """What holds without conditions, one or more of them: ``P.parent("tom", "bob")``."""
+        for head in heads:
+            self.rule(head)
+
+    def rule(self, head: Goal, *goals: Goal) -> None:
+        """``head`` holds if all ``goals`` hold, which are proved from left to right. Variables belong to this rule only."""
+        self.clauses.append(Cons(goal_form(head), list_from([goal_form(goal) for goal in goals])))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, problem: BaseException | None, traceback: object) -> None:
+        if problem is None:
+            self._define()
+
+    def _define(self) -> None:
+        try:
+            with reasoning():
+                handler_bind(
+                    [(StyleWarning, lambda warning: muffle_warning(warning))],
+                    lambda: facts.define_fact_group(self.name, self.extends, list_from(self.clauses)),
+                )
+        except SimpleError as refused:
+            refused.add_note(
+                "A group adds to predicates of other groups, or of cramhy, only if it says so: "
+                f"fact_group({show(self.name)!r}, extends=[P.the_predicate])."
+            )
+            raise
+
+
+def fact_group(name: str | Name | Symbol, extends: Iterable[Name | Symbol] = ()) -> FactGroup:
+    """``with fact_group("family") as family:`` collects facts and rules, and defines the group when the block ends.
+
+    name: what a later group must be called to replace it; extends: the predicates of other groups that this one adds to. If the block
+    fails, or the group cannot be defined, what was in force before stays so. Errors: SimpleError for a predicate that is not listed.
+    """
+    return FactGroup(name, extends)
+
+
+def remove_fact_group(name: str | Name | Symbol) -> None:
+    """Remove what the group ``name`` says; an unknown name does nothing."""
+    facts.remove_fact_group(_group_name(name))
+
+
+def _group_name(name: Any) -> Symbol:
+    found = USER.intern(name.upper().replace("_", "-")) if isinstance(name, str) else to_lisp(name)
+    if not isinstance(found, Symbol):
+        raise TypeError(f"{name!r} cannot name a fact group. Give a string, or a name: P.family.")
+    return found
+
+
+# --------------------------------------------------------------------------------------------------------------------- answers
+
+
+class Answer(Mapping[str, Any]):
+    """One answer of a query: the values of its variables, as attributes and as items. Lists are Python lists, nil is ``[]``.
+
+    A variable that the answer leaves open is not there.
+    """
+
+    __slots__ = ("_values",)
+
+    def __init__(self, values: Mapping[Symbol, object]):
+        self._values = {_variable_name(symbol): value for symbol, value in values.items()}
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "_values":  # one that is being unpickled
+            raise AttributeError(name)
+        if name in self._values:
+            return self[name]
+        near = near_names(name, self._values)
+        hint = f" Did you mean {near[0]!r}?" if near else f" It has: {', '.join(self._values) or 'none'}."
+        raise AttributeError(f"This answer has no value for a variable {name!r}.{hint}", name=name, obj=self)
+
+    def __getitem__(self, key: str | Variable) -> Any:
+        return to_python(self._values[key.name if isinstance(key, Variable) else key], list)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __bool__(self) -> bool:
+        """An answer is true, also when there was nothing to find out."""
+        return True
+
+    def __repr__(self) -> str:
+        return f"Answer({', '.join(f'{name}={value!r}' for name, value in self.items())})"
+
+
+def _variable_name(symbol: Symbol) -> str:
+    return Variable(symbol).name
+
+
+def solve(*goals: Goal) -> Iterator[Answer]:
+    """Iterate over the answers to the question whether all ``goals`` hold together; the next is searched for when it is asked for.
+
+    Errors: TypeError for what is no goal; UnknownPredicate if nobody has defined a predicate of the question; whatever a predicate
+    written in Python raises.
+    """
+    return _answers(_question(goals))
+
+
+def _answers(question: Cons) -> Iterator[Answer]:
+    solutions = query.solve(question)
+    while True:
+        if kernel.active() is None:
+            with reasoning():
+                found = next(solutions, None)
+        else:
+            found = next(solutions, None)
+        if found is None:
+            return
+        yield Answer(found)
+
+
+def first(*goals: Goal) -> Answer | None:
+    """The first answer to `solve`; ``None`` if there is none. An answer is true, whatever is in it."""
+    return next(solve(*goals), None)
+
+
+def holds(*goals: Goal) -> bool:
+    """Whether there is an answer."""
+    return first(*goals) is not None
+
+
+@overload
+def findall(template: tuple[object, ...], *goals: Goal) -> list[tuple[Any, ...]]: ...
+@overload
+def findall(template: list[object], *goals: Goal) -> list[list[Any]]: ...
+@overload
+def findall(template: object, *goals: Goal) -> list[Any]: ...
+def findall(template: object, *goals: Goal) -> list[Any]:
+    """What ``template`` is in each answer, in order: a variable is its value, a tuple or list of them one of their values.
+
+    findall(V.who, P.ancestor("tom", V.who))        findall((V.x, V.y), P.parent(V.x, V.y))
+    """
+    return [_instance(template, answer) for answer in solve(*goals)]
+
+
+def _instance(template: Any, answer: Answer) -> Any:
+    if isinstance(template, Variable):
+        return answer[template] if template.name in answer else template
+    if isinstance(template, (tuple, list)):
+        return template.__class__([_instance(part, answer) for part in template])
+    return template
+
+
+def explain(question: object) -> Explanation:
+    """Why a goal, or a designator, has a solution or none: an object whose text tells it. The goal is proved anew for that.
+
+    ``explain(goal).holds`` is the outcome, ``.reason`` why the goal at the bottom failed; ``print(explain(goal))``.
+    """
+    with in_python_names():
+        told: Explanation = explanations.explain(question.form if isinstance(question, Goal) else question)
+    return told
+
+
+setattr(Explanation, "__repr__", Explanation.__str__)
+
+
+def _question(goals: tuple[Any, ...]) -> Cons:
+    forms = [goal_form(goal) for goal in goals]
+    if not forms:
+        raise TypeError('A query needs a goal: solve(P.parent(V.x, "tom")).')
+    for form in forms:
+        _check_predicates(form)
+    return forms[0] if len(forms) == 1 else Cons(sym("AND"), list_from(forms))
+
+
+_JUNCTIONS = (sym("AND"), sym("OR"), sym("NOT"))
+
+
+def _check_predicates(form: Any) -> None:
+    # In Lisp a query of an unknown predicate is a warning; for Python, where P.ancestr is a name like any other, that is too little.
+    functor = form.car
+    if functor in _JUNCTIONS:
+        for part in form.cdr or ():
+            if isinstance(part, Cons):
+                _check_predicates(part)
+    elif functor not in control.CONTROL and not is_defined(functor):
+        near = near_names(functor.name, [symbol.name for symbol in functors if isinstance(symbol, Symbol) and is_defined(symbol)], 1)
+        hint = f" Did you mean {near[0].lower()}?" if near else " Define it in a fact group, or by @predicate."
+        raise UnknownPredicate(f"Nobody has defined the predicate {show(functor)} of the goal {show(form)}.{hint}")
+
+
+def is_defined(functor: Any) -> bool:
+    """Whether goals of ``functor`` can have solutions: it has facts, rules, or Python code."""
+    entry = functors.get(functor)
+    return entry is not None and entry.defined

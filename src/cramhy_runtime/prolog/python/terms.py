@@ -1,0 +1,457 @@
+"""Terms as Python writes them: ``P.parent("tom", V.who)`` is the goal ``(parent "tom" ?who)``.
+
+* ``V.who`` is the variable ``?who``, and ``V._`` the one that matches anything.
+* ``P.parent`` is the name ``parent``: called, it makes a goal; among arguments it stands for the symbol. Names that are built-in
+  predicates are those (``P.member``, ``P.findall``, ``P.not_``); others are symbols of the package PYTHON-USER, so that Lisp code can
+  write ``python-user:parent``. ``names("TUT")`` gives the names of another package.
+* ``kw.driving`` is the keyword ``:driving``, the object itself. A Python string is a string, and equal to no name.
+* A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are the empty list,
+  ``nil``: Lisp has one object for them. ``True`` is ``t``, and neither 1 nor 1.0.
+* A function is a symbol with that function, so that it can be called from a rule, and by ``perform``. Anything else, named tuples
+  too, is itself: two terms with such objects are the same if the objects are.
+
+Goals are joined by ``&``, ``|`` and ``~``, numbers compared by ``<`` and its like. As with fluents, ``==`` asks whether two things are
+the same object, and ``and``, ``or``, ``not`` are refused. Python sees lists of Lisp as Python lists (`to_python`).
+"""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import BuiltinFunctionType, FunctionType, MethodType
+from cramhy_runtime.kernel.typing_names import Any, NoReturn, annotations_of
+
+from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol, list_from
+from cramhy_runtime.ground.python_names import attribute_symbols
+from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, find_package, near_names, package_names, printed
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import CURRENT
+from cramhy_runtime.utilities.lazy_lists import force_ll, lazy_list_p
+from cramhy_runtime.utilities.patterns import ANONYMOUS
+from .ground import reasoning
+from ..symbols import sym
+
+USER: Package = ensure_package("PYTHON-USER")
+"""The package of the names that Python code makes."""
+
+_CALLS = {sym("CRAM-PROLOG::LISP-FUN"): sym("CRAMHY::PYTHON-FUNCTION"), sym("CRAM-PROLOG::LISP-PRED"): sym("CRAMHY::PYTHON-TEST")}
+_FUNCTIONS = (FunctionType, BuiltinFunctionType, MethodType, functools.partial)
+
+
+class Goal:
+    """A goal, or the head of a rule: made by calling a name, or by an operator."""
+
+    __slots__ = ("form",)
+
+    def __init__(self, form: Cons):
+        self.form = form
+
+    def __and__(self, other: Goal) -> Goal:
+        return _joined("AND", self, other)
+
+    def __or__(self, other: Goal) -> Goal:
+        return _joined("OR", self, other)
+
+    def __invert__(self) -> Goal:
+        return Goal(list_from([sym("NOT"), self.form]))
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError(
+            f"The goal {self} was asked whether it is true, by if, while, and, or, not, or a comparison like 1 < x < 3. "
+            "Ask holds(goal) for that; goal & goal, goal | goal, ~goal combine goals."
+        )
+
+    def __repr__(self) -> str:
+        return show(self.form)
+
+
+def _joined(operator: str, first: Goal, second: Any) -> Goal:
+    if not isinstance(second, Goal):
+        raise TypeError(f"{second!r} cannot be joined to the goal {first}: it is no goal.{_hint_about(second)}")
+    functor = sym(operator)
+    parts = list(first.form.cdr) if first.form.car is functor else [first.form]
+    return Goal(Cons(functor, list_from(parts + [second.form])))
+
+
+def goal_form(goal: Any) -> Cons:
+    """The Lisp data of ``goal``; what is no goal is a TypeError that says what to write."""
+    if isinstance(goal, Goal):
+        return goal.form
+    if isinstance(goal, Cons):
+        return goal
+    raise TypeError(f"{goal!r} is no goal.{_hint_about(goal)}")
+
+
+def _hint_about(thing: Any) -> str:
+    if isinstance(thing, bool):
+        return ' (== compares objects, at once; P["=="](a, b) is the goal that makes terms the same.)'
+    if isinstance(thing, Name):
+        return f" Call it with its arguments: {thing.python_name}(...)."
+    return ' A goal is a name with arguments: P.parent(V.x, "tom").'
+
+
+class Variable:
+    """A variable of Prolog: what ``V.who`` gives, always the same object for the same name."""
+
+    __slots__ = ("symbol",)
+
+    def __init__(self, symbol: Symbol):
+        self.symbol = symbol
+
+    @property
+    def name(self) -> str:
+        """Its Python name: an answer has an attribute called so."""
+        return python_name(self.symbol.name[1:])
+
+    def __iter__(self) -> Iterator[Tail]:
+        """For ``[first, *V.rest]``: the variable as the rest of a list, or of the arguments of a goal."""
+        return iter((Tail(self),))
+
+    def __lt__(self, other: object) -> Goal:
+        return make_goal(sym("<"), (self, other))
+
+    def __gt__(self, other: object) -> Goal:
+        return make_goal(sym(">"), (self, other))
+
+    def __le__(self, other: object) -> Goal:
+        return make_goal(sym("<="), (self, other))
+
+    def __ge__(self, other: object) -> Goal:
+        return make_goal(sym(">="), (self, other))
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError(f"The variable {self} was asked whether it is true. It has a value in an answer only.")
+
+    def __repr__(self) -> str:
+        return self.symbol.name.lower()
+
+
+class Tail:
+    """The rest of a list that ends in ``rest``: a variable (``*V.rest``), or, in an answer, what a dotted list ends in."""
+
+    __slots__ = ("rest",)
+
+    def __init__(self, rest: object):
+        self.rest = rest
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Tail) and bool(self.rest == other.rest)
+
+    def __hash__(self) -> int:
+        return hash((Tail, self.rest))
+
+    def __repr__(self) -> str:
+        return f"*{self.rest!r}"
+
+
+class Variables:
+    """``V``: its attributes are variables."""
+
+    def __init__(self) -> None:
+        self._made: dict[Symbol, Variable] = {}
+
+    def __getattr__(self, name: str) -> Variable:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self.of(ANONYMOUS if name == "_" else USER.intern("?" + lisp_name(name)))
+
+    def of(self, symbol: Symbol) -> Variable:
+        """The variable of a symbol of Lisp; one without a package is met once only, and not remembered."""
+        if symbol.package is None:
+            return Variable(symbol)
+        found = self._made.get(symbol)
+        if found is None:
+            found = self._made[symbol] = Variable(symbol)
+        return found
+
+
+V = Variables()
+
+
+class Name:
+    """A name of a predicate, or a symbol as a value. It is equal to its symbol, which is what answers have."""
+
+    __slots__ = ("symbol",)
+
+    def __init__(self, symbol: Symbol):
+        self.symbol = symbol
+
+    @property
+    def python_name(self) -> str:
+        return python_name(self.symbol.name)
+
+    def __call__(self, *arguments: object) -> Goal:
+        return make_goal(self.symbol, arguments)
+
+    def __eq__(self, other: object) -> bool:
+        return self.symbol is (other.symbol if isinstance(other, Name) else other)
+
+    def __hash__(self) -> int:
+        return hash(self.symbol)
+
+    def __repr__(self) -> str:
+        return show(self.symbol)
+
+
+class Names:
+    """The names of a Lisp package as attributes; ``["*->"]`` reaches those that Python cannot write."""
+
+    def __init__(self, package: Package):
+        self._package = package
+
+    def __getattr__(self, name: str) -> Name:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        known = attribute_symbols(self._package, name)
+        return Name(known[0]) if known else self[lisp_name(name)]
+
+    def __getitem__(self, name: str) -> Name:
+        symbol = self._package.intern(name.upper())
+        if self._package is USER and symbol.package is USER:
+            USER.export(symbol)
+        return Name(symbol)
+
+    def __repr__(self) -> str:
+        return f"<names of {self._package.name}>"
+
+
+class Keywords:
+    """``kw``: its attributes are keywords."""
+
+    def __getattr__(self, name: str) -> Keyword:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self[lisp_name(name)]
+
+    def __getitem__(self, name: str) -> Keyword:
+        found: Keyword = KEYWORD.intern(name.upper())
+        return found
+
+
+P = Names(USER)
+kw = Keywords()
+
+
+def names(package: str) -> Names:
+    """The names of the Lisp package ``package``: ``names("TUT").drive``. A LookupError if there is none of that name."""
+    with reasoning():
+        found = find_package(package.upper())
+    if found is None:
+        near = near_names(package.upper(), package_names(), 1)
+        hint = f"Did you mean {near[0]!r}?" if near else "Load the system that defines it first: import my_package."
+        raise LookupError(f"There is no Lisp package {package.upper()!r}. {hint}")
+    return Names(found)
+
+
+def import_predicates(*symbols: Any) -> None:
+    """Let ``P`` have these symbols under their names. Where Python code has used such a name for its own, it keeps it, with a warning."""
+    for symbol in symbols:
+        known = USER.external.get(symbol.name)
+        if known is None:
+            USER.import_symbol(symbol)
+            USER.export(symbol)
+        elif known is not symbol:
+            warnings.warn(
+                f"P.{python_name(symbol.name)} was used before the module that has the predicate {printed(symbol).lower()} was "
+                "imported, and stays another name. Import cramhy_runtime.designators and cramhy_runtime.process_modules first.",
+                stacklevel=2,
+            )
+
+
+_owners: dict[Symbol, str] = {}
+
+
+def claim(symbol: Symbol, function: Any, kind: str) -> None:
+    """Note that ``function`` defines ``symbol``, a ``kind``; that a function of another module has done so is a warning at its place."""
+    module = getattr(function, "__module__", "")
+    before = _owners.get(symbol, module)
+    _owners[symbol] = module
+    code = getattr(function, "__code__", None)
+    if before != module and code is not None:
+        warnings.warn_explicit(
+            f"The {kind} {python_name(symbol.name)} of the module {module} replaces that of {before}: names are global "
+            "in Prolog. Give one of them another: name=P.another_name.",
+            RuntimeWarning,
+            code.co_filename,
+            code.co_firstlineno,
+        )
+
+
+def lisp_name(name: str) -> str:
+    return (name.rstrip("_") or name).replace("_", "-").upper()
+
+
+def python_name(name: str) -> str:
+    return name.lower().replace("-", "_")
+
+
+# ------------------------------------------------------------------------------------------------------------ to Lisp and back
+
+
+def make_goal(functor: Symbol, arguments: tuple[object, ...]) -> Goal:
+    """The goal of ``functor`` with ``arguments``, which are made Lisp data.
+
+    A Python callable where ``lisp-fun`` or ``lisp-pred`` has the name of a function is called as Python calls it: what it raises is
+    raised, where an error in a function of Lisp is a warning, and the goal fails.
+    """
+    if functor in _CALLS and arguments and callable(arguments[0]) and not isinstance(arguments[0], Name):
+        return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:]))))
+    return Goal(Cons(functor, _lisp_list(arguments)))
+
+
+def to_lisp(thing: Any) -> Any:
+    """The Lisp data for a Python term; see the head of this module."""
+    kind = thing.__class__
+    if kind is str or kind is int or kind is float or thing is None or thing is True:
+        return thing
+    if kind is list or kind is tuple:
+        return _lisp_list(thing)
+    if thing is False:
+        return None
+    if isinstance(thing, (Variable, Name)):
+        return thing.symbol
+    if kind is Goal:
+        return thing.form
+    if kind is Tail:
+        raise TypeError(f"{thing!r} stands for the rest of a list: [first, *V.rest], P.f(first, *V.rest).")
+    if isinstance(thing, _FUNCTIONS):
+        return function_symbol(thing)
+    if kind.__module__ == "numpy" and getattr(thing, "shape", None) == () and hasattr(thing, "item"):
+        return to_lisp(thing.item())  # a number of numpy's is the number
+    return thing
+
+
+def _lisp_list(items: Any) -> Any:
+    end = None
+    if items and items[-1].__class__ is Tail:
+        items, end = items[:-1], to_lisp(items[-1].rest)
+    return list_from([to_lisp(item) for item in items], end)
+
+
+def to_python(thing: Any, empty: Any = None) -> Any:
+    """What Python sees of Lisp data: lists as Python lists, variables as `Variable`, texts as ``str``; ``empty`` for nil."""
+    kind = thing.__class__
+    if thing is None:
+        return [] if empty is list else empty
+    if kind is Cons:
+        return _python_list(thing, empty)
+    if isinstance(thing, Symbol):
+        if thing.name[:1] == "?":
+            return V.of(thing)
+        return getattr(thing.function, "called_from_lisp", thing)
+    if kind is LispString:
+        return str(thing)
+    if kind is Character:
+        return thing.char
+    return thing
+
+
+def _python_list(lst: Cons, empty: Any) -> list[Any]:
+    if lazy_list_p(lst):
+        with reasoning():
+            force_ll(lst)
+    items, cell = [], lst
+    while cell.__class__ is Cons:
+        items.append(to_python(cell.car, empty))
+        cell = cell.cdr
+    if cell is not None:
+        items.append(Tail(to_python(cell)))
+    return items
+
+
+def function_symbol(function: Callable[..., Any]) -> Symbol:
+    """A symbol whose function is ``function``: the same one each time, where the function can remember it."""
+    known = getattr(function, "__dict__", None)
+    found = known.get("__lisp_symbol__") if known is not None else None
+    if found is None:
+        named = getattr(function, "func", function)  # what a partial calls
+        found = Symbol(lisp_name(getattr(named, "__name__", "function")))
+        found.function = _LispFunction(function)
+        if isinstance(function, (FunctionType, functools.partial)):
+            function.__dict__["__lisp_symbol__"] = found
+        elif isinstance(function, BuiltinFunctionType):
+            found = _builtins.setdefault(function, found)
+    assert isinstance(found, Symbol)
+    return found
+
+
+_builtins: dict[Any, Symbol] = {}
+
+
+class _LispFunction:
+    """A Python function as Lisp code calls it: with Lisp data, of which the function gets what Python sees."""
+
+    __slots__ = ("called_from_lisp", "nothing")
+
+    def __init__(self, function: Callable[..., Any]):
+        self.called_from_lisp = function
+        self.nothing = what_nil_means(function, None)
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.called_from_lisp(*python_arguments(arguments, self.nothing, None))
+
+
+def what_nil_means(function: Any, default: Any) -> list[Any]:
+    """What each parameter of ``function`` gets for nil: by its annotation False for ``bool``, ``[]`` for ``list``; else ``default``."""
+    code = getattr(function, "__code__", None)
+    if code is None:
+        return []
+    annotations = annotations_of(function)
+    return [nil_as(annotations[name], default) if name in annotations else default for name in code.co_varnames[: code.co_argcount]]
+
+
+def nil_as(annotation: Any, default: Any) -> Any:
+    """What nil is where ``annotation``, a type or the text of one, is expected; ``list`` stands for a new empty list."""
+    text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
+    if text == "bool":
+        return False
+    if text.partition("[")[0] in ("list", "List", "Sequence", "Iterable"):
+        return list
+    return None if text in ("int", "float", "str") or "None" in text or "Optional" in text else default
+
+
+def python_arguments(arguments: Any, nothing: list[Any], default: Any) -> list[Any]:
+    """The Python arguments for ``arguments``, Lisp data, by what nil means for each."""
+    if not nothing:
+        return [to_python(argument, default) for argument in arguments]
+    return [
+        to_python(argument, nothing[index] if index < len(nothing) else default) if argument is None else to_python(argument, default)
+        for index, argument in enumerate(arguments)
+    ]
+
+
+# ---------------------------------------------------------------------------------------------------------------------- text
+
+
+@contextmanager
+def in_python_names() -> Iterator[None]:
+    """What is printed while the block runs has no packages where Python has none: it is printed as in PYTHON-USER."""
+    with reasoning(), binding(CURRENT, USER):
+        yield
+
+
+def show(form: Any) -> str:
+    """Lisp data as text for Python people: in small letters, without packages; objects as Python shows them."""
+    if isinstance(form, Cons):
+        parts, cell, limit = [], form, 30
+        while cell.__class__ is Cons and limit:
+            parts.append(show(cell.car))
+            cell, limit = cell.cdr, limit - 1
+        if cell.__class__ is Cons:
+            parts.append("...")
+        elif cell is not None:
+            parts += [".", show(cell)]
+        return f"({' '.join(parts)})"
+    if form is None:
+        return "nil"
+    if form is True:
+        return "t"
+    if isinstance(form, Keyword):
+        return ":" + form.name.lower()
+    if isinstance(form, Symbol):
+        return form.name.lower()
+    if isinstance(form, str):
+        return '"' + form.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return repr(form)

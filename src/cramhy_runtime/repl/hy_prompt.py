@@ -1,0 +1,426 @@
+"""Common Lisp at a prompt of Hy, after ``(in-package ...)``.
+
+Hy's REPL (`hy.REPL`) has its own loop: it asks for a line (``raw_input``), reads with the reader of its compiler, runs what comes of it,
+and prints the value. A REPL that runs is ``_hy_repl`` in its module. We change that one object, and none of Hy's classes. `attend` gives
+it a wait for lines during which plans go on. `enter` gives it a reader that hands over texts as they are (`TypedReader`), and a prompt
+that shows the package. A text is then answered by the same `Listener` as in ``roslisp_repl``. ``(in-hy)`` gives it back its own reader.
+
+Hy reads standard input that is no terminal (``hy < FILE``) to its end, compiles it, and runs it. There, what follows ``(in-package ...)``
+is given to a `Console`, as if it had been typed into ``roslisp_repl < FILE`` (`answer_piped`).
+
+Time is the wall's at a prompt, and virtual in a pipe; the variable CRAMHY_TIME says otherwise.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+from contextlib import contextmanager
+
+import hy
+from hy.models import Expression, Symbol
+from hy.reader import HyReader
+from hy.reader.exceptions import LexException
+
+from cramhy_runtime import kernel
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import Cons, all_values
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.kernel import signals, standard_input
+from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
+from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
+from cramhy_runtime.session import time_setting
+from cramhy_runtime.languages.hy import malformed
+from cramhy_runtime.languages.hy.lisp_data import package_of
+from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
+
+from .console import Console, exit_status
+from .hy_lines import HyLines
+from .line_input import BROKEN_OFF, Lines
+from .listener import Listener, at_the_prompt
+from .session import Interruption, Session
+
+IN_PACKAGE = sym("IN-PACKAGE")
+_IN_PACKAGE = Symbol("in-package")
+_LAST_ERROR = hy.mangle("*e")
+PIPED = "<stdin>"
+"""What Hy calls the text that it reads from a pipe."""
+
+
+def session_of_prompt():
+    """The session that is there, in a prompt's time from now on, or a new one. A prompt inside of a plan leaves the plan its time."""
+    in_a_plan = kernel.active() is not None and not at_the_prompt()
+    session = Session.at_hand(time_setting.decide(default=time_setting.PROMPT))
+    if not in_a_plan:
+        time_setting.time(time_setting.PROMPT)
+    return session
+
+
+# ------------------------------------------------------------------------------------------------------------ what macros ask
+
+
+def typed(compiler, goes_on):
+    """The Hy model that answers a Lisp form which was typed in Hy, at a prompt or in a pipe; ``None`` if it stands in a file.
+
+    compiler: Hy's compiler, which expands the macro that the form is a call of. goes_on: whether the form is ``in-package``, so that the
+    rest of the text is Lisp, too. Raises `hy.PrematureEndOfInput` when the rest is not complete.
+    """
+    reader = HyReader.current_reader(create=False)
+    repl = vars(compiler.module).get("_hy_repl")
+    if reader is None:
+        return None
+    if repl is not None:
+        if not compiler.filename.startswith(f"{repl.filename}-"):
+            prompt_of(repl)  # a file that is run before the prompt comes
+            return None
+        text = text_of(compiler)
+        if goes_on:
+            rest = rest_of_text(reader)
+            if incomplete(rest):
+                raise more_wanted(compiler.source, compiler.filename)
+            text += rest
+        return hy.models.Expression([hy.read("hy.I.cramhy_runtime/repl/hy_prompt.enter"), hy.models.Symbol("_hy_repl"), text])
+    if compiler.filename == PIPED and goes_on:
+        text = text_of(compiler) + rest_of_text(reader)
+        return hy.models.Expression(
+            [hy.read("hy.I.cramhy_runtime/repl/hy_prompt.answer_piped"), text, compiler.source, compiler.module.__name__]
+        )
+    return None
+
+
+def text_of(compiler):
+    """The text of the macro call that ``compiler`` expands, as it was typed, or as Hy shows it if another macro has made it."""
+    call = compiler.this
+    text = source_of(call, compiler.source) if call.start_line is not None else ""
+    return text if text.lstrip("( ").startswith(str(call[0])) else hy.repr(call).removeprefix("'")
+
+
+# ---------------------------------------------------------------------------------------------------------- a prompt of Hy's
+
+
+class HyPrompt(Listener):
+    """The Lisp of ``repl``, a `hy.REPL`. ``in_lisp``: whether what is typed there is Lisp now."""
+
+    def __init__(self, repl, session):
+        super().__init__(session, HyLines(repl, lambda: self.in_lisp))
+        self.repl = repl
+        self.in_lisp = False
+        self._warnings = streams.ERROR_OUTPUT.value
+        self._hy = None  # what the REPL was before it became Lisp's: its reader, its prompt, how it shows values
+        self._form = None
+        self._rest = None  # the text that follows (in-hy)
+
+    # ------------------------------------------------------------------------------------------------ to Lisp, and back to Hy
+
+    def change_over(self):
+        """Let the REPL read Lisp from its next text on."""
+        if not self.in_lisp:
+            self.in_lisp = True
+            compiler = self.repl.compile.compiler
+            self._hy = compiler.reader, self.repl.ps1, self.repl.output_fn
+            compiler.reader = TypedReader(hy.read("(. _hy_repl lisp hear)"))
+            self.repl.output_fn = shown_by_lisp
+        self._show_prompt(self.session.prompt())
+
+    def change_back(self):
+        """Let the REPL read Hy from its next text on."""
+        if self.in_lisp:
+            self.in_lisp = False
+            self.repl.compile.compiler.reader, prompt, self.repl.output_fn = self._hy
+            self._listen_no_more()
+            self._show_prompt(prompt)
+
+    def write(self, text):
+        """What Python's console says by itself; from Python 3.13 on also its goodbye, when a signal ends it and the terminal has gone."""
+        if not signals.received:
+            type(self.repl).write(self.repl, text)
+
+    def _listen_no_more(self):
+        conditions.install_debugger(None)
+        streams.ERROR_OUTPUT.value = self._warnings
+
+    def _show_prompt(self, prompt):
+        self.repl.ps1 = prompt
+        if hasattr(sys, "ps1"):  # the REPL runs
+            sys.ps1 = prompt
+
+    def leads_away(self, form, reader):
+        self._form = form
+        if not (self.in_lisp and is_way_back(form)):
+            return False
+        self._rest = reader.text[reader.offset :]
+        return True
+
+    def show(self, values):
+        super().show(values)
+        if self.level == 0 and isinstance(self._form, Cons) and self._form.car is IN_PACKAGE:
+            self.change_over()
+
+    # ---------------------------------------------------------------------------------------------------------------- texts
+
+    def hear(self, text):
+        """Evaluate and print the forms of ``text``, which was typed. What follows ``(in-hy)`` in it is Hy's."""
+        standard_input_of_terminal()
+        streams.CONSOLE_OUTPUT.column = 0
+        self.listen()
+        try:
+            self._respond(text)
+        finally:
+            if not self.in_lisp:
+                self._listen_no_more()
+        streams.CONSOLE_OUTPUT.fresh_line()
+        streams.CONSOLE_OUTPUT.flush()
+        if self._rest is not None:
+            rest, self._rest = self._rest, None
+            self.change_back()
+            if rest.strip():
+                self._answer_in_hy(rest.strip())
+        elif self.in_lisp:
+            self.change_over()  # the package may be another one
+
+    def _respond(self, text):
+        interrupted = False
+        while True:
+            try:
+                return self.interrupted() if interrupted else self.respond(text)
+            except kernel.Terminated:
+                raise
+            except (KeyboardInterrupt, kernel.Abandoned, Interruption):
+                interrupted = True
+
+    def _answer_in_hy(self, text):
+        """Let the REPL answer ``text``, to which nothing will be added: where it ends inside of a form, that is an error."""
+        compiler = self.repl.compile
+        compiler.allow_incomplete, before = False, compiler.allow_incomplete
+        try:
+            self.repl.runsource(text, self.repl.filename)
+        finally:
+            compiler.allow_incomplete = before
+
+    def wait_for_line(self, prompt):
+        ours = isinstance(sys.stdin, standard_input.StandardInput) and sys.stdin.isatty()
+        self.input.can_be_woken = ours and (not at_the_prompt() or sys.stdin.holds_text())
+        return super().wait_for_line(prompt)
+
+    def raw_input(self, prompt=""):
+        """The next line for the REPL; plans go on while it waits. Ctrl-C forgets the form that is being typed."""
+        if kernel.active() is None:  # somebody has stopped it
+            return type(self.repl).raw_input(self.repl, prompt)
+        kernel.interrupt_over()
+        if self.in_lisp:
+            self.listen()
+        while True:
+            line = self.read_line(prompt)
+            if line is BROKEN_OFF:
+                self.repl.resetbuffer()
+                prompt = sys.ps1
+            elif line is None:
+                unfinished = "\n".join(self.repl.buffer)
+                self.repl.resetbuffer()
+                if not unfinished.strip():
+                    self.change_back()  # the program may go on after its REPL
+                    raise EOFError
+                self.hear(unfinished) if self.in_lisp else self._answer_in_hy(unfinished)
+                prompt = sys.ps1
+            else:
+                if self.in_lisp:
+                    streams.CONSOLE_OUTPUT.record(f"{prompt}{line}\n")
+                return line
+
+    # ------------------------------------------------------------------------------------------------------- what is Hy's own
+
+    def runsource(self, source, filename="<stdin>", symbol="exec"):
+        """As the REPL's own, and each form of ``source`` is answered. Errors that Hy does not count among them are shown, too.
+
+        Hy shows the value of the last form alone, and many forms come at once when a terminal marks what is pasted.
+        """
+        with self._goes_on():
+            forms, refused = self._forms(source, filename)
+            while forms and not self.in_lisp:
+                errors = self.repl.locals.get(_LAST_ERROR)
+                type(self.repl).runsource(self.repl, forms.pop(0), filename, symbol)
+                if self.repl.locals.get(_LAST_ERROR) is not errors:
+                    self.tell_not_evaluated(" ".join(" ".join(forms).split()))
+                    break
+            else:
+                if forms:
+                    self.hear("\n".join(forms))
+                elif refused:
+                    return type(self.repl).runsource(self.repl, source, filename, symbol)
+        return False
+
+    def _forms(self, source, filename):
+        """The texts of the forms of ``source`` that are answered one by one, and whether the REPL then has to refuse ``source``.
+
+        Hy reads ``source`` as a whole where it is one form, where a form says how the next ones are read, and where it has something to
+        say about them. What begins with a form that leads to Lisp is one text. Forms before a bracket too many are answered, too.
+        """
+        found = []
+        if self.in_lisp:
+            return [], True
+        try:
+            for model in hy.read_many(source, filename, self.repl.compile.compiler.reader):
+                if isinstance(model, Expression) and model and model[0] == _IN_PACKAGE:
+                    lines = source.split("\n")[model.start_line - 1 :]
+                    found.append("\n".join([lines[0][model.start_column - 1 :], *lines[1:]]))
+                    if incomplete(found[-1]):
+                        return [], True
+                    break
+                found.append(source_of(model, source))
+        except LexException as problem:
+            return (found, True) if malformed.BRACKET_TOO_MANY.match(problem.msg) else ([], True)
+        except Exception:  # of a reader macro of the user's
+            return [], True
+        return (found, False) if len(found) > 1 else ([], True)
+
+    def runcode(self, code):
+        """As the REPL's own, and the errors that Hy does not count among them are shown, too."""
+        with self._goes_on():
+            type(self.repl).runcode(self.repl, code)
+
+    @contextmanager
+    def _goes_on(self):
+        """What ends the block does not end the REPL: a failure of a plan, a condition of Lisp, an interrupt.
+
+        They are not below Python's ``Exception``, and a REPL of Hy ends at what is not, but for an interrupt while it has its prompt.
+        """
+        try:
+            yield
+        except kernel.Terminated:
+            raise
+        except Condition:
+            self.repl.print_last_value = False
+            self.repl.showtraceback()
+        except (KeyboardInterrupt, kernel.Abandoned):
+            self.repl.print_last_value = False
+            if hasattr(sys, "ps1"):  # the loop of the prompt tells of it
+                raise KeyboardInterrupt from None
+            self.repl.write("\nKeyboardInterrupt\n")  # as that does, in a file that is run before the prompt comes
+
+    def shown_in_hy(self, value):
+        """The text that the REPL shows for ``value`` in Hy: what is ours as Lisp prints it in the package of the module."""
+        if type(value).__module__.partition(".")[0] != "cramhy_runtime":
+            return hy.repr(value)
+        with binding(PACKAGE, package_of(self.repl.module.__name__)):
+            text = prin1_to_string(value)
+        return hy.repr(value) if text.startswith("#<PYTHON ") else text
+
+
+def shown_by_lisp(value):
+    """The text that Hy's REPL shows for ``value``, the last of a file that is run before the prompt comes."""
+    streams.CONSOLE_OUTPUT.fresh_line()
+    streams.CONSOLE_OUTPUT.flush()
+    return "\n".join(map(prin1_to_string, all_values(value)))
+
+
+def standard_input_of_terminal():
+    """Let the wait for a line of the terminal be one that can be woken."""
+    if sys.stdin is not None and sys.stdin.isatty():
+        standard_input.install()
+
+
+def prompt_of(repl):
+    """The `HyPrompt` of ``repl``."""
+    attend(repl)
+    return repl.lisp
+
+
+def attend(repl, session=None):
+    """Let the plans of ``session`` go on while ``repl`` waits for a line, and let Ctrl-C end them and not the REPL.
+
+    session: a `Session`; by default the one that is there, or a new one in wall time.
+    """
+    if getattr(repl, "lisp", None) is None:
+        repl.lisp = HyPrompt(repl, session or session_of_prompt())
+        if repl.output_fn is hy.repr:  # and not what the user has chosen
+            repl.output_fn = repl.lisp.shown_in_hy
+        repl.raw_input, repl.runsource, repl.runcode = repl.lisp.raw_input, repl.lisp.runsource, repl.lisp.runcode
+        repl.write = repl.lisp.write
+
+
+def enter(repl, text):
+    """Answer ``text``, a Lisp form typed in Hy and what follows it. Lisp stays if it goes into a package."""
+    prompt_of(repl).hear(text)
+
+
+def go_on_in_lisp(repl):
+    """A file that is run before the prompt comes has gone into a package: so does the prompt."""
+    prompt_of(repl).change_over()
+
+
+def go_on_in_hy(repl):
+    """A file that is run before the prompt comes has gone back to Hy."""
+    prompt_of(repl).change_back()
+
+
+def run(make_session):
+    """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status."""
+    try:
+        session = make_session()
+    except (Exception, Condition) as problem:
+        report(condition_of(problem))
+        return 1
+    try:
+        repl = hy.REPL()
+        attend(repl, session)
+        repl.runsource("(require cramhy *)")
+        return repl.run()
+    except SystemExit as leaving:
+        return exit_status(leaving)
+    finally:
+        conditions.install_debugger(None)
+        kernel.stop()
+
+
+# --------------------------------------------------------------------------------------------------------------------- a pipe
+
+
+class PipedLines(Lines):
+    """The lines of standard input, which is a text that is there already."""
+
+    def wait(self, prompt):
+        sys.stdout.write(prompt)
+        sys.stdout.flush()
+        streams.CONSOLE_OUTPUT.column = 0
+        line = sys.stdin.readline()
+        return line.rstrip("\n") if line else None
+
+
+class PipedConsole(Console):
+    """A `Console` that ends at ``(in-hy)``. ``rest``: what follows that in its text."""
+
+    rest = None
+
+    def leads_away(self, form, reader):
+        if is_way_back(form):
+            self.rest = reader.text[reader.offset :]
+        return self.rest is not None
+
+    def over(self):
+        return self.rest is not None
+
+
+def answer_piped(text, source, module):
+    """Answer ``text``, the rest of ``source``, as ``roslisp_repl < FILE`` does. What follows ``(in-hy)`` in it is Hy.
+
+    module: the name of the module that the Hy belongs to.
+    """
+    sys.stdin = io.StringIO(text)
+    console = PipedConsole(lambda: None, PipedLines())
+    console.session = Session.at_hand(time_setting.decide())
+    warnings = streams.ERROR_OUTPUT.value
+    try:
+        with console.listening():
+            console.converse()
+    finally:
+        streams.ERROR_OUTPUT.value = warnings
+    if console.rest is not None:
+        rest = f"{console.rest}\n{sys.stdin.read()}".rstrip("\n")
+        before = source.rstrip("\n").removesuffix(rest)
+        malformed.evaluate(re.sub(r"[^\n]", " ", before) + rest, PIPED, sys.modules[module])

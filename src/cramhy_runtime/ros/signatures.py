@@ -1,0 +1,52 @@
+"""What the functions of this room take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
+
+from cramhy_runtime.ground.data import LispString, Symbol
+from .graph import Node
+from .messages import RosMessage, ServiceType
+from .services import Call
+from .topics import Publication
+
+Text = str | LispString
+MessageType = type[RosMessage]
+TypeName = str | Symbol | MessageType
+"""What names a type of messages: ``"turtlesim/Pose"``, the symbol of its class, or the class itself."""
+ServiceName = str | Symbol | ServiceType
+FieldPath = tuple[str, ...]
+"""The names of a field and of those that it is in, from the inside out: ``("X", "LINEAR")``."""
+FieldSpecs = Sequence[tuple[FieldPath, object]]
+
+Parameter = str | int | float | bool | list["Parameter"] | dict[str, "Parameter"]
+"""A value of the parameter server."""
+ParameterValue = str | int | float | bool | Sequence["ParameterValue"] | Mapping[str, "ParameterValue"]
+"""What a parameter can be set to."""
+
+Handler = Callable[..., RosMessage]
+"""The function of a service: it gets the request and returns the response."""
+Observer = Callable[[str, str, bool], object]
+"""Told of what comes and goes: its kind, its name, and whether it is there now."""
+
+
+class Connection(Protocol):
+    """The receiving end of a topic: `NativeSubscription`, and that of a Lisp program."""
+
+    node: Node
+    name: str
+    type: MessageType
+    closed: bool
+
+    def receive(self, message: Any) -> None: ...
+    def spoiled(self, publication: Publication, message: RosMessage) -> None: ...
+    def close(self) -> None: ...
+
+
+class Answerable(Protocol):
+    """What takes the calls of a service."""
+
+    name: str
+
+    def submit(self, call: Call) -> None: ...

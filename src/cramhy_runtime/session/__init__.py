@@ -1,0 +1,12 @@
+"""The session: all rooms together in an `Image`, as a Lisp image has all packages loaded.
+
+``boot`` makes the packages of all rooms, ``image`` more than one image of them in a process. The surfaces (prompt, command line, page,
+notebook, tests) stand on this room; nobody below it knows all rooms.
+"""
+
+from cramhy_runtime.kernel.images import outside
+
+from .boot import boot, fresh_start
+from .image import Image
+
+__all__ = ["Image", "boot", "fresh_start", "outside"]

@@ -1,0 +1,102 @@
+"""Starting: the packages of all rooms, and what a session begins with.
+
+`boot` makes the packages of every room and lets Python import Lisp systems. What wants Lisp calls it first: the command line,
+the pytest plugin, and the Hy module ``cramhy``.
+"""
+
+from __future__ import annotations
+
+import functools
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cramhy_runtime.kernel.signatures import Backend, BackendName, Clock, ClockName
+
+
+SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
+cram-executive cram-projection cram-execution-trace cram-occasions-events cl-transforms
+cl-transforms-stamped cl-tf cl-tf2 actionlib actionlib-lisp roslisp roslisp-utilities turtlesim asdf uiop trivial-features"""
+"""The systems of CRAM, ROS and ASDF that need no loading, because they are here. Those of messages are made on demand (ros/messages.py)."""
+
+TF_PACKAGES = ("CL-TRANSFORMS-STAMPED", "TF-TYPES", "CL-TF", "TF", "CL-TF2")
+"""The packages of the room ``tf`` with their nicknames."""
+
+
+@functools.cache
+def boot():
+    """Make the packages; with no kernel active, start one in virtual time. Calling it again does nothing."""
+    from cramhy_runtime import kernel
+    from cramhy_runtime.kernel import images
+    from cramhy_runtime.languages.commonlisp import package
+    from cramhy_runtime.ground import packages
+    from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+    from cramhy_runtime.languages.commonlisp.systems import asdf, importer, ros_load, systems, uiop, unit_tests
+    from cramhy_runtime.languages.commonlisp.faces.all_faces import FACES
+    from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
+    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.languages.commonlisp.tools import advice
+    from . import time_setting
+
+    kernel.allow_deep_recursion()
+    if kernel.active() is None:
+        kernel.start(time_setting.decide())
+    with packages.our_own:
+        package.fill()
+        for face in FACES:
+            face.define()
+        systems.provide_system(SYSTEMS)
+        packages.on_demand.update(systems.LIBRARY_PACKAGES)
+        packages.on_demand.update(dict.fromkeys(TF_PACKAGES, define_tf))
+        packages.on_demand.update(dict.fromkeys(("ACTIONLIB-LISP", "ACTIONLIB"), define_actionlib))
+        ros_load.define_faces()
+        asdf.define_faces()
+        uiop.define_faces()
+        define_face("CRAMHY", functions={"within-limit": unit_tests.within_limit, "time": time_setting.time})
+    importer.install()
+    kernel.install_reporter(advice.LispReporter())
+    evaluator.PACKAGE.value = COMMON_LISP_USER
+    images.keep_core()
+
+
+def booted():
+    """Whether `boot` was called in this process."""
+    return bool(boot.cache_info().currsize)
+
+
+def define_actionlib():
+    """Make the packages of the room ``actionlib``."""
+    from cramhy_runtime.languages.commonlisp.faces.actionlib import package
+
+    package.define_faces()
+
+
+def define_tf():
+    """Make the packages of the room ``tf``: the turtle's course has no frames."""
+    from cramhy_runtime.languages.commonlisp.faces.tf import package
+
+    package.define_faces(TF_PACKAGES)
+
+
+def fresh_start(
+    clock: ClockName | Clock | None = None,
+    backend: BackendName | Backend = "threads",
+    seed: int | None = None,
+    time_limit: float | None = None,
+    turtlesim: bool = True,
+    **options: Any,
+) -> None:
+    """Start a kernel with an image: nothing runs, the random numbers begin anew, the simulator waits for the first node.
+
+    clock: "virtual", "wall", or a clock; ``None``: as CRAMHY_TIME says, or virtual. options: more of `kernel.start`.
+    """
+    from cramhy_runtime import kernel
+    from . import time_setting
+
+    kernel.start(clock=clock or time_setting.decide(), backend=backend, seed=seed, time_limit=time_limit, **options)
+    boot()
+    from cramhy_runtime.languages.commonlisp.numbers.random_state import seed_random
+    from cramhy_runtime.turtlesim.node import start_with_first_node
+
+    seed_random(seed)
+    if turtlesim:
+        start_with_first_node()

@@ -1,0 +1,16 @@
+"""How large the world is: the paper in pixels, the metre in pixels, and the paper in metres (turtlesim.md 2)."""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.numbers import single
+
+SIZE = 500
+"""Pixels of the paper, in both directions."""
+METRE = 45
+"""Pixels per metre: the height of a turtle's picture."""
+EXTENT = single((SIZE - 1) / METRE)
+"""Width and height of the world in metres: 11.088889122009277."""
+CENTRE = single(EXTENT / 2)
+"""Both coordinates of the place where the first turtle stands: 5.544444561004639."""
+DRAWINGS = 14
+"""How many drawings of turtles there are (`drawing`); they are given out in turn."""

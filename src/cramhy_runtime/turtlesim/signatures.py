@@ -1,0 +1,43 @@
+"""What the simulator and its pictures speak of, by name. Only type checkers read this module: nothing imports it when a program runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TextIO, TypedDict
+
+from .node import Turtlesim
+
+Colour = tuple[int, int, int]
+"""Red, green and blue, from 0 to 255."""
+Point = tuple[float, float]
+Stroke = tuple[float, float, float, float, Colour, int]
+"""x1, y1, x2, y2, the colour and the width of the pen."""
+TimedStroke = tuple[int, float, float, float, float, Colour, int]
+"""The same after the tick in which it was drawn."""
+Polyline = tuple[Colour, int, list[Point]]
+Sample = tuple[int, float, float, float]
+"""Tick, x, y, heading."""
+Era = tuple[int, Colour, list[TimedStroke]]
+"""The tick of a clear, the background, and what was drawn until the next."""
+Words = str | Iterable[str]
+"""A command line: its words, or one string."""
+Echo = bool | TextIO | Callable[[str], object] | None
+"""Where a log is printed: True for stderr, a stream, or a function that gets each line."""
+
+
+class Path(TypedDict):
+    """A filled path of a drawing: path data with absolute M, L, C and Z only, and a colour as ``#rrggbb``."""
+
+    d: str
+    fill: str
+
+
+class Shape(TypedDict):
+    """The drawing of a turtle."""
+
+    name: str
+    shell: str
+    paths: list[Path]
+
+
+Observer = Callable[[Turtlesim, list[Stroke]], object]

@@ -1,0 +1,5 @@
+"""Examples run in images of their own; see `harness`."""
+
+from cramhy_runtime.session import boot
+
+boot()

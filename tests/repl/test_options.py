@@ -1,0 +1,71 @@
+"""``--help`` of every command tells every default, and time is one setting for all of them."""
+
+from __future__ import annotations
+
+import argparse
+
+import pytest
+
+from cramhy_runtime import cli, kernel
+from cramhy_runtime.cli import options, programs
+
+
+def commands():
+    parser = options.parser()
+    (found,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    return found.choices
+
+
+OPTIONS = [
+    (command, action)
+    for command, parser in commands().items()
+    for action in parser._actions
+    if (action.option_strings or action.nargs == "?") and not isinstance(action, argparse._HelpAction)
+]
+
+
+@pytest.mark.parametrize(("command", "action"), OPTIONS, ids=lambda value: value if isinstance(value, str) else value.dest)
+def test_help_tells_the_default(command, action):
+    text, _, default = action.help.removesuffix(")").rpartition("(")
+    assert action.help.endswith(")") and text.endswith(" ") and default
+    if action.default not in (None, False, []):
+        assert default.startswith(f"{action.default:g}" if isinstance(action.default, float) else str(action.default))
+
+
+def test_help_tells_what_every_word_is():
+    for command, parser in commands().items():
+        assert all(action.help for action in parser._actions), command
+        parser.format_help()
+
+
+def test_every_command_that_has_a_time_takes_the_same_option():
+    found = {command: parser.parse_args([*needed, "--time", "virtual"]).time for command, parser, needed in _with_time()}
+    assert found == dict.fromkeys(["repl", "run", "eval", "test", "turtlesim", "view"], "virtual")
+
+
+def _with_time():
+    for command, parser in commands().items():
+        if any("--time" in action.option_strings for action in parser._actions):
+            yield command, parser, ["x"] if command in ("run", "test") else []
+
+
+@pytest.mark.parametrize("command", ["repl", "run x", "eval", "test x", "turtlesim", "view"])
+def test_a_wrong_time_in_the_environment_is_told(command, monkeypatch, capsys):
+    monkeypatch.setenv("CRAMHY_TIME", "slow")
+    assert cli.main(command.split()) == 2
+    assert capsys.readouterr().err == 'cramhy: The variable CRAMHY_TIME says "slow". Time is "virtual" or "wall".\n'
+
+
+@pytest.mark.parametrize(
+    ("option", "variable", "found"),
+    [(None, None, (False, 1.0)), ("virtual", None, (True, 1.0)), (None, "virtual", (True, 1.0)), ("wall", "virtual", (False, 1.0))],
+)
+def test_the_simulator_alone_lives_in_that_time_too(private, monkeypatch, option, variable, found):
+    """In virtual time it keeps the wall's pace, since it is there to be watched."""
+    pytest.importorskip("uvicorn")
+    if variable is not None:
+        monkeypatch.setenv("CRAMHY_TIME", variable)
+    seen = []
+    monkeypatch.setattr(programs, "_wait", lambda nodes: seen.append((kernel.active().clock.virtual, kernel.pace().speed)) or "ended")
+    assert cli.main(["turtlesim", *(["--time", option] if option else [])]) == 0
+    assert seen == [found]

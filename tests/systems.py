@@ -1,0 +1,36 @@
+"""What the interpreter and the system that run the tests have, and marks for tests that need more."""
+
+import os
+import sys
+
+import hy
+import pytest
+
+RUNS_HY_FILES = not (3, 12) <= sys.version_info < (3, 12, 6) or tuple(map(int, hy.__version__.split(".")[:2])) < (1, 3)
+WHY_NO_HY_FILES = "Hy 1.3 runs no file at all with Python 3.12.0 to 3.12.5"
+
+
+def has_module(name):
+    """Whether a module of that name can be imported."""
+    try:
+        __import__(name)
+    except ImportError:
+        return False
+    return True
+
+
+def needs(module, *names):
+    """The mark of a test that uses names of a module of Python's which not every system has."""
+    missing = [name for name in names if not hasattr(module, name)]
+    return pytest.mark.skipif(bool(missing), reason=f"this system has no {module.__name__}.{' and no '.join(missing)}")
+
+
+IS_POSIX = os.name == "posix" and "CRAMHY_TEST_HIDDEN" not in os.environ
+"""Whether users, modes, links, signals and pipes are those of POSIX. Not in a process of ``tests/without_posix``."""
+posix = pytest.mark.skipif(not IS_POSIX, reason="users, modes, links, signals and pipes of POSIX")
+linux = pytest.mark.skipif(sys.platform != "linux" or not IS_POSIX, reason="/proc, /dev/full and limits of Linux")
+needs_terminals = pytest.mark.skipif(not has_module("termios"), reason="this system has no terminals of POSIX")
+needs_deep_stacks = pytest.mark.skipif(
+    not has_module("resource") and sys.version_info < (3, 14),
+    reason="this system gives the main thread a small stack, which limits recursion",
+)
