@@ -34,6 +34,13 @@ def plan_time(page, doing):
     return page.evaluate("() => parseFloat(document.getElementById('clock').textContent)")
 
 
+def step(page, seconds):
+    """Let that much time pass and wait until the clock shows it; the step size is set already."""
+    stood = plan_time(page, "paused")
+    page.get_by_role("button", name="Step").click()
+    page.wait_for_function("(end) => Math.abs(parseFloat(document.getElementById('clock').textContent) - end) < 0.02", arg=stood + seconds)
+
+
 @pytest.fixture
 def course(repl, visit):
     """The REPL with the course's package, and its page."""
@@ -52,25 +59,21 @@ def test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at(course)
     page.get_by_role("button", name="Pause").click()
     begin = plan_time(page, "paused")
     session.type(PAR)
-    page.locator("#speed").select_option("× 0.1")  # so that it is still in the middle when the pause comes
-    page.get_by_role("button", name="Resume").click()
     wait_for_text(page, "#tasks", "PAR-CHILD-#2/2")
+    page.locator("#step-size").select_option("0.1 s")
+    for _ in range(3):  # time passes by steps only, so that what is looked for stays until it was seen
+        step(page, 0.1)
     wait_for_text(page, "#modules", "(GOAL (9 9 0))")
-    wait_for_text(page, "#doing", "a form runs")
     wait_for_text(page, "#log", "TurtleSim pen control invoked with motion designator")
-    wait_for_text(page, "#tasks", "(sleep 0.5)")  # for five seconds of the wall's
-    page.get_by_role("button", name="Pause").click()
-    stood = plan_time(page, "paused")
     wait_for_text(page, "#tasks", "(sleep 0.5)")
     shown = {row[1]: row[2:] for row in rows(page)}
     assert shown["[TOP-LEVEL]"][1] == "waits for the branches of PAR"
     assert shown["[PAR-CHILD-#2/2]"][1].endswith("(sleep 0.5)") and shown["[PAR-CHILD-#2/2]"][2] == "<repl 6>:10:11"
     assert "[TURTLESIM-NAVIGATION]" in shown
-    page.locator("#step-size").select_option("0.1 s")
-    page.get_by_role("button", name="Step").click()
-    page.wait_for_function("(end) => Math.abs(parseFloat(document.getElementById('clock').textContent) - end) < 0.02", arg=stood + 0.1)
-    page.locator("#speed").select_option("unbounded")
+    page.locator("#speed").select_option("× 0.1")
     page.get_by_role("button", name="Resume").click()
+    wait_for_text(page, "#doing", "a form runs")
+    page.locator("#speed").select_option("unbounded")
     session.wait_for("\nT\nTUT> ")
     wait_for_text(page, "#tasks-count", "0 alive")
     wait_for_text(page, "#modules", "No process module is running.")
@@ -100,10 +103,8 @@ def test_the_keys_drive_the_turtle_while_the_prompt_waits(course):
 def test_a_step_moves_the_clock_though_nothing_else_happens(course):
     session, page = course
     page.get_by_role("button", name="Pause").click()
-    stood = plan_time(page, "paused")
     page.locator("#step-size").select_option("1 s")
-    page.get_by_role("button", name="Step").click()
-    page.wait_for_function("(stood) => Math.abs(parseFloat(document.getElementById('clock').textContent) - stood - 1) < 0.02", arg=stood)
+    step(page, 1)
 
 
 def test_a_page_that_comes_late_sees_what_was_before(course, visit):
