@@ -16,8 +16,8 @@ from .evaluation.forms import SPECIAL_OPERATORS
 from .syntax.lambda_lists import KEYWORDS
 from .syntax.macros import ensure_loaded
 from .objects import classes
-from cramhy_runtime.ground.generic_functions import GenericFunction
-from cramhy_runtime.ground.method_combination import known_combination
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.method_combination import known_combination
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol
 from .standard_names import ABSENT, INSIDE
 from .tools import documentation
