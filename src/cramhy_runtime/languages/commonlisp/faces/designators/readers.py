@@ -1,7 +1,7 @@
 """Reader functions of designators, under the Lisp names of their slots.
 
-They are generic in the original. Here they are plain functions until somebody defines a method on one (``ground/dispatch/open_functions.py``): a
-class of one's own with ``:reader cut:timestamp``, say.
+They are generic in the original. Here they are plain functions until somebody defines a method on one
+(``ground/dispatch/open_functions.py``): a class of one's own with ``:reader cut:timestamp``, say.
 """
 
 from __future__ import annotations
