@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 
 from .compiler.analyze import SPECIAL_FORMS
-from .compiler.scrutiny import QUALITIES, STANDARD_DECLARATIONS
+from .compiler.style_checks import QUALITIES, STANDARD_DECLARATIONS
 from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
 from .syntax.ansi_lambda_lists import lambda_lists
 from .evaluation.forms import SPECIAL_OPERATORS

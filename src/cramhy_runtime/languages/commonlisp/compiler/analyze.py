@@ -38,7 +38,7 @@ from .nodes import (
     SetLocal,
 )
 from .open_coding import MAPPING, open_coded
-from .scrutiny import CRAMHY, Scrutiny, tuple_of
+from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
 """Symbol → method (analyzer, form, env) → node; filled by ``special_forms.py``."""
