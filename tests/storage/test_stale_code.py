@@ -196,7 +196,7 @@ def test_a_file_that_is_loaded_again_is_not_compiled_again(files):
         (defun h () (let ((*d* 2)) (list (m) (n) s (typep 5 'small) (setf (place 1) 2) (point-x (make-point)) *d*)))
         (defparameter *found* (h))"""
     )
-    assert found(use) == "(4 2 4 True (1 2) 1 2)" and loader.why_not_kept(use).kind == "unreadable"
+    assert found(use) == "(4 2 4 True (1 2) 1 2)" and loader.why_not_kept(use).kind == "missing"
     assert found(use, use, use) and loader.why_not_kept(use) is None
     assert found(use) and loader.why_not_kept(use) is None
 
