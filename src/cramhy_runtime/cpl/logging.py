@@ -149,7 +149,7 @@ def define_log_tags(tags):
     """``(define-log-tags tag...)``: add keywords to the log tags. Returns the list of all. Other objects than keywords are an error."""
     for tag in python_list(tags):
         if not isinstance(tag, Keyword):
-            error("A log tag is a keyword, which ~S is not.", tag)
+            error("A log tag is a keyword, not ~S.", tag)
         if tag.name not in known_tags:
             known_tags.append(tag.name)
     return list_available_log_tags()

@@ -144,7 +144,7 @@ def abandoned_text(kernel, tasks, why=""):
     """The message that the cleanup of TASKS was given up, with what each waits for, and WHY."""
     whose = "this task" if len(tasks) == 1 else f"these {len(tasks)} tasks"
     return (
-        f"The cleanup of {whose} was given up.{f' {why}' if why else ''} What it was to stop may still be going on:\n"
+        f"The cleanup of {whose} was given up.{f' {why}' if why else ''} The work that it should stop may still be going on:\n"
         f"{list_of(kernel, tasks)}"
     )
 

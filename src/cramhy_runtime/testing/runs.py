@@ -51,7 +51,7 @@ def virtual_time(
     if schedule is None:
         chooser = seed
     elif seed is not None:
-        raise ValueError("A seed or a schedule, not both: each says who goes next.")
+        raise ValueError("A seed or a schedule, not both: each decides which task goes next.")
     else:
         chooser = schedule if isinstance(schedule, Schedule) else Schedule(schedule)
     with kernel.aside():

@@ -70,7 +70,7 @@ def _designated(datum: Any, *arguments: object) -> Any:
             rest = sym("REST")
             return error(
                 types.SimpleError("The assertion ~S failed with ~S = ~S.", lisp_list(sym("NULL"), rest), rest, list_from(arguments)),
-                hint="FAIL signals a condition object as it is. What it holds is given to MAKE-CONDITION, or to FAIL with a class.",
+                hint="FAIL signals a condition object as it is. Give its slots to MAKE-CONDITION, or to FAIL with a class.",
             )
         return datum
     if isinstance(datum, (str, type)) or is_symbol(datum) or datum.__class__.__name__ == "LispString":

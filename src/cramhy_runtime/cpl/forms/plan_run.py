@@ -107,7 +107,7 @@ def _kernel(clock: object, backend: object, seed: object, time_limit: float | No
     """The kernel for a plan. An interrupt that ends the plan becomes Python's KeyboardInterrupt outside of it."""
     active = kernel.active()
     if active is not None and current_task() is not None:
-        error("A plan was started inside of a plan. Call its function as it is: what runs in a plan is a part of it.")
+        error("A plan was started inside of a plan. Call its function as it is: it then runs as a part of this plan.")
     given = {"clock": clock, "backend": backend, "seed": seed, "time_limit": time_limit}
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     try:

@@ -66,7 +66,7 @@ def _specifier(cls: type[BaseException]) -> type:
         return condition_class(cls)
     return error(
         f"There can be no handler for {cls.__name__}: handlers are for plan failures and for exceptions under Exception. "
-        "What ends tasks and programs is for `finally`."
+        "Use `finally` for what must happen when a task or a program ends."
     )
 
 

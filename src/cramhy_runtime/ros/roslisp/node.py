@@ -229,7 +229,7 @@ def with_ros_node(name: Text, body: Callable[[], T], *, spin: bool | None = None
         start_ros_node(name, **options)
         result = body()
         while truth(spin):
-            kernel.park("nothing: the node spins until somebody ends it", kernel.now() + 100)
+            kernel.park("nothing: the node spins until it is shut down", kernel.now() + 100)
         return result
 
     try:

@@ -173,7 +173,7 @@ def _warn_of_listeners_to_another_type(publication: Publication) -> None:
             conditions.warn(
                 "~a",
                 f"{subscription.node.name} listens to {publication.name} for messages of type "
-                f"{subscription.type.ros_type}, so it gets nothing of what is published there as {publication.type.ros_type}.",
+                f"{subscription.type.ros_type}, so it gets no message that is published there as {publication.type.ros_type}.",
             )
 
 
