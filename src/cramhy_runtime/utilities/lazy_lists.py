@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
+from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import keyword
@@ -233,13 +233,15 @@ def lazy_elt(ll, index):
 def force_ll(ll):
     """Compute the whole list; returns it, a proper list now."""
     cell = ll
-    while isinstance(cell, Cons):
+    while True:
+        for _ in STRETCH:
+            if not isinstance(cell, Cons):
+                return ll
+            rest = cell.cdr
+            if rest.__class__ is not Cons and isinstance(rest, LazyTail):
+                rest = cell.cdr = rest.force(True)
+            cell = rest
         kernel.checkpoint()
-        rest = cell.cdr
-        if rest.__class__ is not Cons and isinstance(rest, LazyTail):
-            rest = cell.cdr = rest.force(True)
-        cell = rest
-    return ll
 
 
 def lazy_list_p(lc):
