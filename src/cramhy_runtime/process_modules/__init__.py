@@ -27,8 +27,8 @@ The page docs/reasoning-in-python.md teaches it.
 
 Where the parts are: ``modules`` the module, its queue and main loop · ``executing`` a plan's requests · ``asynchronous`` modules that
 return at once · ``registry`` names · ``running`` starting them around a body · ``matching`` finding the module for a designator,
-``hints`` why there is none · ``executive`` perform · ``symbols`` the Lisp packages · ``python_modules`` functions for Python.
-Reference: process-modules.md.
+``hints`` why there is none · ``executive`` perform · ``symbols`` the Lisp packages · ``python_modules`` functions for Python ·
+``signatures`` types for type checkers. Reference: process-modules.md.
 """
 
 from .asynchronous import AsynchronousProcessModule, fail_process_module, finish_process_module

@@ -6,8 +6,8 @@ The graph does not depend on this folder. Where the parts are, from the ground u
 * `node`      the node's life and its names;  `parameter_values`, `structs` Lisp values as parameters
 * `topics`, `services`, `parameters`, `time`, `utilities`   the functions, as in the sections 6, 7, 8, 9, 11 of roslisp.md
 
-``languages/commonlisp/faces/ros/package.py`` has the names for Lisp programs; ``roslisp_printing.py`` beside it prints these
-objects.
+``languages/commonlisp/faces/ros/package.py`` has the names for Lisp programs, ``languages/commonlisp/faces/ros/roslisp_printing.py``
+prints these objects.
 """
 
 from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package
