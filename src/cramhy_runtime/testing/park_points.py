@@ -17,7 +17,7 @@ NAMES = {
     "cpl/tasks/waiting.py:sleep_star": "sleep",
     "cpl/tasks/parallel_children.py:watch": "with-parallel-childs",
     "cpl/tasks/branches.py:Branches.wait": "branches",
-    "cpl/tasks/tasks.py:end_tasks": "cleanup",
+    "cpl/tasks/ending.py:end_tasks": "cleanup",
     "cpl/tasks/tasks.py:AbstractTask.join": "end",
     "cpl/tasks/tasks.py:_evaporate": "evaporation",
     "cpl/tasks/tasks.py:AbstractTask.suspend": "suspension",
