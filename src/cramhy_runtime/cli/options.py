@@ -161,7 +161,12 @@ def parser():
     replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
     shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
     shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
-    shims.add_argument("--shell", choices=["sh", "fish"], default="sh", help="whose functions; sh is for bash, zsh and dash, too (sh)")
+    shims.add_argument(
+        "--shell",
+        choices=["sh", "fish", "powershell"],
+        default=None,
+        help="whose functions; sh is for bash, zsh and dash, too (sh; on Windows powershell)",
+    )
     ros = commands.add_parser("ros", usage="cramhy ros COMMAND [WORD ...]", help="a command of ROS: cramhy ros rostopic list")
     ros.add_argument("ros_command", metavar="COMMAND", help="rostopic, rosservice, roscore, rosrun, catkin_make ..., with the words of ROS")
     return main_parser
