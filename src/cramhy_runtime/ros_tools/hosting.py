@@ -2,8 +2,8 @@
 
 All nodes of a session live in its process. So ``rosrun`` asks the session to start the program there, prints the lines of its log, which
 come on ``/cramhy/program_log``, and ends it with Ctrl-C. A terminal that is killed cannot ask for that: what a client has started ends
-with its connection at the latest. A `Host` offers that to clients of the session's server, on a hidden node; it starts nodes of packages
-that are part of cramhy, and evaluates nothing.
+with its connection at the latest. The session's page opens when another terminal asks for it. A `Host` offers all that to clients of the
+session's server, on a hidden node; it starts nodes of packages that are part of cramhy, and evaluates nothing.
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.services import OfCaller, Refusal, Service
 from ..ros.wire import ros_text
+from ..turtlesim import window
 from ..turtlesim.executables import PROGRAMS
 from cramhy_runtime.turtlesim.executables import start as start_executable
 from ..turtlesim.node import Turtlesim, start_waiting
 from ..turtlesim.roscpp import naming_of
 
 LOG = "/cramhy/program_log"
-SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode"}
+SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "open_page": "OpenPage"}
 MOST_ARGUMENTS = 10_000
 """Characters in the arguments of a program that a client starts."""
 SHARED = ("turtlesim_node",)
@@ -149,3 +150,13 @@ class Host:
             raise Refusal(f"There is no node {name}.")
         node.shutdown()
         return ()
+
+    def open_page(self, shows):
+        """(address of the session's page, its port, whether a browser was opened for it before); the page opens if it is not open yet."""
+        try:
+            page = window.page()
+        except window.NoPage as problem:
+            raise Refusal(str(problem)) from None
+        seen = page.seen
+        page.seen = seen or shows is True
+        return page.url, page.port, seen or None

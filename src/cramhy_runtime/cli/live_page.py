@@ -1,0 +1,94 @@
+"""The page of a session that runs already: it opens at any time, without a restart.
+
+Three ask for it. The user does, by ``(turtlesim:view)``. Another terminal does, by ``cramhy view`` or ``rosrun turtlesim
+turtlesim_node``, if the session listens (``--serve``). And on a desktop the page opens by itself when the turtle appears, as the
+original's window does; in a terminal without a screen a line says how to open it. `offer` lets a session do the first two,
+`open_with_turtle` the last. `show_session` is for the other terminal.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from cramhy_runtime.turtlesim import window
+
+ASK = "(turtlesim:view)"
+
+
+def offer():
+    """Let the page of the active session, and of those that follow it in this process, be opened at any time."""
+    window.offer(opened)
+
+
+def opened(show):
+    """The page of the active session, which opens now if it is not open; see `window.offer`. It listens to other terminals, too."""
+    from cramhy_runtime import view
+    from cramhy_runtime.ros import graph
+    from cramhy_runtime.ros_tools.hosting import Host
+
+    from . import heap, servers
+
+    try:
+        servers.require("view", "The page")
+        with servers.server_errors_told():
+            heap.keep_small()
+            page = view.start(open_browser=show)
+    except servers.NotPossible as problem:
+        raise window.NoPage(str(problem)) from None
+    if "/cramhy/open_page" not in graph.active().services:
+        Host()
+    return page
+
+
+def open_with_turtle():
+    """Open the page in a browser when the first simulator of the active session starts, if a person sits at a desktop.
+
+    At a terminal without a screen, tell how to open it.
+    """
+    from cramhy_runtime.turtlesim.node import each_simulator
+
+    if not sys.stdin.isatty():  # nothing of it is loaded where lines come from a pipe
+        return
+    told = []
+
+    def appears(_):
+        if not told:
+            told.append(True)
+            _offer_or_open()
+
+    each_simulator(appears)
+
+
+def _offer_or_open():
+    from cramhy_runtime.view import page
+
+    if page.running() is not None:
+        return
+    if page.opens_by_itself():
+        try:
+            _tell(f"The page: {opened(show=True).url}")
+            return
+        except window.NoPage:
+            pass  # why, it says to those who ask for the page
+    if page.at_a_terminal():
+        _tell(f"To see the turtle, type {ASK}")
+
+
+def show_session(graph, asked=True):
+    """Have the session at ``graph``, a `ThereGraph`, open its page, and show it here; its address.
+
+    asked: whether the user has asked for the page. Otherwise a browser opens if a person sits at a desktop, and none was opened for it
+    before. Raises `graph_access.Refused`.
+    """
+    from cramhy_runtime.rosbridge import sessions
+    from cramhy_runtime.view import page
+
+    shows = page.has_screen() if asked else page.opens_by_itself()
+    found = graph.call("/cramhy/open_page", "cramhy_msgs/OpenPage", {"shows": shows})
+    if shows and (asked or not found["seen"]):
+        page.show(found["url"], found["port"], sessions.folder())
+    return found["url"]
+
+
+def _tell(text):
+    print(f"; {text}", file=sys.stderr, flush=True)
