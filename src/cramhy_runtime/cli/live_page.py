@@ -20,11 +20,9 @@ def offer():
     window.offer(opened)
 
 
-def opened(show):
-    """The page of the active session, which opens now if it is not open; see `window.offer`. It listens to other terminals, too."""
-    from cramhy_runtime import view
-    from cramhy_runtime.ros import graph
-    from cramhy_runtime.ros_tools.hosting import Host
+def opened(show, asked):
+    """The page of the active session, which opens now if it is not open; see `window.offer`."""
+    from cramhy_runtime.view import page
 
     from . import heap, servers
 
@@ -32,12 +30,9 @@ def opened(show):
         servers.require("view", "The page")
         with servers.server_errors_told():
             heap.keep_small()
-            page = view.start(open_browser=show)
+            return page.start(open_browser=show, watched=asked)
     except servers.NotPossible as problem:
         raise window.NoPage(str(problem)) from None
-    if "/cramhy/open_page" not in graph.active().services:
-        Host()
-    return page
 
 
 def open_with_turtle():
@@ -66,7 +61,7 @@ def _offer_or_open():
         return
     if page.opens_by_itself():
         try:
-            _tell(f"The page: {opened(show=True).url}")
+            _tell(f"The page: {opened(show=True, asked=False).url}")
             return
         except window.NoPage:
             pass  # why, it says to those who ask for the page
@@ -81,10 +76,11 @@ def show_session(graph, asked=True):
     before. Raises `graph_access.Refused`.
     """
     from cramhy_runtime.rosbridge import sessions
+    from cramhy_runtime.ros_tools.graph_access import OPEN_PAGE
     from cramhy_runtime.view import page
 
     shows = page.has_screen() if asked else page.opens_by_itself()
-    found = graph.call("/cramhy/open_page", "cramhy_msgs/OpenPage", {"shows": shows})
+    found = graph.call(OPEN_PAGE, "cramhy_msgs/OpenPage", {"asked": asked, "shows": shows})
     if shows and (asked or not found["seen"]):
         page.show(found["url"], found["port"], sessions.folder())
     return found["url"]

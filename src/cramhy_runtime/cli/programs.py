@@ -271,7 +271,7 @@ def _run_here(programs, parameters, port, view, time=None, again=False):
                     show(line)
                 node.program.echo = _both(node.program.echo)
             if view is None and _has_window(programs):
-                _tell(f"The page: {window.page(show=page.opens_by_itself() and not again).url}")
+                _tell(f"The page: {window.page(show=page.opens_by_itself() and not again, asked=False).url}")
             return _wait(nodes)
         except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
             _closing(labels)

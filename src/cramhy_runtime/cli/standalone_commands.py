@@ -22,8 +22,9 @@ def turtlesim(port=None, view=None, time=None):
 
 def view(port=None, time=None):
     """Open the page of the session that runs; without one, of a simulator of its own, until Ctrl-C. time: as for `turtlesim`."""
+    from cramhy_runtime.rosbridge.no_answers import NOBODY
     from cramhy_runtime.ros_tools import remote_graph
-    from cramhy_runtime.ros_tools.graph_access import NoSession, Refused, SessionEnded
+    from cramhy_runtime.ros_tools.graph_access import OPEN_PAGE, NoSession, Refused, SessionEnded
 
     from . import live_page
 
@@ -40,6 +41,11 @@ def view(port=None, time=None):
     try:
         print(f"The page: {live_page.show_session(graph)}")
     except Refused as problem:
+        if str(problem) == NOBODY.format(OPEN_PAGE):
+            return _complain(
+                f"The session of process {graph.pid} offers no page. Its program opens one by: "
+                "from cramhy_runtime import view; view.start()"
+            )
         return _complain(f"The session of process {graph.pid} does not open its page: {problem}")
     except SessionEnded as problem:
         return _complain(problem)

@@ -151,10 +151,10 @@ class Host:
         node.shutdown()
         return ()
 
-    def open_page(self, shows):
+    def open_page(self, asked, shows):
         """(address of the session's page, its port, whether a browser was opened for it before); the page opens if it is not open yet."""
         try:
-            page = window.page()
+            page = window.page(show=False, asked=asked is True)
         except window.NoPage as problem:
             raise Refusal(str(problem)) from None
         seen = page.seen

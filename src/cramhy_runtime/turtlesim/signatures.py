@@ -51,4 +51,4 @@ class Page(Protocol):
     seen: bool
 
 
-Opener = Callable[[bool], Page]
+Opener = Callable[[bool, bool], Page]

@@ -22,23 +22,29 @@ class NoPage(Exception):
 
 
 def offer(opener: Opener) -> None:
-    """Have ``opener(show)`` open the page from now on. It returns the `signatures.Page`, the same one each time, or raises `NoPage`.
+    """Have ``opener(show, asked)`` open the page from now on. It returns the `signatures.Page`, the same one each time, or raises `NoPage`.
 
-    show: whether to open a browser, too, if a person sits at this terminal and has a screen.
+    show: whether to open a browser, too, if a person sits at this terminal and has a screen. asked: whether the user has asked for the
+    page. Then virtual time passes as the wall's, so that there is something to see. A page that opens by itself leaves time as it is.
     """
     _opener.value = opener
 
 
-def page(show: bool = False) -> Page:
-    """The page of the active session, which opens now if it is not open. show: as for `offer`. Raises `NoPage`."""
+def offered() -> bool:
+    """Whether somebody has said how the page is opened."""
+    return _opener.value is not None
+
+
+def page(show: bool, asked: bool) -> Page:
+    """The page of the active session, which opens now if it is not open. show, asked: as for `offer`. Raises `NoPage`."""
     if _opener.value is None:
         raise NoPage(
             "The program that runs this session offers no page. cramhy repl, cramhy run and import cramhy do. A program in Python "
             "opens the page itself: from cramhy_runtime import view; print(view.start().url)"
         )
-    return _opener.value(show)
+    return _opener.value(show, asked)
 
 
 def view() -> str:
     """Show the turtles' world and the plan in a page; its address. On a desktop the page opens in a browser. Raises `NoPage`."""
-    return page(show=True).url
+    return page(show=True, asked=True).url

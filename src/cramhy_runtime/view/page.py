@@ -20,6 +20,7 @@ from pathlib import Path
 
 from .. import chronicle, kernel, rosbridge, storage
 from ..kernel.images import per_image
+from ..turtlesim import window
 
 TYPES = {"html": "text/html", "js": "text/javascript", "css": "text/css", "svg": "image/svg+xml", "json": "application/json"}
 VARIABLE = "CRAMHY_VIEW"
@@ -45,13 +46,14 @@ def files():
 class Page:
     """The page of the active session. ``url``: its address, with the token. ``port``, ``token``: of ``server``, the rosbridge server.
 
-    ``seen``: whether a browser was opened for it. ``closed``: whether it has ended.
+    ``seen``: whether a browser was opened for it. ``watched``: whether virtual time was slowed down for it. ``closed``: whether it has
+    ended.
     """
 
     def __init__(self, server, own):
         self.server, self._own = server, own
         self.url, self.port, self.token = server.url, server.port, server.token
-        self.seen = self.closed = False
+        self.seen = self.watched = self.closed = False
         server.kernel.at_stop(self.close)
 
     def open(self):
@@ -86,17 +88,21 @@ def running():
     return None if found is None or found.closed or found.server.closed else found
 
 
-def start(session=None, port=None, open_browser=True):
+def start(session=None, port=None, open_browser=True, watched=True):
     """Show the active session in a page; the `Page`, the same one when it is open already.
 
     session: the active one, or its kernel. port: where to listen on loopback, ``None`` or 0 for a free one. open_browser: whether to open
-    the page in a browser, where a person sits at a screen. A server that the session has already is used for it. Virtual time passes as
-    the wall's from now on, so that there is something to see; the page can let it go as fast as the machine computes. Errors:
+    the page in a browser, where a person sits at a screen. watched: whether virtual time passes as the wall's from now on, so that there is
+    something to see; the page can let it go as fast as the machine computes. A server that the session has already is used. Errors:
     `rosbridge.server.ServerError` when the server cannot start.
     """
     page = running()
     if page is None or port and port != page.port:
         page = _start(session, port)
+    if watched and not page.watched:  # once: a user who lets it go faster on the page may ask for the page again
+        page.watched = True
+        if kernel.pace().virtual and kernel.pace().speed is None:
+            kernel.pace().set_speed(1.0)
     if open_browser and sys.stderr is not None and sys.stderr.isatty():
         page.open()
     return page
@@ -110,11 +116,22 @@ def _start(session, port):
     if found is there:
         found.pages = files()
     chronicle.start()
-    if kernel.pace().virtual and kernel.pace().speed is None:
-        kernel.pace().set_speed(1.0)
     _pages.clear()  # those of kernels before are closed
     page = _pages[kernel.active()] = Page(found, found is not there)
+    _let_others_ask()
     return page
+
+
+def _let_others_ask():
+    """Let other terminals, and ``turtlesim.view()``, ask for the page, also in a program that offers nothing else."""
+    from ..ros import graph
+    from ..ros_tools.graph_access import OPEN_PAGE
+    from ..ros_tools.hosting import Host
+
+    if not window.offered():
+        window.offer(lambda show, asked: start(open_browser=show, watched=asked))
+    if OPEN_PAGE not in graph.active().services:
+        Host()
 
 
 # ---------------------------------------------------------------------------------------------------------- the browser
