@@ -7,8 +7,8 @@ what follows ``(in-package ...)`` is the same language, so they are loaded in th
 
 What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written or belongs to another user, in the user's
 cache folder). A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system,
-cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.sealed`). `why_not_kept` tells
-why one was not used. So an unchanged system loads without compiling, and without importing Hy.
+cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.checksummed_code`).
+`why_not_kept` tells why one was not used. So an unchanged system loads without compiling, and without importing Hy.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import sys
 from pathlib import Path
 
 from cramhy_runtime import storage
-from cramhy_runtime.storage.sealed import Unusable, distrust_of_folder, sealed, unsealed
+from cramhy_runtime.storage.checksummed_code import Unusable, distrust_of_folder, sealed, unsealed
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
 from cramhy_runtime.ground.data import Cons, all_values
