@@ -87,4 +87,8 @@ def show_session(graph, asked=True):
 
 
 def _tell(text):
-    print(f"; {text}", file=sys.stderr, flush=True)
+    """Print a line, but not into one that is being typed: then another terminal has started the simulator, and tells the address there."""
+    from cramhy_runtime import kernel
+
+    if kernel.pace().busy:
+        print(f"; {text}", file=sys.stderr, flush=True)
