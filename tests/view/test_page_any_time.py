@@ -141,6 +141,48 @@ def test_without_the_extra_the_error_says_what_to_install(repl, missing):
     session.wait_for("3\n")
 
 
+def test_the_page_goes_with_the_turtle_to_the_session_of_the_prompt(repl, tmp_path, visit):
+    """What the slides have: the simulator first, in a terminal of its own, and then the prompt."""
+    simulator = subprocess.Popen(
+        [sys.executable, "-m", "cramhy_runtime.cli", "ros", "rosrun", "turtlesim", "turtlesim_node"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path), "DISPLAY": "", "WAYLAND_DISPLAY": ""},
+    )
+    try:
+        page = visit(re.fullmatch(f"; The page: ({ADDRESS})\n", simulator.stderr.readline())[1])
+        wait_for_reading(page, "x", "5.54")
+        before = page.url
+        page.foresee("WebSocket connection to")
+        session = repl("--serve", view=False)
+        page.wait_for_url(lambda address: address != before)
+        assert simulator.stderr.readline() == "; A session has started: the turtle lives there now.\n"
+        assert simulator.stderr.readline().startswith(f"; /turtlesim runs in the session of process {session.process.pid} already.")
+        assert simulator.stderr.readline() == f"; The page: {page.url}\n"
+        page.wait_for_selector("#connection[data-state=open]")
+        session.type(NODE)
+        session.wait_for("0\nCL-USER> ")
+        wait_for_reading(page, "x", "5.54")
+        page.keyboard.press("ArrowUp")
+        page.wait_for_function("() => parseFloat(document.querySelector('[data-reading=x]').textContent) > 7.0")
+    finally:
+        simulator.send_signal(signal.SIGINT)
+        assert simulator.wait(60) == 0
+        simulator.stderr.close()
+
+
+def test_the_page_goes_to_no_other_address(fake, visit):
+    page = visit(fake.address)
+    before = page.url
+    for address in ("https://example.org/#x", "javascript:alert(1)", "http://127.0.0.1.example.org:80/#x", "http://127.0.0.1:8080/x#x"):
+        fake.publish("/cramhy/moved", {"data": address})
+    fake.say("the last of them")
+    wait_for_text(page, "#log", "the last of them")
+    assert page.url == before
+
+
 def test_without_a_session_a_simulator_of_its_own_is_shown_and_that_is_said(tmp_path, visit):
     process = subprocess.Popen(
         [sys.executable, "-m", "cramhy_runtime.cli", "view"],

@@ -40,14 +40,17 @@ def session(options, closings, opened=True):
     )
     gc.enable()
     if opened:
+        from . import live_page
         from .servers import NotPossible, open_session
 
+        live_page.offer()
         try:
             open_session(options, closings)
         except NotPossible as problem:
             print(f"cramhy: {problem}", file=sys.stderr)
             sys.exit(2)
-        let_be_seen(options)
+        if options.command == "repl" and options.view is None:
+            live_page.open_with_turtle()
     closings.callback(kernel.stop)
     for system in options.load:
         made.load(system)
@@ -58,15 +61,6 @@ def session(options, closings, opened=True):
     elif options.command != "run":
         evaluate_forms(made, options.forms)
     return made
-
-
-def let_be_seen(options):
-    """Let the session's page be opened at any time, and let it open by itself at a prompt."""
-    from . import live_page
-
-    live_page.offer()
-    if options.command == "repl" and options.view is None:
-        live_page.open_with_turtle()
 
 
 def evaluate_forms(made, forms):

@@ -4,15 +4,21 @@ Three ask for it. The user does, by ``(turtlesim:view)``. Another terminal does,
 turtlesim_node``, if the session listens (``--serve``). And on a desktop the page opens by itself when the turtle appears, as the
 original's window does; in a terminal without a screen a line says how to open it. `offer` lets a session do the first two,
 `open_with_turtle` the last. `show_session` is for the other terminal.
+
+A simulator that ``rosrun`` has started goes over to the prompt's session when one starts. The browsers that show it go with it (`move`).
 """
 
 from __future__ import annotations
 
+import os
 import sys
 
 from cramhy_runtime.turtlesim import window
 
 ASK = "(turtlesim:view)"
+MOVED = "/cramhy/moved"
+"""The topic on which pages hear the address of the page that takes their place."""
+PATIENCE = 2.0  # s that browsers get to leave for it
 
 
 def offer():
@@ -84,6 +90,48 @@ def show_session(graph, asked=True):
     if shows and (asked or not found["seen"]):
         page.show(found["url"], found["port"], sessions.folder())
     return found["url"]
+
+
+def move():
+    """Lead the browsers that show the page of this process to that of the newest session elsewhere. To be called in a task.
+
+    Where no browser shows it, nothing happens, so that a page opens as it does with a turtle that appears.
+    """
+    from cramhy_runtime import kernel
+    from cramhy_runtime.ros import graph
+    from cramhy_runtime.ros.messages import message_class_exact
+
+    here = graph.active()
+    if MOVED not in here.topics:
+        return
+    address = kernel.run_blocking(_address_elsewhere)
+    if address is None:
+        return
+    text = message_class_exact("std_msgs/String")
+    told = here.node("cramhy_moved", hidden=True).advertise(MOVED, text)
+    told.publish(text(data=address))
+    until = kernel.now() + PATIENCE
+    while told.connections and kernel.now() < until:
+        kernel.sleep(0.02)
+
+
+def _address_elsewhere():
+    """The address of the page of the newest session, which opens there; ``None`` if that offers none."""
+    from cramhy_runtime.rosbridge import sessions
+    from cramhy_runtime.ros_tools.graph_access import OPEN_PAGE, NoSession, Refused, SessionEnded
+    from cramhy_runtime.ros_tools.remote_graph import ThereGraph
+
+    try:
+        found = sessions.current()
+        if found is None or found.pid == os.getpid():
+            return None
+        graph = ThereGraph(found.host, found.port, found.token, found.pid)
+        try:
+            return graph.call(OPEN_PAGE, "cramhy_msgs/OpenPage", {"asked": False, "shows": True})["url"]
+        finally:
+            graph.close()
+    except (sessions.Unsafe, NoSession, Refused, SessionEnded):
+        return None
 
 
 def _tell(text):

@@ -252,8 +252,8 @@ def _run_here(programs, parameters, port, view, time=None, again=False):
     with ExitStack() as closings:
         closings.callback(kernel.stop)
         try:
-            _, host = servers.serve(closings, port, bool(view))
             live_page.offer()
+            _, host = servers.serve(closings, port, bool(view))
             if kernel.run_blocking(_others):  # it began while we did, and is older: nobody would tell us of it later
                 return "moved"
             for name, value in (parameters or {}).items():
@@ -290,10 +290,13 @@ def _wait(nodes):
     """Wait until all nodes have ended (``"ended"``) or a session has started elsewhere (``"moved"``)."""
     from cramhy_runtime import kernel
 
+    from . import live_page
+
     while any(node.alive for node in nodes):
         kernel.sleep(LOOK_AGAIN)
         newest = kernel.run_blocking(_newest)
         if newest is not None and newest.pid != os.getpid():
+            live_page.move()
             return "moved"
     return "ended"
 
