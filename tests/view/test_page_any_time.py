@@ -259,3 +259,34 @@ kernel.stop()
     yield run
     for process in started:
         process.communicate("", timeout=60)
+
+
+IN_PYTHON = "from cramhy_runtime import kernel, turtlesim\nkernel.start(clock='wall')\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "name"),
+    [
+        ("(require cramhy *)\n(print (turtlesim:view))\n", "shown.hy"),
+        ("(import cramhy cramhy_runtime [turtlesim])\n(print (turtlesim.view))\n", "shown.hy"),
+        ("(print (turtlesim:view))\n", "shown.lisp"),
+        (f"{IN_PYTHON}import cramhy\nprint(turtlesim.view())\nkernel.stop()\n", "shown.py"),
+    ],
+)
+def test_a_program_opens_the_page_too(tmp_path, program, name):
+    (tmp_path / name).write_text(program)
+    runs = {"hy": ["-m", "hy", name], "lisp": ["-m", "cramhy_runtime.cli", "run", name], "py": [name]}
+    environment = {**os.environ, "XDG_RUNTIME_DIR": str(tmp_path), "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+    words = [sys.executable, *runs[name.partition(".")[2]]]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, env=environment, timeout=120)
+    assert re.search(ADDRESS, done.stdout) and (done.returncode, done.stderr) == (0, "")
+    assert not list(tmp_path.rglob("session-*"))
+
+
+def test_a_python_program_that_offers_no_page_is_told_how_to_open_one(tmp_path):
+    program = f"{IN_PYTHON}turtlesim.view()"
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1 and done.stderr.splitlines()[-1] == (
+        "cramhy_runtime.turtlesim.window.NoPage: The program that runs this session offers no page. cramhy repl, cramhy run and import cramhy "
+        "do. A program in Python opens the page itself: from cramhy_runtime import view; print(view.start().url)"
+    )
