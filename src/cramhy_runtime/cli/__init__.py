@@ -40,13 +40,17 @@ def session(options, closings, opened=True):
     )
     gc.enable()
     if opened:
+        from . import live_page
         from .servers import NotPossible, open_session
 
+        live_page.offer()
         try:
             open_session(options, closings)
         except NotPossible as problem:
             print(f"cramhy: {problem}", file=sys.stderr)
             sys.exit(2)
+        if options.command == "repl" and options.view is None:
+            live_page.open_with_turtle()
     closings.callback(kernel.stop)
     for system in options.load:
         made.load(system)

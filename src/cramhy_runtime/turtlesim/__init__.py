@@ -14,7 +14,19 @@
 ``sprites``         the same in pixels
 ``stills, replay``  pictures of the window: still, or moving; ``history`` keeps the events for a replay
 ``pictures``        the kinds of pictures, by the ending of the file
+``window``          the page that shows the turtles, as the original's window does
 ==================  ========================================================================================
 
 Importing this package imports none of them.
 """
+
+
+def view() -> str:
+    """Show the turtles' world and the plan in a page; its address. Any session can do so at any time. On a desktop the page opens in a
+    browser.
+
+    Errors: `window.NoPage`, when the extra ``web`` is not installed, no server can start, or the program that runs offers no page.
+    """
+    from .window import view
+
+    return view()

@@ -332,6 +332,9 @@ def needed_simulator() -> Turtlesim:
     )
 
 
+_starters: WeakKeyDictionary[graph.Graph, Callable[[], object]] = WeakKeyDictionary()  # graph -> what its first node starts
+
+
 def start_with_first_node(echo: Echo = None) -> None:
     """Let the first ``start-ros-node`` start the simulator, as if ``turtlesim_node`` had been running before.
 
@@ -342,4 +345,12 @@ def start_with_first_node(echo: Echo = None) -> None:
         if running_simulator() is None:
             start_turtlesim(echo=echo)
 
+    _starters[graph.active()] = start
     graph.active().before_first_node.append(start)
+
+
+def start_waiting() -> None:
+    """Start the simulator that waits for the first ``start-ros-node``, if one waits."""
+    start = _starters.get(graph.active())
+    if start in graph.active().before_first_node:
+        start()

@@ -36,13 +36,12 @@ class Program:
 
     name = ""
     package = "turtlesim"
+    of_client = False
+    """Whether a client of another process has started it."""
 
     def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), spins: bool = False, echo: Echo = None):
         self.graph = graph.active()
-        naming = names.Naming(name or self.name, namespace)
-        words = names.split_arguments(arguments)
-        words.sort(key=_rank)
-        naming.apply_arguments(words, names.plain_value)
+        naming = naming_of(name or self.name, namespace, arguments)
         complaint = names.check_graph_name(naming.node_name)
         if complaint:
             conditions.error(SimpleError("~a", f"A node cannot be called {naming.node_name}. {complaint}"))
@@ -87,6 +86,15 @@ class Program:
             self.echo(line)
         elif self.echo is not None:
             print(line, file=sys.stderr if self.echo is True else self.echo)
+
+
+def naming_of(name: str, namespace: str = "/", arguments: Words = ()) -> names.Naming:
+    """The `Naming` of a program that starts with the words ``arguments``; name, namespace: when these do not say otherwise."""
+    naming = names.Naming(name, namespace)
+    words = names.split_arguments(arguments)
+    words.sort(key=_rank)
+    naming.apply_arguments(words, names.plain_value)
+    return naming
 
 
 def _rank(word: str) -> int:

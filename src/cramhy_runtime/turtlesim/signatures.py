@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TextIO, TypedDict
+from typing import Protocol, TextIO, TypedDict
 
 from .node import Turtlesim
 
@@ -41,3 +41,14 @@ class Shape(TypedDict):
 
 
 Observer = Callable[[Turtlesim, list[Stroke]], object]
+
+
+class Page(Protocol):
+    """The page of a session. url: its address, with the token. port: where it is. seen: whether a browser was opened for it."""
+
+    url: str
+    port: int
+    seen: bool
+
+
+Opener = Callable[[bool, bool], Page]
