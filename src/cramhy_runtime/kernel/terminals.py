@@ -49,6 +49,21 @@ def is_terminal(fd):
         return False
 
 
+_CANNOT_DRAW = ("", "dumb", "unknown", "emacs")
+
+
+def draws(file):
+    """Whether the text file is a terminal on which something can be drawn and erased, by what the variable TERM says of it.
+
+    Emacs' buffers and other "dumb" ones only take lines. Windows' console draws, and has no TERM.
+    """
+    try:
+        on_terminal = file is not None and file.isatty()
+    except ValueError:  # it is closed
+        return False
+    return on_terminal and os.environ.get("TERM", "" if os.name == "posix" else "windows") not in _CANNOT_DRAW
+
+
 # ----------------------------------------------------------------------------------------------------------------------- modes
 
 

@@ -37,10 +37,15 @@ _WITH_SYMBOLS = {operator.name for table in (DESIGNATORS, PROLOG) for operator i
 
 
 class Tab:
-    """The completer of a REPL of Hy, for ``readline.set_completer``. in_lisp: a function that says whether the REPL reads Lisp now."""
+    """The completer of a REPL of Hy, for ``readline.set_completer``.
 
-    def __init__(self, repl, in_lisp):
+    in_lisp: a function that says whether the REPL reads Lisp now. typed: a function that gives the lines before this one of the form that is
+    being typed.
+    """
+
+    def __init__(self, repl, in_lisp, typed=lambda: ()):
         self.repl = repl
+        self.typed = typed
         self.in_lisp = in_lisp
         self._found = []
 
@@ -54,7 +59,7 @@ class Tab:
 
             line = readline.get_line_buffer()[: readline.get_endidx()]
             quotes = _QUOTES.match(word)[0]
-            found = self.candidates("\n".join([*self.repl.buffer, line]), word[len(quotes) :])
+            found = self.candidates("\n".join([*self.typed(), line]), word[len(quotes) :])
             self._found = [quotes + name for name in found]
         return self._found[state] if state < len(self._found) else None
 

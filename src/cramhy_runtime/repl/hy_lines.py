@@ -22,16 +22,17 @@ _BINDINGS = ("$if mode=vi", "set keymap vi-command", *_CTRL_C, "set keymap vi-in
 
 
 class HyLines(PlainLines):
-    """Lines that a REPL of Hy reads, with Hy's own line editing. in_lisp: a function that says whether the REPL reads Lisp now.
+    """Lines that a REPL of Hy reads, with Hy's own line editing. in_lisp: a function that says whether the REPL reads Lisp now. typed: one
+    that gives the lines before this one of the form that is being typed.
 
     Two lines are edited by the terminal, in a wait that can be woken: one for the debugger of a plan's task, which may run in a thread of
     its own, and one of which READ-LINE of a form has read the beginning, as when many lines were pasted.
     """
 
-    def __init__(self, repl, in_lisp):
+    def __init__(self, repl, in_lisp, typed):
         super().__init__()
         self.repl = repl
-        self._tab = Tab(repl, in_lisp)
+        self._tab = Tab(repl, in_lisp, typed)
         self._bound = None  # the readline that knows our key
 
     def wait(self, prompt):

@@ -44,11 +44,14 @@ from .console import Console, exit_status
 from .hy_lines import HyLines
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
+from .open_forms import OpenForms, of_lisp
 from .session import Interruption, Session
 
 IN_PACKAGE = sym("IN-PACKAGE")
 _IN_PACKAGE = Symbol("in-package")
 _LAST_ERROR = hy.mangle("*e")
+_PS2 = "... "
+"""Hy's own prompt for a line that goes on with a form."""
 PIPED = "<stdin>"
 """What Hy calls the text that it reads from a pipe."""
 
@@ -108,7 +111,7 @@ class HyPrompt(Listener):
     """The Lisp of ``repl``, a `hy.REPL`. ``in_lisp``: whether what is typed there is Lisp now."""
 
     def __init__(self, repl, session):
-        super().__init__(session, HyLines(repl, lambda: self.in_lisp))
+        super().__init__(session, HyLines(repl, lambda: self.in_lisp, lambda: self.lines))
         self.repl = repl
         self.in_lisp = False
         self._warnings = streams.ERROR_OUTPUT.value
@@ -209,29 +212,43 @@ class HyPrompt(Listener):
         return super().wait_for_line(prompt)
 
     def raw_input(self, prompt=""):
-        """The next line for the REPL; plans go on while it waits. Ctrl-C forgets the form that is being typed."""
+        """The next text for the REPL, in which nothing is open; plans go on while it waits. Ctrl-C forgets the form that is being typed.
+
+        The REPL reads its text anew whenever a line has come, and a form of many lines would take time in proportion to their square.
+        """
         if kernel.active() is None:  # somebody has stopped it
             return type(self.repl).raw_input(self.repl, prompt)
         kernel.interrupt_over()
         if self.in_lisp:
             self.listen()
+        lines, opened = [], None
         while True:
+            self.lines = [*self.repl.buffer, *lines]
             line = self.read_line(prompt)
             if line is BROKEN_OFF:
                 self.repl.resetbuffer()
-                prompt = sys.ps1
+                lines, prompt = [], sys.ps1
             elif line is None:
-                unfinished = "\n".join(self.repl.buffer)
+                unfinished = "\n".join(self.lines)
                 self.repl.resetbuffer()
                 if not unfinished.strip():
                     self.change_back()  # the program may go on after its REPL
                     raise EOFError
                 self.hear(unfinished) if self.in_lisp else self._answer_in_hy(unfinished)
-                prompt = sys.ps1
+                lines, prompt = [], sys.ps1
             else:
                 if self.in_lisp:
                     streams.CONSOLE_OUTPUT.record(f"{prompt}{line}\n")
-                return line
+                if not lines:
+                    opened = of_lisp() if self.in_lisp else OpenForms(hy=True)
+                lines.append(line)
+                if opened is not None:
+                    opened.read(f"{line}\n")
+                if opened is None or not opened.something:
+                    text = "\n".join(lines)
+                    self.remember("\n".join([*self.repl.buffer, text]))
+                    return text
+                prompt = self.continuation(opened, sys.ps2) if sys.ps2 == _PS2 else sys.ps2
 
     # ------------------------------------------------------------------------------------------------------- what is Hy's own
 

@@ -12,7 +12,7 @@ import sys
 from contextlib import contextmanager, nullcontext
 
 from cramhy_runtime.kernel.standard_input import BrokenOff, StandardInput, drop_unfinished
-from cramhy_runtime.kernel.terminals import ctrl_c_as_a_key, typed_ahead
+from cramhy_runtime.kernel.terminals import ctrl_c_as_a_key, draws, typed_ahead
 from cramhy_runtime.languages.commonlisp.streams import streams
 
 BROKEN_OFF = object()
@@ -34,9 +34,11 @@ def standard_lines():
 class Lines:
     """A source of lines. ``interactive``: whether a person types them. ``can_be_woken``: whether `wake` ends a wait. ``pressed``: whether
     Ctrl-C was pressed after the line that was read, before the form runs that it is for. ``ended``: whether the terminal has ended the line
-    that was broken off, so that the next prompt stands below it."""
+    that was broken off, so that the next prompt stands below it. ``shows_open``: whether the prompt of a line that goes on with a form says
+    what is open; in a pipe and in Emacs' ``run-lisp`` these prompts would stand in a heap in front of the answer."""
 
     interactive = False
+    shows_open = False
     can_be_woken = True
     pressed = False
     ended = False
@@ -68,6 +70,9 @@ class Lines:
         """Ctrl-C was pressed after the line that was read."""
         self.pressed = True
 
+    def remember(self, text):
+        """Keep ``text``, whole forms, in the history, if there is one."""
+
     def wake(self):
         """End the wait that goes on. May be called by a signal handler, and by any thread."""
 
@@ -93,6 +98,7 @@ class PlainLines(Lines):
         super().__init__()
         self.interactive = sys.stdin.isatty()
         self.can_be_woken = isinstance(sys.stdin, StandardInput)
+        self.shows_open = self.interactive and draws(sys.stdout)
 
     def wait(self, prompt):
         try:
