@@ -1,9 +1,9 @@
 """What was typed at prompts before, form by form, in a file that all sessions of a user share.
 
-A form is one entry, however many lines it has. The file has one entry a line, as a JSON string, the oldest first. A session adds its entries
-at the end, under a lock, and never writes what it has read. So sessions that run side by side lose nothing of each other. When the file has
-grown too large, its older half is dropped. A line that is not such a string (the machine stopped in the middle of it, an editor has changed
-it) is passed over, and the rest counts. Nobody but the user may read the file.
+A form is one entry, however many lines it has. The file has one entry a line, as a JSON string, the oldest first. A session adds its
+entries at the end, under a lock, and never writes what it has read. So sessions that run side by side lose nothing of each other. When the
+file has grown too large, its older half is dropped. A line that is not such a string (the machine stopped in the middle of it, an editor
+has changed it) is passed over, and the rest counts. Nobody but the user may read the file.
 
 A history is a convenience: where the file cannot be written or read, the session goes on with the forms in memory.
 

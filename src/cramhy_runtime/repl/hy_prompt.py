@@ -13,10 +13,11 @@ Time is the wall's at a prompt, and virtual in a pipe; the variable CRAMHY_TIME 
 
 from __future__ import annotations
 
+import functools
 import io
 import re
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 import hy
 from hy.models import Expression, Symbol
@@ -41,6 +42,7 @@ from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
 
 from .console import Console, exit_status
+from .history import History, place
 from .hy_lines import HyLines
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
@@ -111,7 +113,7 @@ class HyPrompt(Listener):
     """The Lisp of ``repl``, a `hy.REPL`. ``in_lisp``: whether what is typed there is Lisp now."""
 
     def __init__(self, repl, session):
-        super().__init__(session, HyLines(repl, lambda: self.in_lisp, lambda: self.lines))
+        super().__init__(session, HyLines(repl, lambda: self.in_lisp))
         self.repl = repl
         self.in_lisp = False
         self._warnings = streams.ERROR_OUTPUT.value
@@ -206,11 +208,6 @@ class HyPrompt(Listener):
         finally:
             compiler.allow_incomplete = before
 
-    def wait_for_line(self, prompt):
-        ours = isinstance(sys.stdin, standard_input.StandardInput) and sys.stdin.isatty()
-        self.input.can_be_woken = ours and (not at_the_prompt() or sys.stdin.holds_text())
-        return super().wait_for_line(prompt)
-
     def raw_input(self, prompt=""):
         """The next text for the REPL, in which nothing is open; plans go on while it waits. Ctrl-C forgets the form that is being typed.
 
@@ -223,13 +220,13 @@ class HyPrompt(Listener):
             self.listen()
         lines, opened = [], None
         while True:
-            self.lines = [*self.repl.buffer, *lines]
+            self.input.before = [*self.repl.buffer, *lines]
             line = self.read_line(prompt)
             if line is BROKEN_OFF:
                 self.repl.resetbuffer()
                 lines, prompt = [], sys.ps1
             elif line is None:
-                unfinished = "\n".join(self.lines)
+                unfinished = "\n".join(self.input.before)
                 self.repl.resetbuffer()
                 if not unfinished.strip():
                     self.change_back()  # the program may go on after its REPL
@@ -387,12 +384,19 @@ def run(make_session):
         repl = hy.REPL()
         attend(repl, session)
         repl.runsource("(require cramhy *)")
+        repl.interact = functools.partial(_interact, repl)
         return repl.run()
     except SystemExit as leaving:
         return exit_status(leaving)
     finally:
         conditions.install_debugger(None)
         kernel.stop()
+
+
+def _interact(repl, banner):
+    """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last."""
+    with repl.lisp.input.keep(History(place("hy-history"))) if "readline" in sys.modules else nullcontext():
+        type(repl).interact(repl, banner)
 
 
 # --------------------------------------------------------------------------------------------------------------------- a pipe

@@ -74,7 +74,6 @@ class Listener:
         self.session = session
         self.input = lines
         self.level = 0
-        self.lines: list[str] = []  # those of the form that is being typed
 
     @contextmanager
     def listening(self):
@@ -101,7 +100,7 @@ class Listener:
 
         lines, opened = [], None
         while True:
-            self.lines = lines
+            self.input.before = lines
             line = self.read_line(prompt if not lines else self.continuation(opened))
             if line is BROKEN_OFF:
                 lines = []
@@ -163,6 +162,8 @@ class Listener:
         are connected (a server listens) are heard and answered meanwhile. In the debugger of a plan's task, which keeps the baton, all
         others wait for the user; there Ctrl-C ends the whole form.
         """
+        if isinstance(self.input, Lines):
+            self.input.prepare(at_the_prompt())
         wake = self.input.wake if getattr(self.input, "can_be_woken", False) else None
         with kernel.woken_by(wake) if wake else nullcontext():
             if not self.keeps_baton():

@@ -47,13 +47,14 @@ class OpenForms:
 
     ``lists``: the lists that are open, the outermost first, each as [its bracket, its operator or ``None``]. ``within``: how that begins
     which is open and is not a list: ``"``, ``|``, ``#|`` or ``#[[``; else ``None``. ``wrong``: whether a bracket closes what another kind
-    has opened.
+    has opened. ``within_from``: where the inside of that begins in the text that was read last, if it begins there.
     """
 
     def __init__(self, hy: bool = False):
         self._syntax = _HY if hy else _LISP
         self.lists: list[list] = []
         self.within: str | None = None
+        self.within_from = 0
         self.wrong = False
         self._depth = 0  # of block comments in each other
         self._end = None  # of what is within, a pattern
@@ -74,13 +75,14 @@ class OpenForms:
         if match.lastgroup == "begins":
             self._begin(match)
         elif match.lastgroup == "bracket":
-            self._bracket(match[0])
+            self._bracket(match[0], match.start())
         elif match.lastgroup == "name":
             self._operator(match[0])
         return match.end()
 
     def _begin(self, match):
         text = match["begins"]
+        self.within_from = match.end()
         if text[0] == "#" and text[-1] == "[":
             self.within, self._end = "#[[", re.compile(rf"(?P<end>\]{re.escape(match['mark'])}\])")
         else:
@@ -102,7 +104,7 @@ class OpenForms:
                 self.within = None
         return match.end()
 
-    def _bracket(self, bracket):
+    def _bracket(self, bracket, at):
         if bracket in _CLOSE:
             self._operator("")
             self.lists.append([bracket, None])
@@ -123,9 +125,26 @@ class OpenForms:
         return f"{name} {len(self.lists)}> "
 
 
+class Pairs(OpenForms):
+    """Reads a text, in one piece. ``partner``: where the other bracket of a pair is, by the place of each of the two."""
+
+    def __init__(self, hy: bool = False):
+        super().__init__(hy)
+        self.partner: dict[int, int] = {}
+        self._begun: list[int] = []
+
+    def _bracket(self, bracket, at):
+        if bracket in _CLOSE:
+            self._begun.append(at)
+        elif self._begun:
+            other = self._begun.pop()
+            self.partner[at], self.partner[other] = other, at
+        super()._bracket(bracket, at)
+
+
 def of_lisp() -> OpenForms | None:
     """`OpenForms` for what is typed in Lisp now; ``None`` if a program has changed what characters mean."""
     return OpenForms() if READTABLE.value.reads_as(STANDARD) else None
 
 
-__all__ = ["OpenForms", "of_lisp"]
+__all__ = ["OpenForms", "Pairs", "of_lisp"]
