@@ -162,17 +162,19 @@ def _checked(options):
 
 
 def _repl(options):
+    from cramhy_runtime.repl import banner
     from cramhy_runtime.repl.console import Console
 
     if not _checked(options):
         return 2
+    greets = banner.wanted() and not options.quiet
     sys.path.append("")  # modules of the current folder are found, as at the prompts of Python and Hy, and hide none of others
     with ExitStack() as closings:
         if options.hy:
             from cramhy_runtime.repl import hy_prompt
 
-            return hy_prompt.run(lambda: session(options, closings))
-        return Console(lambda: session(options, closings)).run()
+            return hy_prompt.run(lambda: session(options, closings), banner.of_hy() if greets else "" if options.quiet else None)
+        return Console(lambda: session(options, closings), banner=banner.of_lisp() if greets else "").run()
 
 
 def _eval(options):

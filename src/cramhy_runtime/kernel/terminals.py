@@ -11,6 +11,7 @@ import signal
 from contextlib import contextmanager, nullcontext
 
 from . import signals
+from .typing_names import Any
 
 try:
     import termios
@@ -52,7 +53,7 @@ def is_terminal(fd):
 _CANNOT_DRAW = ("", "dumb", "unknown", "emacs")
 
 
-def draws(file):
+def draws(file: Any) -> bool:
     """Whether the text file is a terminal on which something can be drawn and erased, by what the variable TERM says of it.
 
     Emacs' buffers and other "dumb" ones only take lines. Windows' console draws, and has no TERM.

@@ -373,8 +373,11 @@ def go_on_in_hy(repl):
     prompt_of(repl).change_back()
 
 
-def run(make_session):
-    """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status."""
+def run(make_session, banner=None):
+    """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status.
+
+    banner: the lines to begin with, or ``None`` for Hy's.
+    """
     try:
         session = make_session()
     except (Exception, Condition) as problem:
@@ -385,6 +388,8 @@ def run(make_session):
         attend(repl, session)
         repl.runsource("(require cramhy *)")
         repl.interact = functools.partial(_interact, repl)
+        if banner is not None:
+            repl.banner = lambda: banner
         return repl.run()
     except SystemExit as leaving:
         return exit_status(leaving)
