@@ -209,15 +209,18 @@ def _run(options):
 
 
 def _load(options, closings):
+    from cramhy_runtime.repl.progress import Progress
+
     made = session(options, closings)
     if options.picture:
         from .servers import save_picture
 
         closings.callback(save_picture, options.picture)
-    made.load(options.file)
-    if options.package:
-        made.package = options.package.upper()
-    evaluate_forms(made, options.forms)
+    with Progress().during():
+        made.load(options.file)
+        if options.package:
+            made.package = options.package.upper()
+        evaluate_forms(made, options.forms)
 
 
 def _status(work):

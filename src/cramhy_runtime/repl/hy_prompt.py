@@ -295,7 +295,7 @@ class HyPrompt(Listener):
 
     def runcode(self, code):
         """As the REPL's own, and the errors that Hy does not count among them are shown, too."""
-        with self._goes_on():
+        with self._goes_on(), self.progress.during():
             type(self.repl).runcode(self.repl, code)
 
     @contextmanager

@@ -30,6 +30,7 @@ from cramhy_runtime.ground.source_places import circumstance
 from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
+from .progress import Progress
 from .session import Interruption, leave, signalled_here
 
 
@@ -74,6 +75,7 @@ class Listener:
         self.session = session
         self.input = lines
         self.level = 0
+        self.progress = Progress()
 
     @contextmanager
     def listening(self):
@@ -234,7 +236,9 @@ class Listener:
                 if prompt_words.call(form, prompt_words.HELP):
                     self.help(form)
                 else:
-                    self.show(self.session.evaluate(prompt_words.leaving_form(form), reader))
+                    with self.progress.during():
+                        values = self.session.evaluate(prompt_words.leaving_form(form), reader)
+                    self.show(values)
                 begun = reader.offset
             reader = None
         except SystemExit:
