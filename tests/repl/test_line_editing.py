@@ -13,10 +13,11 @@ import pytest
 pytest.importorskip("termios", reason="a pseudo-terminal needs termios, which this system lacks")
 
 from cramhy_runtime.kernel.terminals import draws  # noqa: E402
+from cramhy_runtime.repl import banner  # noqa: E402
 from cramhy_runtime.repl.file_names import begun_string, file_names  # noqa: E402
 from cramhy_runtime.repl.history import History  # noqa: E402
 from cramhy_runtime.repl.open_forms import Pairs  # noqa: E402
-from cramhy_runtime.repl.readline_lines import in_string  # noqa: E402
+from cramhy_runtime.repl.readline_lines import Tab, in_string  # noqa: E402
 
 from .conftest import environment  # noqa: E402
 from .terminal import Terminal  # noqa: E402
@@ -87,6 +88,13 @@ def test_a_form_of_several_lines_is_one_entry_which_the_next_session_has_too(pro
         terminal.expect("'upon")
         terminal.type("")
         terminal.expect(r"\(ONCE UPON\)")
+
+
+def test_help_tells_of_the_keys(prompt):
+    with prompt() as terminal:
+        terminal.expect("CL-USER> ")
+        terminal.type("help")
+        terminal.expect("TAB +completes names, keywords and files; arrow keys bring back earlier forms")
 
 
 def test_tab_completes_the_name_of_a_file_in_a_string(prompt, tmp_path):
@@ -200,6 +208,7 @@ def test_run_lisp_of_emacs_shows_what_was_typed_once_and_the_answers(tmp_path):
     )
     shown = re.sub(r"(?s)\ndebugger invoked.*?top level\.\n", "<debugger>\n", done.stdout)
     assert shown == (
+        f"{banner.of_lisp()}\n"
         'CL-USER> (list 1\n  "two")\n(1 "two")\nCL-USER> (car 5)\n<debugger>\n0] abort\nCL-USER> TWICE\nCL-USER> (twice 21)\n42\nCL-USER> '
     ), done.stderr
 
@@ -262,6 +271,7 @@ def test_readline_gets_what_its_word_becomes(tmp_path):
     assert in_string('(load "my pl', "pl", folder=str(tmp_path)) == ["plan.lisp"]
     assert in_string('(load #p"my', '#p"my', folder=str(tmp_path)) == ['#p"my plan.lisp']
     assert in_string("(load my", "my") is None
+    assert Tab().found('(load "ca', '"ca') == []
 
 
 def test_the_pairs_of_a_text():

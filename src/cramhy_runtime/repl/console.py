@@ -1,7 +1,7 @@
 """``roslisp_repl``: the loop of the prompt, and how a program that fails is reported.
 
-What is done with a text is in ``listener.py``. On a terminal, prompt_toolkit edits the line if it is installed; from a pipe, lines are
-read and nothing is echoed but prompts and answers.
+What is done with a text is in ``listener.py``. On a terminal, prompt_toolkit edits the form if it is installed, else readline; from a
+pipe, lines are read and nothing is echoed but prompts and answers.
 """
 
 from __future__ import annotations

@@ -35,6 +35,7 @@ class EditedLines(Lines):
 
     interactive = True
     shows_open = True
+    edits = True
 
     def __init__(self):
         super().__init__()
@@ -152,6 +153,9 @@ def _keys():
     @keys.add("enter", filter=has_focus(DEFAULT_BUFFER))
     def _(event):
         buffer, opened = event.current_buffer, of_lisp()
+        if buffer.complete_state is not None and buffer.complete_state.current_completion is not None:
+            buffer.complete_state = None  # it is chosen from the menu
+            return
         if opened is not None:
             opened.read(f"{buffer.text}\n")
             if opened.something:

@@ -54,12 +54,11 @@ class HyTab(Tab):
 
     def candidates(self, text, word):
         """All that ``word``, the last one of ``text``, may become, sorted. In a string, names of files."""
-        files = in_string(text, word, hy=not self.in_lisp(), folder=None if self.in_lisp() else os.getcwd())
+        if self.in_lisp():
+            return super().found(text, word)
+        files = in_string(text, word, hy=True, folder=os.getcwd())
         if files is not None:
             return files
-        if self.in_lisp():
-            found, length = completions(text)
-            return [name for name, _ in found] if length == len(word) else []
         if word.startswith(":"):
             return [
                 f":{name.lower()}" for name in sorted(keywords_at_hand(text, self._keywords_of) or ()) if name.startswith(word[1:].upper())

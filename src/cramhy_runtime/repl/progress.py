@@ -14,6 +14,7 @@ the same with the line and without it.
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 import time
@@ -52,7 +53,7 @@ class Progress:
     def during(self) -> Iterator[None]:
         """While the block runs a plan, the line is shown as needed. A block in a block, as a form in the debugger, begins anew."""
         active, before = kernel.active(), self._due
-        if active is None or not draws(sys.stdout):
+        if active is None or not _draws():
             yield
             return
         self._due = self._clock() + SOON
@@ -112,6 +113,11 @@ class Progress:
                 sys.stdout.flush()
             except (OSError, ValueError):
                 pass  # the terminal was closed
+
+
+def _draws():
+    """Whether standard output understands `_DRAW`. The consoles of Windows before its Terminal do not."""
+    return draws(sys.stdout) and (os.name != "nt" or "WT_SESSION" in os.environ)
 
 
 def line(active: Any) -> str:

@@ -43,6 +43,10 @@ class ReadlineLines(PlainLines):
         self._bound = None  # the readline that knows our key
         self.history = None
 
+    @property
+    def edits(self):
+        return _readline() is not None
+
     def prepare(self, at_prompt):
         ours = isinstance(sys.stdin, StandardInput) and sys.stdin.isatty()
         self.can_be_woken = ours and (not at_prompt or sys.stdin.holds_text())
@@ -136,8 +140,11 @@ class Tab:
 
     def found(self, text, word):
         """All that ``word``, the last one of ``text``, may become."""
+        files = in_string(text, word)
+        if files is not None:
+            return files
         found, length = completions(text)
-        return in_string(text, word) or ([name for name, _ in found] if length == len(word) else [])
+        return [name for name, _ in found] if length == len(word) else []
 
 
 def in_string(text, word, hy=False, folder=None):
