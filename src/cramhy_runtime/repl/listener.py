@@ -137,8 +137,8 @@ class Listener:
         return "... " if opened is None else opened.prompt()
 
     def remember(self, text):
-        """Keep ``text``, whole forms, in the history of what was typed."""
-        if isinstance(self.input, Lines):
+        """Keep ``text``, whole forms, in the history of what was typed. The number of a restart means nothing later."""
+        if isinstance(self.input, Lines) and not (self.level and text.strip().isdigit()):
             self.input.remember(text)
 
     def read_line(self, prompt):
