@@ -20,8 +20,8 @@ from cramhy_runtime.ground.conditions import error, type_error, warn
 from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.generic_functions import generic, when_methods_change
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_functions import generic, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name

@@ -10,7 +10,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import error, handler_case, type_error
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import is_symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.lazy_lists import from_iterator

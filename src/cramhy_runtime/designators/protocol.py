@@ -5,7 +5,7 @@ The methods stand with the kinds: equating in ``equating.py``, resolving in ``re
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from . import symbols  # noqa: F401  the packages must exist
 

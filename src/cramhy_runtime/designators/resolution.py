@@ -16,8 +16,8 @@ from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
 from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.generic_functions import generic
-from cramhy_runtime.ground.generic_errors import NoApplicableMethodError
+from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
 from cramhy_runtime.ground.printing import princ_to_string
 from ..utilities.lazy_lists import lazy_car, lazy_cdr, tail
 from cramhy_runtime.utilities.wait_queue import Line

@@ -7,7 +7,7 @@ that calls it; there is no queue. ``(clear-belief)`` is the hook by which all pi
 from __future__ import annotations
 
 from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 

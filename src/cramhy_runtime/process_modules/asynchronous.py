@@ -22,7 +22,7 @@ from cramhy_runtime.cpl.tasks.waiting import wait_for, whenever
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.locks import Lock
 from .executing import NEVER, await_online, finished_fluent, monitor_process_module, pm_cancel, pm_execute, running_fluent

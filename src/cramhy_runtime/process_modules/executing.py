@@ -17,7 +17,7 @@ from cramhy_runtime.cpl.tasks.waiting import wait_for
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import error, type_error, warn
 from cramhy_runtime.ground.data import Cons, Symbol, python_list, values
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import keyword
 from .modules import OFFLINE, RUNNING, AbstractProcessModule, ProcessModule, Request
 from .registry import module_called, not_running

@@ -18,7 +18,7 @@ from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction,
 from cramhy_runtime.ground.dynamic import unbind
 from cramhy_runtime.ground.list_shapes import check_shape
 from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import keyword
 from ..occasions.occasions import holds
 from .hints import why_none_runs

@@ -45,7 +45,7 @@ from cramhy_runtime.ground.hooks import Hook
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import class_name, find_class_or_error
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import CURRENT, keyword
 from .registry import ended_because, in_one_line, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym

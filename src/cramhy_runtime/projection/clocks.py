@@ -22,7 +22,7 @@ from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import lisp_list
 from cramhy_runtime.ground.numbers import need_real
 from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from . import symbols  # noqa: F401  the package must exist
 from .symbols import sym
 

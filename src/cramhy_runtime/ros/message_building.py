@@ -11,7 +11,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Error, SimpleError, TypeError_
 from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
 from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.condition_types import MissingSlot
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name
 from cramhy_runtime.ground.printing import princ_to_string

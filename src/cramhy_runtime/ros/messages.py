@@ -14,7 +14,7 @@ from cramhy_runtime.ground import conditions, packages
 from cramhy_runtime.ground.condition_types import CaseFailure, SimpleError
 from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import definition_files

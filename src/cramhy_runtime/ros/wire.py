@@ -14,7 +14,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleError, TypeError_
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol
 from cramhy_runtime.ground.numbers import is_real, single
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import intern
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.utilities.generated_functions import generated_function

@@ -32,7 +32,7 @@ from cramhy_runtime.ground import functions
 from cramhy_runtime.ground.source_places import circumstance, locate
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.ground.printing import prin1_to_string, princ_to_string
 from ..failures.failure_types import CompositeFailure

@@ -6,7 +6,7 @@ None of this waits, and none of it changes anything; a dead task answers as well
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import list_from, truth
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..fluents.operators import fl_funcall
 from ..statuses import ALIVE, DEAD, DONE, FAILED, status_list
 from .tasks import AbstractTask, saved_tasks

@@ -27,7 +27,7 @@ from cramhy_runtime.ground.conditions import error, from_python, type_error
 from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import locate
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.looking_on import only_looked_at
 from ..current import current_task
 from .ending import end_tasks, end_waits, limit_cleanup

@@ -14,7 +14,7 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_
 from cramhy_runtime.ground.equality import eql, eql_key
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
-from cramhy_runtime.ground.generic_functions import generic, specializer_of, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import generic, specializer_of, when_methods_change
 from cramhy_runtime.utilities.lazy_lists import from_iterator
 from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, vars_in
 from cramhy_runtime.kernel.images import Cell, per_image

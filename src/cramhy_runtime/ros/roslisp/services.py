@@ -13,7 +13,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
 from cramhy_runtime.ground.data import LispString, Symbol
 from cramhy_runtime.ground.functions import function_named
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import sym, symbol_name
 from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.utilities.wait_queue import need, time_limit

@@ -14,7 +14,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleTypeError, formatted, shown
 from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
 from cramhy_runtime.ground.printing import format_to_string
-from cramhy_runtime.ground.generic_errors import no_applicable_method, no_primary_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method, no_primary_method
 from ..messages import RosMessage, topic_class
 from ..topics import Publication
 from ..type_texts import same_on_the_wire

@@ -13,7 +13,7 @@ from .compilation_unit import expanding
 from ..syntax.lambda_lists import parse
 from ..syntax.macros import ensure_loaded, macroexpand_1
 from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.methods import Shape
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
@@ -38,7 +38,7 @@ from .nodes import (
     SetLocal,
 )
 from .open_coding import MAPPING, open_coded
-from .scrutiny import CRAMHY, Scrutiny, tuple_of
+from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
 """Symbol → method (analyzer, form, env) → node; filled by ``special_forms.py``."""
