@@ -17,8 +17,8 @@ import os
 import stat
 
 from cramhy_runtime.storage import owners
-from cramhy_runtime.storage.unfinished import BINARY, lock, same_file
-from cramhy_runtime.storage.whole import write_whole
+from cramhy_runtime.storage.partial_names import BINARY, lock, same_file
+from cramhy_runtime.storage.atomic_write import write_whole
 
 MOST = 1_000_000
 """Bytes of the file, at which its older half is dropped."""
