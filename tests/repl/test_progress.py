@@ -11,6 +11,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl import progress
 from cramhy_runtime.repl.progress import Progress, fitting
 from cramhy_runtime.repl.session import Session
@@ -46,6 +47,7 @@ def run(monkeypatch):
             finally:
                 assert "write" not in vars(paper)
                 kernel.stop()
+                streams.CONSOLE_OUTPUT.column = 0  # for what is written to another terminal
         return DRAWN.sub("", paper.getvalue()), DRAWN.findall(paper.getvalue())
 
     return run
