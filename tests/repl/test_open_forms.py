@@ -160,3 +160,36 @@ def test_a_form_of_many_lines_is_read_in_proportion_to_its_length(type_in, monke
 
 def test_a_pipe_gets_no_prompt_for_a_line_that_goes_on(type_in):
     assert type_in("(list 1\n2)") == "CPL-USER> (list 1\n2)\n(1 2)\n"
+
+
+def test_hys_loop_gets_a_form_of_many_lines_as_one_text(monkeypatch):
+    """Else it would read the text anew at each line."""
+    import sys
+
+    import hy
+
+    from cramhy_runtime import kernel
+    from cramhy_runtime.repl import hy_prompt
+    from cramhy_runtime.repl.session import Session
+
+    from .conftest import Script
+
+    prompts = []
+
+    class Typed(Script):
+        def line(self, prompt):
+            prompts.append(prompt)
+            return self.lines.pop(0) if self.lines else None
+
+    monkeypatch.setattr(sys, "ps1", "=> ", raising=False)
+    monkeypatch.setattr(sys, "ps2", "... ", raising=False)
+    repl = hy.REPL()
+    try:
+        hy_prompt.attend(repl, Session(time="virtual", turtlesim=False))
+        repl.lisp.input = Typed('(list [1 "a (\n)" #[[ ( ]]\n2])\n(+ 1 1)\n(defn f [x)\n(+ 2\n')
+        assert repl.raw_input("=> ") == '(list [1 "a (\n)" #[[ ( ]]\n2])'
+        assert prompts == ["=> ", "... ", "... "]  # it is not a terminal
+        assert repl.raw_input("=> ") == "(+ 1 1)"
+        assert repl.raw_input("=> ") == "(defn f [x)"  # wrong, as Hy will say
+    finally:
+        kernel.stop()
