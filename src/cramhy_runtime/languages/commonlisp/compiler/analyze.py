@@ -19,7 +19,7 @@ from ..reader.form_places import FormPlaces
 from . import nodes
 from .declared_types import declared_types, kind_of_type
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
-from .net_tests import look_at_wait
+from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,
     CallLocal,
@@ -172,7 +172,8 @@ class Analyzer(Scrutiny):
         return nodes
 
     def _call(self, form, env):
-        look_at_wait(self, form, env)
+        if form.car in WAITING:
+            look_at_wait(self, form, env)
         if form.car.package is CRAMHY:
             self.mention_definition(form)
         else:
