@@ -4,6 +4,9 @@ Ctrl-C at a prompt was sometimes missed. Python lets readline print the prompt, 
 two does not end the wait, so nothing happened until the next key. (Pressed as soon as the prompt was there, up to eleven of fifty were
 missed.) So at our prompts Ctrl-C makes no signal. It is a key, for which readline writes the character into the line and enters it, and
 we take such a line for one that was broken off.
+
+One thing is left: Ctrl-C that reaches the terminal together with the Enter before it, as only a program types, is a character for the
+terminal still, and waits there until the form has ended. prompt_toolkit lets us look at such keys (`EditedLines`), readline does not.
 """
 
 from __future__ import annotations
