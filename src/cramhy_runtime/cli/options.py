@@ -148,6 +148,7 @@ def parser():
         action="store_true",
         help="begin in plain Hy, after (require cramhy *), where (in-package ...) leads to Lisp (begin in Lisp)",
     )
+    repl.add_argument("--quiet", action="store_true", help="begin without a banner (two lines, where somebody sits at a terminal)")
     run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file", help="a .lisp, .hy or .asd file")
     run.add_argument(

@@ -11,6 +11,7 @@ import signal
 from contextlib import contextmanager, nullcontext
 
 from . import signals
+from .typing_names import Any
 
 try:
     import termios
@@ -48,6 +49,21 @@ def is_terminal(fd):
         return os.isatty(fd)
     except OSError:
         return False
+
+
+_CANNOT_DRAW = ("", "dumb", "unknown", "emacs")
+
+
+def draws(file: Any) -> bool:
+    """Whether the text file is a terminal on which something can be drawn and erased, by what the variable TERM says of it.
+
+    Emacs' buffers and other "dumb" ones only take lines. Windows' console draws, and has no TERM.
+    """
+    try:
+        on_terminal = file is not None and file.isatty()
+    except ValueError:  # it is closed
+        return False
+    return on_terminal and os.environ.get("TERM", "" if os.name == "posix" else "windows") not in _CANNOT_DRAW
 
 
 # ----------------------------------------------------------------------------------------------------------------------- modes
