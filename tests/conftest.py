@@ -15,6 +15,7 @@ SHARED = REPOSITORY.parent / "shared"
 
 
 LONG = (
+    "newcomer",
     "soak",
     "view",
     "rosbridge",
