@@ -6,7 +6,7 @@ BIN := .venv/bin
 LIGHT := .venv/.light
 READY := .venv/.ready
 
-.PHONY: tutorial view test docs site bench golden lint soak clean
+.PHONY: tutorial view test interpreters docs site bench golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -17,6 +17,9 @@ view: $(LIGHT)
 
 test: $(READY)
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile --no-loadscope-reorder
+
+interpreters: $(READY)
+	@$(BIN)/python -m pytest -rs tests/test_interpreters.py
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py

@@ -16,6 +16,8 @@ SHARED = REPOSITORY.parent / "shared"
 
 LONG = (
     "newcomer",
+    "test_interpreters.py",
+    "test_missing_systems.py",
     "soak",
     "view",
     "rosbridge",

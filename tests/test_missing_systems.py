@@ -13,6 +13,7 @@ import sys
 import urllib.request
 from pathlib import Path
 
+import portable
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -359,23 +360,16 @@ for name in ("cramhy_runtime.kernel.anything", "pytest"):
     assert (done.stdout, done.stderr) == ("False False\nNo module named 'termios' (hidden by a test)\nTrue True\n", "")
 
 
-SUITES = {
-    "kernel": "baton deadlock interrupts outside requests_to_end set_clock timers virtual_time wall_time",
-    "cpl": "laws/failure_laws failures fluents operators python_blocks tasks",
-    "prolog": "fact_groups patterns prolog_page python_rules queries trail",
-    "designators": "descriptions designators_in_python resolution",
-    "process_modules": "laws/asynchronous_laws laws/executive_laws executive modules performing running_modules",
-}
-"""The files of each room's tests that hold its main behaviour, without those that take long."""
-
-
-@pytest.mark.parametrize("room", SUITES)
+@pytest.mark.parametrize("room", portable.SUITES)
 def test_the_suite_of_a_room_passes(hidden_from_cramhy, room):
-    names = (name.rpartition("/") for name in SUITES[room].split())
-    chosen = [str(ROOT / "tests" / room / folder / f"test_{name}.py") for folder, _, name in names]
     options = ["-q", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist", "--tb=short"]
     environment = {key: value for key, value in hidden_from_cramhy.items() if not key.startswith("PYTEST_")}
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", *options, *chosen], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=500
+        [sys.executable, "-m", "pytest", *options, *portable.files(room)],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=500,
     )
     assert done.returncode == 0, done.stdout[-8000:] + done.stderr
