@@ -1,21 +1,25 @@
 # make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make test: everything.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
-# The first call of any of them makes the environment.
+# The first call of tutorial or view makes a small environment in .venv; the first call of any other target adds the rest to it.
 PYTHON ?= python3
 BIN := .venv/bin
+LIGHT := .venv/.light
 READY := .venv/.ready
 
-.PHONY: tutorial view test docs site bench golden lint soak clean
+.PHONY: tutorial view test interpreters docs site bench golden lint soak clean
 
-tutorial: $(READY)
+tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
 
-view: $(READY)
+view: $(LIGHT)
 	@$(BIN)/roslisp_repl --view --time virtual --load cram-my-beginner-tutorial --package tut --eval '(start-ros-node "turtle1")' \
 	    --eval '(init-ros-turtle "turtle1")' --eval '(perform-draw-house)'
 
 test: $(READY)
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile --no-loadscope-reorder
+
+interpreters: $(READY)
+	@$(BIN)/python -m pytest -rs tests/test_interpreters.py
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py
@@ -40,10 +44,17 @@ lint: $(READY)
 	@$(BIN)/ruff check src hy_src tests benchmarks tutorials
 	@$(BIN)/ruff format --check .
 
-$(READY): pyproject.toml
+# What the lectures and the page need, and no more. Python compiles what it imports, so pip need not compile everything.
+$(LIGHT): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "cramhy needs Python 3.11 or later; try make PYTHON=python3.11")'
 	@echo "Making the environment in .venv (once) ..."
 	@$(PYTHON) -m venv .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web]'
+	@touch $(LIGHT)
+
+# The rest: what tests, pages and wheels are made with.
+$(READY): $(LIGHT)
+	@echo "Adding what tests and pages need to .venv (once) ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $(READY)
 

@@ -15,6 +15,9 @@ SHARED = REPOSITORY.parent / "shared"
 
 
 LONG = (
+    "newcomer",
+    "test_interpreters.py",
+    "test_missing_systems.py",
     "soak",
     "view",
     "rosbridge",

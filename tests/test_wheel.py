@@ -1,9 +1,14 @@
-"""What is published: the wheel carries the licence, the course, the macros and the page, and PyPI shows a README that leads somewhere."""
+"""What is published: the wheel carries the licence, the course, the macros and the page, and PyPI shows a README that leads somewhere.
+
+Without extras the wheel is small, and its prompt does both lectures.
+"""
 
 from __future__ import annotations
 
 import os
 import re
+import runpy
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -113,3 +118,86 @@ def test_an_editable_installation_has_no_copies(tmp_path):
     (path,) = tmp_path.glob("*.whl")
     with zipfile.ZipFile(path) as opened:
         assert {name for name in opened.namelist() if ".dist-info/" not in name} == {"_cramhy.pth"}
+
+
+def without_cramhy(home):
+    """The variables of a user whose home is empty, and who has no cramhy on the path."""
+    kept = {
+        key: value for key, value in os.environ.items() if key in ("PATH", "LANG", "SYSTEMROOT") or key.startswith(("PIP_", "UV_", "SSL_"))
+    }
+    return {**kept, "HOME": str(home), "USERPROFILE": str(home), "XDG_RUNTIME_DIR": str(home)}
+
+
+@pytest.fixture(scope="module")
+def environment(dist, wheel, tmp_path_factory):
+    """The folder of an environment that has the wheel without extras, and what pip fetches for it."""
+    folder = tmp_path_factory.mktemp("empty") / "venv"
+    subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
+    pip = [str(program(folder, "python")), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    asked = Parser().parsestr(file_called(wheel, ".dist-info/METADATA")).get_all("Requires-Dist")
+    fetched = subprocess.run([*pip, *(one for one in asked if "extra ==" not in one)], capture_output=True, text=True)
+    if fetched.returncode:
+        pytest.skip(f"what the wheel needs cannot be fetched here: {fetched.stderr.strip().splitlines()[-1]}")
+    subprocess.run([*pip, "--no-index", *map(str, dist.glob("*.whl"))], check=True)
+    return folder
+
+
+def program(environment, name):
+    """The path of a program of an environment."""
+    return program_in(environment / ("Scripts" if os.name == "nt" else "bin"), name)
+
+
+def program_in(folder, name):
+    """The path of a program in a folder of programs."""
+    return folder / (f"{name}.exe" if os.name == "nt" else name)
+
+
+def check_lectures(repl, home):
+    """Type the lines of both lectures into the program REPL, in the folder HOME, and look at its answers."""
+    lectures = runpy.run_path(str(ROOT / "tutorials" / "lectures.py"))
+    lines = [*lectures["LECTURE_34"], *lectures["LECTURE_38"], "(value *turtle-pose*)", '(turtlesim:save-paper "turtle.png")']
+    done = subprocess.run(
+        [str(repl), "--time", "virtual"],
+        input="\n".join(lines) + "\n",
+        cwd=home,
+        env=without_cramhy(home),
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert (done.returncode, done.stderr) == (0, "") and "debugger" not in done.stdout, done.stdout + done.stderr
+    assert done.stdout.count("Node startup complete") == 2 and done.stdout.count("TurtleSim pen control invoked") == 10
+    pose = re.findall(r"X:\s+([\d.]+)d0\s+Y:\s+([\d.]+)d0", done.stdout)
+    assert pose[0] == ("5.544444561004639", "5.544444561004639") and [round(float(number)) for number in pose[-1]] == [9, 9]
+    assert (home / "turtle.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_empty_environment_with_the_wheel_is_small(environment):
+    size = sum(path.lstat().st_size for path in environment.rglob("*"))
+    assert size < 65 * 2**20
+
+
+def test_the_prompt_of_the_wheel_without_extras_does_both_lectures(environment, tmp_path):
+    for extra in ("prompt_toolkit", "uvicorn", "greenlet"):
+        assert subprocess.run([str(program(environment, "python")), "-c", f"import {extra}"], capture_output=True).returncode
+    check_lectures(program(environment, "roslisp_repl"), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("tool", "command", "homes"),
+    [
+        ("uv", ["tool", "install", "--python", sys.executable, str(ROOT)], ("UV_TOOL_DIR", "UV_TOOL_BIN_DIR", "UV_CACHE_DIR")),
+        ("pipx", ["install", "--python", sys.executable, str(ROOT)], ("PIPX_HOME", "PIPX_BIN_DIR", "PIPX_MAN_DIR")),
+    ],
+    ids=["uv", "pipx"],
+)
+def test_a_tool_that_installs_programs_gives_a_prompt_that_does_both_lectures(environment, tool, command, homes, tmp_path):
+    found = shutil.which(tool)
+    if found is None:
+        pytest.skip(f"{tool} is not installed: pip install {tool}")
+    folders = {name: str(tmp_path / name) for name in homes}
+    done = subprocess.run([found, *command], env={**without_cramhy(tmp_path), **folders}, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    home = tmp_path / "home"
+    home.mkdir()
+    check_lectures(program_in(Path(folders[homes[1]]), "roslisp_repl"), home)

@@ -170,6 +170,7 @@ def uniform(answer):
     answer = re.sub(r"<stdin>-\d+", "<stdin>", answer)
     if answer.startswith("Traceback"):
         answer = re.sub(r"^ +[~^]*\n", "", answer, flags=re.M)
+        answer = re.sub(r"(?<= is not defined)\. Did you mean: '\w+'\?", "", answer)  # Python's own guess, from 3.12 on
     return re.sub(r", in (<lambda>|_hy_anon_\d+)\n", ", in <lambda>\n", answer)
 
 

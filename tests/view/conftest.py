@@ -1,18 +1,16 @@
-"""A Chromium without a window, pages in it, and sessions that they show.
-
-Without Chromium or Playwright the tests of the page are skipped, with the reason.
-"""
+"""Pages in a Chromium without a window, and sessions that they show."""
 
 from __future__ import annotations
 
 import os
 import queue
-import shutil
 import subprocess
 import sys
 import threading
 
 import pytest
+
+from browsers import chromium
 
 LIMIT = 60_000  # ms; for a machine that is busy with other things
 PATIENCE = 120  # s; the first session of a checkout compiles the language
@@ -23,23 +21,11 @@ SLOWED = f"""{{
 }}"""
 
 
-def chromium_path():
-    """Where Debian, Ubuntu, macOS or the user ($CRAMHY_CHROMIUM) have a Chromium or a Chrome; None when nowhere."""
-    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-    return os.environ.get("CRAMHY_CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
-
-
 @pytest.fixture(scope="session")
 def browser():
     """One Chromium for all tests."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="the page is tested through playwright: pip install playwright")
-    path = chromium_path()
-    if path is None:
-        pytest.skip("no Chromium is on the PATH to test the page in: apt-get install chromium, or set CRAMHY_CHROMIUM")
-    with playwright.sync_playwright() as driver:
-        chromium = driver.chromium.launch(executable_path=path, headless=True, args=["--no-sandbox", "--disable-dev-shm-usage"])
-        yield chromium
-        chromium.close()
+    with chromium() as started:
+        yield started
 
 
 @pytest.fixture

@@ -42,7 +42,7 @@ def is_user_file(filename):
         filename.endswith((".lisp", ".hy", ".asd"))
         and "hy_src" not in filename
         and not filename.startswith(_LIBRARIES)
-        or filename.startswith(("<repl", "<stdin>"))
+        or filename.startswith(("<repl", "<stdin>", "stdin-"))  # the last one is Hy 1.2's
     )
 
 
