@@ -13,6 +13,7 @@ from weakref import WeakKeyDictionary
 
 from hy import models
 
+from . import calls, plan_code
 from .users_names import variables
 
 _WORD = re.compile(r"[^\W_]+")
@@ -57,7 +58,26 @@ def compiled(compiler, form):
     if names is None:
         names = _names[compiler] = ModuleNames()
     names.variables = frozenset(variables(form))
-    return names.assigned_before(compiler.compile(form), compiler, form)
+    made = compiler.compile(form)
+    if not _is_lisp(form):
+        plan_code.complete(made.stmts, lambda name: str(_ours(names, "calls", name)))
+    return names.assigned_before(made, compiler, form)
+
+
+def at_prompt(module):
+    """What gives `plan_code.complete` the names of ``module``, which has a prompt."""
+
+    def name(path):
+        found = f"_cramhy_{path}"
+        vars(module)[found] = getattr(calls, path)
+        return found
+
+    return name
+
+
+def _is_lisp(form):
+    """Whether our own compiler makes the code of ``form``."""
+    return isinstance(form, models.Expression) and form[:1] == (models.Symbol("lisp-form-read"),)
 
 
 def ours(_hy_compiler, *path):
@@ -65,6 +85,11 @@ def ours(_hy_compiler, *path):
     names = _names.get(_hy_compiler)
     if names is None:
         return _attribute(CRAMHY, *path)
+    return _ours(names, *path)
+
+
+def _ours(names, *path):
+    path = tuple(map(models.Symbol, path))
     package = names.name((), "", CRAMHY)
     return names.name(path, " ".join(path), _attribute(package, *path))
 
@@ -91,4 +116,4 @@ def _attribute(value, *path):
 
 MACROS = {"_ours": ours, "_constant": constant}
 
-__all__ = ["MACROS", "compiled", "if_global"]
+__all__ = ["MACROS", "at_prompt", "compiled", "if_global"]
