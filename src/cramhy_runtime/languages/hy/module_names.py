@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 from hy import models
 
-from . import calls, plan_code
+from . import calls, kept_code, plan_code
 from .users_names import variables
 
 _WORD = re.compile(r"[^\W_]+")
@@ -57,6 +57,7 @@ def compiled(compiler, form):
     names = _names.get(compiler)
     if names is None:
         names = _names[compiler] = ModuleNames()
+        kept_code.seen(compiler.filename)
     names.variables = frozenset(variables(form))
     made = compiler.compile(form)
     if not _is_lisp(form):

@@ -56,7 +56,13 @@ def stamp():
     digest = _sha256(sys.version)
     here, libraries = Path(__file__).parents[1], Path(__file__).parents[3] / "libraries"
     rooms = (here, here / "faces", libraries)
-    folders = [here, here.parents[1] / "ground", *(entry for room in rooms for entry in room.iterdir() if entry.is_dir())]
+    folders = [
+        here,
+        here.parents[1] / "ground",
+        here.parent / "operators",
+        here.parent / "hy",
+        *(entry for room in rooms for entry in room.iterdir() if entry.is_dir()),
+    ]
     language = importlib.util.find_spec("cramhy")
     if language and language.submodule_search_locations:
         folders += map(Path, language.submodule_search_locations)
