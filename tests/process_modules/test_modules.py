@@ -223,11 +223,11 @@ def test_an_unknown_module_is_an_error_at_once(call):
     ("name", "package", "meant"),
     [
         ("TEST-NAVIGATION", "COMMON-LISP-USER", "cram-user::test-navigation"),
-        ("TEST-NAVIGATIO", "COMMON-LISP-USER", "test-navigation"),
+        ("TEST-NAVIGATIO", "COMMON-LISP-USER", "cram-user::test-navigation"),
         ("TEST-NAVIGATIO", "CRAM-USER", "test-navigation"),
     ],
 )
-def test_the_hint_for_an_unknown_module_names_the_package_if_only_that_differs(name, package, meant):
+def test_the_hint_for_an_unknown_module_names_the_package_where_that_differs(name, package, meant):
     define(lambda designator: 1)
     with pytest.raises(registry.UnknownProcessModule) as problem:
         cpl.top_level(lambda: pm.pm_execute(intern(name, package), None))

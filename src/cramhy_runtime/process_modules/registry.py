@@ -149,7 +149,7 @@ def _with_hint(problem, name):
     if name not in _defined:
         nearest = _nearest(name, [*registry.modules, *_defined])
         if nearest is not None:
-            lines.append(f"Did you mean {_with_package(nearest) if _typed(nearest) == shown else _typed(nearest)}?")
+            lines.append(f"Did you mean {_as_typed_beside(name, nearest)}?")
     lines.append(f"Running now: {_listed(registry.modules)}. Defined: {_listed(_defined)}.")
     if name in _defined and name not in registry.modules:
         lines.append(f"Modules run in (cpm:with-process-modules-running ({shown}) ...).")
@@ -162,10 +162,12 @@ def _typed(name):
     return str(getattr(name, "name", name)).lower()
 
 
-def _with_package(name):
-    """A name as one types it in another package: all that tells it from its namesake."""
-    package = getattr(name, "package", None)
-    return f"{package.name.lower()}::{_typed(name)}" if package is not None else _typed(name)
+def _as_typed_beside(name, other):
+    """``other`` as one types it in the place of ``name``: with its package if that is another one."""
+    package = getattr(other, "package", None)
+    if package is None or package is getattr(name, "package", None):
+        return _typed(other)
+    return f"{package.name.lower()}::{_typed(other)}"
 
 
 def _listed(names):
