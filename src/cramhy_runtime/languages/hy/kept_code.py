@@ -61,6 +61,15 @@ def _made_by():
     return f"{stamp()} {hy.__version__}"
 
 
+def unguarded(code: CodeType) -> CodeType:
+    """The code that Hy has made, where ``code``, which Python's loader gives for a file, is the call of `run` with it."""
+    guard = compile(_CALL.format(made_by="", filename="", code=b""), "", "exec")
+    if code.co_names != guard.co_names:
+        return code
+    [kept] = [constant for constant in code.co_consts if isinstance(constant, bytes)]
+    return marshal.loads(kept)
+
+
 def run(namespace: dict[str, Any], made_by: str, filename: str, code: bytes) -> None:
     """Run ``code``, which was made from the file ``filename``, in a module's ``namespace``.
 
@@ -89,4 +98,4 @@ def _compiled_again(namespace, filename, code):
     return made
 
 
-__all__ = ["calls_kept_code", "run", "seen", "watch"]
+__all__ = ["calls_kept_code", "run", "seen", "unguarded", "watch"]
