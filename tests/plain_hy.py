@@ -18,6 +18,9 @@ from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string,
 from cramhy_runtime.repl.session import condition_of
 
 
+_AS_IN_A_FILE = hy.read("hy.R.cramhy._form")
+
+
 class CommonLisp:
     """Its attributes are the functions of Common Lisp, under the names that Python and Hy give them."""
 
@@ -44,10 +47,10 @@ def all_values(value, number=None):
 
 
 def hy_value(module, text):
-    """The value of the last form of ``text`` in ``module``."""
+    """The value of the last form of ``text`` in ``module``; each is compiled as in a file."""
     value = None
     for form in hy.read_many(text, filename="<example>"):
-        value = hy.eval(form, module=module)
+        value = hy.eval(hy.models.Expression([_AS_IN_A_FILE, form]), module=module)
         kernel.settle()
     return value
 

@@ -329,6 +329,7 @@ RUN_CODE = {
     "languages/commonlisp/evaluation/evaluator.py": "what the compiler made of a form that a user wrote",
     "languages/commonlisp/systems/loader.py": "the kept code of a user's file",
     "languages/commonlisp/systems/program_files.py": "the code of a user's compiled file",
+    "languages/hy/kept_code.py": "the bytecode of a user's Hy file",
 }
 """The files that call ``exec``, and what they run with it."""
 

@@ -13,15 +13,15 @@ from cramhy_runtime.cli import live_page
 from cramhy_runtime.languages.hy.plan_macros import functions
 from cramhy_runtime.languages.hy.required_macros import RequiredMacros
 
-from cramhy_runtime.languages.hy import calls, errors, malformed, module_names  # they are there when the language is
+from cramhy_runtime.languages.hy import calls, errors, kept_code, malformed, module_names  # they are there when the language is
 from cramhy_runtime.session.time_setting import time  # noqa: F401  cramhy.time; a star does not import it, since it would hide Python's module
 
 
 live_page.offer()  # (turtlesim:view)
-
+kept_code.watch()
 symbols = calls.Symbols()
 branching = calls.Branching()
-"""With `calls`: what the code calls that the macros of plain Hy expand into."""
+"""With `calls`, and `kept_code`: what the code calls that the macros of plain Hy expand into."""
 
 
 def _time_form(kind):

@@ -1,6 +1,8 @@
 "The macros of CLOS, conditions and structures: they take definitions apart and hand them to the runtime."
 
-(eval-when-compile (require cramhy.operators [defoperator]))
+(eval-when-compile
+  (require cramhy.operators [defoperator])
+  (require hyrule [ncut unless]))
 (import cramhy.operators *)
 (import cramhy_runtime.languages.commonlisp.syntax.macros [mentions])
 
@@ -11,7 +13,7 @@
   (setv items (list items))
   (when (% (len items) 2)
     (raise (ValueError "an option has no value.")))
-  (lfor #(key value) (zip (cut items 0 None 2) (cut items 1 None 2)) [(symbol-name key) value]))
+  (lfor #(key value) (zip (ncut items ::2) (ncut items 1::2)) [(symbol-name key) value]))
 
 (defn quoted-list [items]
   `(quote ~(list-from items)))
@@ -44,7 +46,7 @@
      :documentation ~(only "DOCUMENTATION")))
 
 (defn initargs-form [arguments]
-  `(list ~@(lfor #(key value) (zip (cut arguments 0 None 2) (cut arguments 1 None 2))
+  `(list ~@(lfor #(key value) (zip (ncut arguments ::2) (ncut arguments 1::2))
              `(list (quote ~key) (lambda [] ~value) (quote ~value)))))
 
 (defn function-form [form]
@@ -85,7 +87,7 @@
   (setv forms (list forms) qualifiers [])
   (while (and forms (not (listp (get forms 0))) (is-not (get forms 0) None))
     (.append qualifiers (.pop forms 0)))
-  (when (not forms)
+  (unless forms
     (raise (ValueError "the lambda list is missing.")))
   #(qualifiers (get forms 0) (cut forms 1 None)))
 
@@ -255,7 +257,7 @@
 
 (defoperator defstruct [head #* slots]
   (setv #(name #* options) (if (listp head) head [head]) slots (list slots))
-  (when (not (is-symbol name))
+  (unless (is-symbol name)
     (error "~S: ~S is not a symbol." (sym "DEFSTRUCT") name))
   (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
   (setv arguments [] constructors [] [included #* overrides] (included-structure options))

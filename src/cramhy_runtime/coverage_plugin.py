@@ -76,7 +76,9 @@ def _codes(path):
         return []
     from hy.importer import HyLoader
 
-    return [HyLoader(path.stem, str(path)).get_code(path.stem)]
+    from cramhy_runtime.languages.hy.kept_code import unguarded
+
+    return [unguarded(HyLoader(path.stem, str(path)).get_code(path.stem))]
 
 
 def _lines(code):

@@ -12,6 +12,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons, UndefinedFunction
 from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.repl.session import Session
 
 
 def run(text):
@@ -123,3 +124,19 @@ def test_functions_of_hy_named_like_those_of_lisp_leave_lisps_alone():
     ) == [8, 4, [4, 4], 5]
     assert {name: sym(name).function for name in before} == before
     assert isinstance(sym("SPEED").function, UndefinedFunction)
+
+
+@pytest.mark.parametrize(
+    ("values", "first"), [("(values nil 1)", None), ("(values 0 1)", 0), ('(values "" 1)', ""), ("(values 2 nil)", 2), ("(values)", None)]
+)
+def test_several_values_are_a_tuple_that_is_as_true_as_its_first_value(values, first):
+    """Where it is asked whether it is true; and who takes the first value alone gets that, whether it is true or not."""
+    session = Session(time="virtual", turtlesim=False)
+    session.evaluate_text(f"(defpackage sev (:use :cpl)) (in-package :sev) (defun several () {values}) (defvar *first* (several))")
+    text = "(lisp-package :sev) (import cramhy_runtime.ground.functions [function_of])(setv f (function-of (lisp several)))"
+    assert run(text + "(top-level (bool (par (f) 1)))") is bool(first)
+    assert run(text + "(top-level (if (seq (f)) (cond (f) 1 True 2) (or (not (f)) 3)))") == (1 if first else True)
+    assert len(run(text + "(f)")) == (0 if values == "(values)" else 2)
+    assert session.evaluate_text("*first*") == [first]
+    [found] = session.evaluate_text("(list (car (mapcar (lambda (x) (declare (ignore x)) (several)) '(1))) (if (several) 1 2))")
+    assert list(found) == [first, 2 if first is None else 1]

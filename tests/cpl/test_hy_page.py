@@ -33,9 +33,10 @@ def module():
 
 
 def in_hy(text, where):
+    """The value of the last form of ``text``; each is compiled as in a file."""
     value = None
     for form in hy.read_many(text):
-        value = hy.eval(form, module=where)
+        value = hy.eval(hy.models.Expression([hy.read("hy.R.cramhy._form"), form]), module=where)
     return value
 
 

@@ -15,6 +15,12 @@ PLAN = "(top-level (unwind-protect (par (progn (print :running) (loop (sleep 0.0
 PRINTS = PLAN.format(cleanup="(print :cleaned)")
 BUSY = "(top-level (unwind-protect (par (progn (print :running) (loop)) (sleep 1000000)) (print :cleaned)))"
 HY_PLAN = '(top-level (try (print "running") (while True (sleep 0.01)) (finally (print "cleaned"))))'
+HY_PLANS = {
+    "waiting": HY_PLAN,
+    "busy": HY_PLAN.replace("(sleep 0.01)", "1").replace("(finally", "(finally (sleep 0.01)"),
+    "a busy branch": '(top-level (try (par (do (print "running") (for-ever)) (sleep 1000)) (finally (print "cleaned"))))',
+    "no plan": '(try (print "running") (for-ever) (finally (print "cleaned")))',
+}
 
 
 def interrupted(hy, plan, begun, prompt):
@@ -35,8 +41,9 @@ def test_ctrl_c_ends_a_plan_through_its_cleanup(hy_terminal, clock, plan):
             assert hy.ask("(+ 1 2)") == "3\nCPL-USER> "
 
 
+@pytest.mark.parametrize("plan", HY_PLANS)
 @pytest.mark.parametrize("lisp_before", [False, True])
-def test_ctrl_c_ends_a_plan_in_hy_through_its_cleanup(hy_terminal, lisp_before):
+def test_ctrl_c_ends_a_plan_in_hy_through_its_cleanup(hy_terminal, lisp_before, plan):
     with hy_terminal(time="wall") as hy:
         if lisp_before:
             hy.begin_lisp()
@@ -44,8 +51,9 @@ def test_ctrl_c_ends_a_plan_in_hy_through_its_cleanup(hy_terminal, lisp_before):
         else:
             hy.begin_hy()
         hy.ask("(import cramhy_runtime.cpl *)")
+        hy.ask("(defn for-ever [] (for [i (range 100000000000)] 1))")
         for _ in range(3):
-            assert interrupted(hy, HY_PLAN, r"\nrunning\n", "=> $") == "cleaned\n\nKeyboardInterrupt\n=> "
+            assert interrupted(hy, HY_PLANS[plan], r"\nrunning\n", "=> $") == "cleaned\n\nKeyboardInterrupt\n=> "
             assert hy.ask("(+ 1 2)") == "3\n=> "
 
 

@@ -307,3 +307,12 @@ def test_a_prompt_of_another_module_and_a_second_one_go_on_too():
             assert repl.ask("(+ 1 2)") == "3\n=> "
             os.write(repl.master, b"\x04")
         assert repl.status() == 0
+
+
+def test_the_prompt_after_a_file_has_all_operators_and_loops_that_can_be_ended(hy, tmp_path):
+    (tmp_path / "plan.hy").write_text(f"{REQUIRE}\n(defn go [] (while True))\n(print (top-level 1))\n")
+    asked = "(top-level (pursue (go) (while True) (do (sleep 1) 4)))\n(prolog '(member ?x [2]))\n(with-failure-handling [] (lisp left))\n"
+    done = hy("-i", "plan.hy", input=asked, CRAMHY_TIME="virtual")
+    answers = [line.removeprefix("=> ") for line in done.stdout.splitlines() if line.startswith("=> ")]
+    assert (answers[0], answers[1].strip(), answers[2]) == ("4", "(((?X . 2))", "LEFT")
+    assert "Error" not in done.stderr

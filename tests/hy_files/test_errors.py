@@ -251,3 +251,14 @@ def test_common_lisp_in_the_command_line_shows_the_line_of_its_error(python):
     done = python("-m", "hy", "-c", "(require cramhy *) (in-package :cram-user) (print 1) (car 2)")
     assert (done.returncode, done.stdout) == (1, "\n1 \n")
     assert "at <string>:1:54\n    (require cramhy *) (in-package :cram-user) (print 1) (car 2)\n" in done.stderr
+
+
+def test_a_function_of_a_lisp_package_is_named_with_its_module(write, program):
+    write("parts.lisp", "(defpackage :parts (:use :cl))\n(in-package :parts)\n(defun drive-on (x) x)\n(defvar *speed* 1)\n")
+    write("plan.hy", "(require cramhy *)\n(import cramhy)\n(import parts)\n(print (parts.drive-on 5))\n(drive-on 5)\n")
+    done = program("hy", "plan.hy")
+    assert done.stdout == "5\n"
+    assert done.stderr.splitlines()[-2:] == [
+        "NameError: name 'drive-on' is not defined",
+        "  drive-on is a function of the Lisp package PARTS. In Hy it is called by its module: (import parts), then (parts.drive-on ...).",
+    ]

@@ -205,3 +205,13 @@ def test_kept_code_runs_as_fast_as_with_cramhy_run(write, program, tmp_path):
 
     assert seconds("hy") < 1.7 * seconds("run") + 0.15
     assert list((tmp_path / "__pycache__").glob(f"bench.{sys.implementation.cache_tag}.pyc"))
+
+
+@pytest.mark.parametrize("way", ["hy", "run"])
+def test_a_package_that_is_defined_twice_is_warned_of_once(write, program, way):
+    write(
+        "twice.hy",
+        "(require cramhy *)\n(defpackage :parts (:use :cl) (:export :drive :stop))\n(defpackage :parts (:use :cl) (:export :drive))\n",
+    )
+    done = program(way, "twice.hy")
+    assert done.stderr == "WARNING: PARTS also exports the following symbols:\n  (PARTS:STOP)\n"

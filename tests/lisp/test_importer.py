@@ -81,6 +81,8 @@ def test_internal_names_are_there_and_unknown_ones_say_so(module):
     assert str(caught.value) == (
         f"the Lisp package {module.lisp_package.name} defines no function or variable for the Python name 'no_such_thing'"
     )
+    with pytest.raises(AttributeError, match=r"for the Python name 'two_value'\. Did you mean two_values\?\Z"):
+        module.two_value
     assert not hasattr(module, "__path__")
 
 

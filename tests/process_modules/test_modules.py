@@ -219,6 +219,21 @@ def test_an_unknown_module_is_an_error_at_once(call):
     assert problem.value.format_control == "Unknown process module: ~a "
 
 
+@pytest.mark.parametrize(
+    ("name", "package", "meant"),
+    [
+        ("TEST-NAVIGATION", "COMMON-LISP-USER", "cram-user::test-navigation"),
+        ("TEST-NAVIGATIO", "COMMON-LISP-USER", "cram-user::test-navigation"),
+        ("TEST-NAVIGATIO", "CRAM-USER", "test-navigation"),
+    ],
+)
+def test_the_hint_for_an_unknown_module_names_the_package_where_that_differs(name, package, meant):
+    define(lambda designator: 1)
+    with pytest.raises(registry.UnknownProcessModule) as problem:
+        cpl.top_level(lambda: pm.pm_execute(intern(name, package), None))
+    assert problem.value.hint.startswith(f"Did you mean {meant}? Running now: none. Defined: ")
+
+
 def test_an_unknown_module_cannot_be_started_and_the_caller_hears_of_it():
     define(lambda designator: 1)
     with pytest.raises(registry.UnknownProcessModule):

@@ -78,4 +78,6 @@ def test_a_form_of_hy_in_common_lisp_is_told_how_lisp_writes_it(session, text):
 def test_in_hy_at_the_prompt_of_roslisp_repl_says_where_it_leads_to_hy(session):
     with pytest.raises(Condition) as problem:
         session.evaluate_text("(in-hy)")
-    assert hint_for(problem.value).startswith("(in-hy) leads to Hy in a .hy file and at the prompt of hy, but not in the debugger.")
+    assert hint_for(problem.value).startswith(
+        "(in-hy) leads to Hy in a .hy file and at the prompt of hy, but not in the debugger: leave that first,"
+    )

@@ -265,9 +265,15 @@ def list_end(lst):
 
 
 class MultipleValues(tuple[Any, ...]):
-    """What a form returns that returns no values, or two or more. Exactly one value is returned bare."""
+    """What a form returns that returns no values, or two or more. Exactly one value is returned bare.
+
+    To Python and Hy it is a tuple. Where it is asked whether it is true, its first value counts, as in Lisp.
+    """
 
     __slots__ = ()
+
+    def __bool__(self) -> bool:
+        return bool(self[0]) if len(self) else False
 
 
 NO_VALUES = MultipleValues()
@@ -281,13 +287,13 @@ def values(*items: object) -> Any:
 def one(value: Any) -> Any:
     """The primary value: ``nil`` when there are no values."""
     if value.__class__ is MultipleValues:
-        return value[0] if value else None
+        return value[0] if len(value) else None
     return value
 
 
 def all_values(value: Any) -> tuple[Any, ...]:
     """All values of a form as a tuple."""
-    return value if value.__class__ is MultipleValues else (value,)
+    return tuple(value) if value.__class__ is MultipleValues else (value,)
 
 
 def truth(value: object) -> bool:

@@ -62,7 +62,7 @@ def primary(function):
     def first_value(*arguments):
         value = function(*arguments)
         if value.__class__ is MultipleValues:
-            return value[0] if value else None
+            return value[0] if len(value) else None
         return value
 
     return first_value

@@ -69,7 +69,7 @@ from .active import (
     woken_by,
     yield_,
 )
-from .cleanup import cleanup, limit_by
+from .cleanup import cleanup, cleanup_here, limit_by
 from .clocks import VirtualClock, WallClock
 from .depth import allow_deep_recursion
 from .endings import CLEANUP_LIMIT
@@ -83,7 +83,7 @@ from .waiting import Waiting
 __all__ = [
     "Abandoned", "CLEANUP_LIMIT", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "Terminated", "TimeLimit",
     "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
-    "call_every", "checkpoint", "cleanup", "current", "describe_frame", "install_reporter", "interrupt",
+    "call_every", "checkpoint", "cleanup", "cleanup_here", "current", "describe_frame", "install_reporter", "interrupt",
     "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill", "run_blocking", "set_clock", "settle",
     "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
 ]  # fmt: skip

@@ -11,7 +11,10 @@ when the block ends.
 
 from __future__ import annotations
 
-from .active import current
+from _thread import get_ident
+from contextlib import nullcontext
+
+from .active import active, current
 from .budget import budget
 from .errors import WaitEnded
 from .tasks import shield
@@ -19,6 +22,7 @@ from .typing_names import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from contextlib import AbstractContextManager
 
     from .tasks import Task
 
@@ -64,3 +68,15 @@ class cleanup(shield):  # noqa: N801 (reads as a statement)
 def limit_by(function: Callable[[cleanup, Task[object]], Limit | None]) -> None:
     """Call ``function(block, task)`` with each block of cleanup that begins from now on. It returns a `Limit` or ``None``."""
     cleanup._begins = staticmethod(function)
+
+
+def cleanup_here() -> AbstractContextManager[object]:
+    """A `cleanup` of the task that runs here; a block that does nothing where none does: without a kernel, and in a thread of Python's.
+
+    For code that does not know whether it belongs to a plan.
+    """
+    kernel = active()
+    if kernel is None:
+        return nullcontext()
+    carrier = kernel.current.carrier
+    return cleanup() if carrier is not None and carrier.ident == get_ident() else nullcontext()

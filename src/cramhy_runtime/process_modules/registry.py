@@ -161,7 +161,7 @@ def _with_hint(problem, name):
     if name not in _defined:
         nearest = _nearest(name, [*registry.modules, *_defined])
         if nearest is not None:
-            lines.append(f"Did you mean {_typed(nearest)}?")
+            lines.append(f"Did you mean {_as_typed_beside(name, nearest)}?")
     lines.append(f"Running now: {_listed(registry.modules)}. Defined: {_listed(_defined)}.")
     if name in _defined and name not in registry.modules:
         lines.append(f"Modules run in (cpm:with-process-modules-running ({shown}) ...).")
@@ -172,6 +172,14 @@ def _with_hint(problem, name):
 def _typed(name):
     """A name as the user types it."""
     return str(getattr(name, "name", name)).lower()
+
+
+def _as_typed_beside(name, other):
+    """``other`` as one types it in the place of ``name``: with its package if that is another one."""
+    package = getattr(other, "package", None)
+    if package is None or package is getattr(name, "package", None):
+        return _typed(other)
+    return f"{package.name.lower()}::{_typed(other)}"
 
 
 def _listed(names):

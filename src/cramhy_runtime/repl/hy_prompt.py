@@ -37,7 +37,7 @@ from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
 from cramhy_runtime.session import time_setting
-from cramhy_runtime.languages.hy import malformed
+from cramhy_runtime.languages.hy import malformed, module_names, plan_code, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.program_texts import TypedName, name_as_later_releases
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
@@ -319,6 +319,17 @@ class HyPrompt(Listener):
                 raise KeyboardInterrupt from None
             self.repl.write("\nKeyboardInterrupt\n")  # as that does, in a file that is run before the prompt comes
 
+    def complete_code(self, before):
+        """What is done with the syntax tree of each text: ``before(statements, expression)``, and what loops and ``finally`` need."""
+
+        def complete(statements, expression):
+            if before is not None:
+                before(statements, expression)
+            if program_texts.was_typed(self.repl.compile.compiler.hy_compiler.filename):
+                plan_code.complete([statements], module_names.at_prompt(self.repl.module))
+
+        return complete
+
     def shown_in_hy(self, value):
         """The text that the REPL shows for ``value`` in Hy: what is ours as Lisp prints it in the package of the module."""
         if type(value).__module__.partition(".")[0] != "cramhy_runtime":
@@ -359,6 +370,8 @@ def attend(repl, session=None):
         name_as_later_releases(hy.repl)
         repl.raw_input, repl.runsource, repl.runcode = repl.lisp.raw_input, repl.lisp.runsource, repl.lisp.runcode
         repl.write = repl.lisp.write
+        compiler = repl.compile.compiler
+        compiler.ast_callback = repl.lisp.complete_code(compiler.ast_callback)
 
 
 def enter(repl, text):

@@ -23,7 +23,8 @@ from cramhy_runtime.ground.keyword_calls import lispify
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.packages import find_package_or_error, intern, keyword, sym
 from cramhy_runtime.ground.python_exceptions import condition_class
-from cramhy_runtime.kernel import checkpoint
+from cramhy_runtime.kernel import checkpoint, cleanup_here, refill
+from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule
 from ..commonlisp.compiler.support import BlockExit, block_value, end_block, return_from
 from ..commonlisp.faces.prolog.macro_support import collect_fact, fact_collector, finish_fact_group
@@ -36,10 +37,12 @@ __all__ = [
     "RetryCounter",
     "Symbols",
     "block",
+    "budget",
     "call_plan",
     "calling",
     "checkpoint",
     "choose_package",
+    "cleanup_here",
     "collect_fact",
     "constant",
     "cpl_parameter",
@@ -57,6 +60,7 @@ __all__ = [
     "make_tag_task",
     "prepare_tag",
     "publish",
+    "refill",
     "use_package",
     "users_or_ours",
     "wait_for",

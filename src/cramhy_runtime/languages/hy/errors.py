@@ -38,6 +38,7 @@ from ..commonlisp.systems.loader import speaks_lisp
 from ..commonlisp.tools import backtrace
 from ..commonlisp.tools.error_reports import end_line, report_lines, show
 from . import malformed, shapes
+from .kept_code import calls_kept_code
 from .malformed import MalformedForm, retold, unreadable
 
 _HY = os.path.dirname(os.path.abspath(hy.__file__)) + os.sep
@@ -167,7 +168,8 @@ def _leave_out(told, seen):
         return
     seen.add(id(told))
     inside = [index for index, frame in enumerate(told.stack) if (frame.filename, frame.name) == _GOES_ON]
-    told.stack[:] = [frame for frame in told.stack[inside[-1] if inside else 0 :] if _is_users(frame.filename)]
+    frames = told.stack[inside[-1] if inside else 0 :]
+    told.stack[:] = [frame for index, frame in enumerate(frames) if _is_users(frame.filename) and not calls_kept_code(frames, index)]
     for frame in told.stack:
         frame.filename = file_of_text(frame.filename)
     for other in (told.__cause__, told.__context__, *(getattr(told, "exceptions", None) or ())):

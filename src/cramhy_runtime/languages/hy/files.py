@@ -12,7 +12,8 @@ from hy.reader import HyReader
 
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.compiler.core import hy_model
-from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.ground.condition_types import Condition, Warning_
+from cramhy_runtime.ground.conditions import handler_bind, muffle_warning
 from cramhy_runtime.ground.data import Cons, list_from
 from cramhy_runtime.languages.commonlisp.syntax.hy_models import from_hy
 from cramhy_runtime.ground.packages import find_package_or_error, intern
@@ -37,6 +38,7 @@ def lisp_form(operator, models_):
     return Cons(intern(operator), list_from([from_hy(model, user) for model in models_]))
 
 
+_DEFPACKAGE = intern("DEFPACKAGE")
 _COMPILE_TIME = {
     intern(name)
     for name in (
@@ -79,7 +81,7 @@ def compile_form(form):
             for part in unit.toplevel_parts(form):
                 new = unit.statements(part)
                 if now:
-                    unit.run(unit.code(new))
+                    _run_now(unit, new, form)
                 statements += map(hy_model, new)
     except (Exception, Condition):
         if not ahead.known:
@@ -87,6 +89,14 @@ def compile_form(form):
         return models.Expression([models.Symbol("do"), *statements[:1], ahead.rest()])
     last = [ahead.rest(after=True)] if ahead.known and rest_of_file.loads(form) else [models.Symbol("Lresult")]
     return models.Expression([models.Symbol("do"), *statements, *last])
+
+
+def _run_now(unit, statements, form):
+    code = unit.code(statements)
+    if form.car is not _DEFPACKAGE:
+        unit.run(code)
+    else:  # it is evaluated again when the module runs, and that time it tells what another definition of the package had
+        handler_bind([(Warning_, muffle_warning)], lambda: unit.run(code))
 
 
 def take_over():

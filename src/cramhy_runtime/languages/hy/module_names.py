@@ -13,6 +13,7 @@ from weakref import WeakKeyDictionary
 
 from hy import models
 
+from . import calls, kept_code, plan_code
 from .users_names import variables
 
 _WORD = re.compile(r"[^\W_]+")
@@ -24,10 +25,14 @@ CRAMHY = models.Expression([models.Symbol("__import__"), models.String("cramhy")
 
 
 class ModuleNames:
-    """The names that one file has so far. variables: the mangled names that may be variables in the form that is compiled now."""
+    """The names that one file has so far. variables: the mangled names that may be variables in the form that is compiled now.
+
+    at_work: whether a form of the file is compiled now. With the same compiler a prompt goes on after ``hy -i FILE``.
+    """
 
     def __init__(self):
         self.variables = frozenset()
+        self.at_work = False
         self._known = {}  # what it is: a path or the text of a constant → its name
         self._new = []  # name, value, name, value ... : what the form is the first to need
 
@@ -56,15 +61,49 @@ def compiled(compiler, form):
     names = _names.get(compiler)
     if names is None:
         names = _names[compiler] = ModuleNames()
-    names.variables = frozenset(variables(form))
-    return names.assigned_before(compiler.compile(form), compiler, form)
+        kept_code.seen(compiler.filename)
+    names.variables, names.at_work = frozenset(variables(form)), True
+    try:
+        made = compiler.compile(form)
+    finally:
+        names.at_work = False
+    if not _is_lisp(form):
+        plan_code.complete(made.stmts, lambda name: str(_ours(names, "calls", name)))
+    return names.assigned_before(made, compiler, form)
+
+
+def at_prompt(module):
+    """What gives `plan_code.complete` the names of ``module``, which has a prompt."""
+
+    def name(path):
+        found = f"_cramhy_{path}"
+        vars(module)[found] = getattr(calls, path)
+        return found
+
+    return name
+
+
+def _is_lisp(form):
+    """Whether our own compiler makes the code of ``form``."""
+    return isinstance(form, models.Expression) and form[:1] == (models.Symbol("lisp-form-read"),)
+
+
+def _names_of_file(compiler):
+    """The `ModuleNames` of the file that ``compiler`` compiles; ``None`` at a prompt."""
+    names = _names.get(compiler)
+    return names if names is not None and names.at_work else None
 
 
 def ours(_hy_compiler, *path):
     """The macro that stands for what the package ``cramhy`` has under ``path``, which are symbols of Hy."""
-    names = _names.get(_hy_compiler)
+    names = _names_of_file(_hy_compiler)
     if names is None:
         return _attribute(CRAMHY, *path)
+    return _ours(names, *path)
+
+
+def _ours(names, *path):
+    path = tuple(map(models.Symbol, path))
     package = names.name((), "", CRAMHY)
     return names.name(path, " ".join(path), _attribute(package, *path))
 
@@ -72,13 +111,13 @@ def ours(_hy_compiler, *path):
 def constant(_hy_compiler, text):
     """The macro that stands for the object of Lisp that ``text`` means, which all images share."""
     found = models.Expression([ours(_hy_compiler, models.Symbol("calls"), models.Symbol("constant")), text])
-    names = _names.get(_hy_compiler)
+    names = _names_of_file(_hy_compiler)
     return found if names is None else names.name(str(text), str(text), found)
 
 
 def if_global(compiler, name):
     """A Hy form that tells whether the module has a variable of that mangled name; ``None`` if it may be a variable of a function."""
-    names = _names.get(compiler)
+    names = _names_of_file(compiler)
     if names is None or name in names.variables:
         return None
     globals_ = names.name("globals", "globals", models.Expression([models.Symbol("globals")]))
@@ -91,4 +130,4 @@ def _attribute(value, *path):
 
 MACROS = {"_ours": ours, "_constant": constant}
 
-__all__ = ["MACROS", "compiled", "if_global"]
+__all__ = ["MACROS", "at_prompt", "compiled", "if_global"]

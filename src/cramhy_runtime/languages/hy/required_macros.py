@@ -10,11 +10,12 @@ from typing import Any
 
 
 class RequiredMacros(dict[str, Any]):
-    """Mangled name → macro. first: those that are there in any case. required: what is called when a file asks for all of them."""
+    """Mangled name → macro. first: those that are there in any case. required: what is called when a file asks for all, or for one."""
 
     def __init__(self, first: Mapping[str, Any], required: Callable[[], None]) -> None:
         super().__init__(first)
         self.required = required
+        self.all_are_required = False
         self._first: dict[str, Any] | None = dict(first)
 
     def _fill(self) -> None:
@@ -35,6 +36,8 @@ class RequiredMacros(dict[str, Any]):
     def __getitem__(self, name: str) -> Any:
         if not super().__contains__(name):
             self._fill()
+        if not (self.all_are_required or name.startswith("_")):  # those are not required, but stand in what ours expand into
+            self.required()
         return super().__getitem__(name)
 
     def keys(self) -> KeysView[str]:
@@ -52,4 +55,8 @@ class _Names(KeysView[str]):
     def __iter__(self):
         self._table._fill()
         self._table.required()
-        return iter(list(dict.keys(self._table)))
+        self._table.all_are_required = True
+        try:
+            yield from list(dict.keys(self._table))
+        finally:
+            self._table.all_are_required = False

@@ -9,7 +9,8 @@ import re
 
 import hy
 
-from cramhy_runtime.ground.packages import COMMON_LISP
+from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from cramhy_runtime.ground.packages import COMMON_LISP, all_packages
 
 HY = {
     "cond": "(cond test value ...)",
@@ -101,10 +102,26 @@ def hint_for_name(name, known):
         return f"{written} is Common Lisp, and Hy has nothing of that name. {_WHERE_LISP_IS}"
     if re.match(r"\?\w", written):
         return f"In a designator {written} is the value of a variable of Hy: (let [{written} value] form...)."
+    package = _lisp_package_with(written.upper())
+    if package is not None:
+        module = package.lower()
+        return (
+            f"{written} is a function of the Lisp package {package}. In Hy it is called by its module: (import {module}), then "
+            f"({module}.{written} ...)."
+        )
     import difflib
 
     near = difflib.get_close_matches(written, sorted({hy.unmangle(each) for each in known} - {written}), n=2, cutoff=0.7)
     return f"Did you mean {' or '.join(near)}?" if near else None
+
+
+def _lisp_package_with(name):
+    """The name of a package of the user's whose function ``name`` names, or ``None``."""
+    for package in all_packages():
+        symbol = None if package.built_in else package.external.get(name) or package.internal.get(name)
+        if isinstance(symbol, Symbol) and symbol.package is package and not isinstance(symbol.function, UndefinedFunction):
+            return package.name
+    return None
 
 
 def hint_for_text(text):

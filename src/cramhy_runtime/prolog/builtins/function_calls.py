@@ -101,7 +101,7 @@ def _apply(function, arguments):
         return undefined_function(function, tuple(arguments), {})
     value = code(*arguments)
     if value.__class__ is MultipleValues:
-        return value[0] if value else None
+        return value[0] if len(value) else None
     return value
 
 

@@ -115,7 +115,7 @@ def _call(function, values):
 
 def returned(function, values, value, *wanted):
     """The reason for a ``lisp-fun`` or ``lisp-pred`` whose value did not fit."""
-    value = value[0] if isinstance(value, MultipleValues) and value else value
+    value = value[0] if isinstance(value, MultipleValues) and len(value) else value
     text = f"{_call(function, values)} returned {show(value)}"
     return text + (f", which is not {show(wanted[0])}" if wanted else "")
 

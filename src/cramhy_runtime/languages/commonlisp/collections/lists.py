@@ -448,7 +448,7 @@ def mapcar(function, lst, *lists):
         for _ in STRETCH:
             value = function(cell.car)
             if value.__class__ is MultipleValues:
-                value = value[0] if value else None
+                value = value[0] if len(value) else None
             tail.cdr = tail = Cons(value)
             cell = cell.cdr
             if cell.__class__ is not Cons:
@@ -462,7 +462,7 @@ def mapcar(function, lst, *lists):
 
 def _one(value):
     if value.__class__ is MultipleValues:
-        return value[0] if value else None
+        return value[0] if len(value) else None
     return value
 
 

@@ -76,7 +76,7 @@ def reduce(function, sequence, *, key=None, from_end=None, start=0, end=None, in
     for item in remaining:
         value = combine(value, item)
         if value.__class__ is MultipleValues:
-            value = value[0] if value else None
+            value = value[0] if len(value) else None
     return value
 
 

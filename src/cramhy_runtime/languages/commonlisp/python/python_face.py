@@ -14,7 +14,7 @@ from ..evaluation.function_facts import lambda_list_of
 from ..syntax.lambda_lists import parse
 from cramhy_runtime.ground.python_names import attribute_symbols, hy_name, python_name
 from ..objects.classes import symbol_class
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.ground.packages import near_names, symbol_name
 from ..printer.print_controls import PACKAGE, bound
 from ..printer.printer import prin1_to_string
 from cramhy_runtime.ground.python_names import lisp_spelling
@@ -32,7 +32,11 @@ def find(package, name):
                 return with_signature(symbol.function)
             if symbol.value is not UNBOUND:
                 return symbol.value
-    raise AttributeError(f"the Lisp package {package.name} defines no function or variable for the Python name {hy_name(name)!r}")
+    near = near_names(name, names(package), 1)
+    raise AttributeError(
+        f"the Lisp package {package.name} defines no function or variable for the Python name {hy_name(name)!r}"
+        + (f". Did you mean {near[0]}?" if near else "")
+    )
 
 
 def _class(package, name):

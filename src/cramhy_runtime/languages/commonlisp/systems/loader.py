@@ -63,6 +63,8 @@ def stamp():
         here,
         here.parents[1] / "ground",
         here.parents[1] / "ground" / "dispatch",
+        here.parent / "operators",
+        here.parent / "hy",
         *(entry for room in rooms for entry in room.iterdir() if entry.is_dir()),
     ]
     language = importlib.util.find_spec("cramhy")

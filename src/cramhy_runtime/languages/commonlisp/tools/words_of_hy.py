@@ -26,7 +26,10 @@ _WHERE_HY_IS = "In a .hy file and at the prompt of hy, Hy begins after (in-hy)."
 def hint_for_operator(name: str) -> str | None:
     """What to try where the operator or function ``name``, as Lisp's reader reads it, is not defined."""
     if name == "IN-HY":
-        return "(in-hy) leads to Hy in a .hy file and at the prompt of hy, but not in the debugger. cramhy repl --hy is such a prompt, too."
+        return (
+            "(in-hy) leads to Hy in a .hy file and at the prompt of hy, but not in the debugger: leave that first, by the number of its "
+            "last restart. cramhy repl --hy is such a prompt, too."
+        )
     shape = OPERATORS.get(name)
     return f"{name.lower()} is Hy. In Common Lisp it is written {shape}. {_WHERE_HY_IS}" if shape else None
 
