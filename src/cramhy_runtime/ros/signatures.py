@@ -27,6 +27,8 @@ ParameterValue = str | int | float | bool | Sequence["ParameterValue"] | Mapping
 
 Handler = Callable[..., RosMessage]
 """The function of a service: it gets the request and returns the response."""
+Answers = Callable[[RosMessage], RosMessage | dict[str, object]]
+"""The function of a service that a Python program offers: its response, or the fields of that."""
 Observer = Callable[[str, str, bool], object]
 """Told of what comes and goes: its kind, its name, and whether it is there now."""
 
