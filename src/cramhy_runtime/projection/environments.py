@@ -120,16 +120,20 @@ def with_projection_environment(name, body):
     Returns a structure with the name, the list of the body's values, and an alist of variables and what they were at its end. A
     failure of the body goes on when ``shutdown`` has run and the process modules are dead. Errors: an unknown name.
     """
-    environment = find_environment(name)
+    values, variables = in_environment(find_environment(name), body)
+    return find_class_or_error(RESULT)(name=name, result=list_from(list(values)), environment=list_from(variables))
+
+
+def in_environment(environment, body):
+    """Run ``body()`` in an environment: the sequence of its values, and pairs of the variables and what they were at its end."""
     with binding(
         PROJECTION_ENVIRONMENT,
-        name,
+        environment.name,
         RUNNING_MODULES,
         ProjectedRegistry(running(), environment.own_names()),
         *_initial_values(environment.variables),
     ):
-        values, variables = with_process_modules_running(environment.modules, lambda: environment.run(body))
-    return find_class_or_error(RESULT)(name=name, result=list_from(list(values)), environment=list_from(variables))
+        return with_process_modules_running(environment.modules, lambda: environment.run(body))
 
 
 class EnvironmentResult:
