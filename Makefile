@@ -11,7 +11,7 @@ tutorial: $(READY)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
 
 view: $(READY)
-	@$(BIN)/roslisp_repl --view --load cram-my-beginner-tutorial --package tut --eval '(start-ros-node "turtle1")' \
+	@$(BIN)/roslisp_repl --view --time virtual --load cram-my-beginner-tutorial --package tut --eval '(start-ros-node "turtle1")' \
 	    --eval '(init-ros-turtle "turtle1")' --eval '(perform-draw-house)'
 
 test: $(READY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import collections
 import importlib
 import importlib.util
 import os
@@ -344,6 +345,11 @@ def test_text_that_the_library_writes_is_run_in_one_place():
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_no_file_is_longer_than_600_lines(path):
     assert len(path.read_text().splitlines()) <= 600
+
+
+def test_no_folder_has_more_than_30_modules():
+    modules = collections.Counter(path.parent.relative_to(ROOT) for path in FILES)
+    assert [str(folder) for folder, number in modules.items() if number > 30] == []
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))

@@ -9,12 +9,15 @@ the program are told as ``cramhy run`` tells them. ``(import cramhy *)`` gives t
 import hy  # teaches Python to import .hy files
 
 from . import language
+from cramhy_runtime.cli import live_page
 from cramhy_runtime.languages.hy.plan_macros import functions
 from cramhy_runtime.languages.hy.required_macros import RequiredMacros
 
 from cramhy_runtime.languages.hy import calls, errors, malformed, module_names  # they are there when the language is
 from cramhy_runtime.session.time_setting import time  # noqa: F401  cramhy.time; a star does not import it, since it would hide Python's module
 
+
+live_page.offer()  # (turtlesim:view)
 
 symbols = calls.Symbols()
 branching = calls.Branching()

@@ -6,7 +6,7 @@ from cramhy_runtime import cpl
 from cramhy_runtime.cpl.fluents import fluents
 from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.languages.commonlisp.faces.cpl import user_methods
-from cramhy_runtime.ground.generic_functions import remove_method
+from cramhy_runtime.ground.dispatch.generic_functions import remove_method
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 

@@ -30,6 +30,32 @@ def test_a_variable_is_evaluated_where_the_form_stands():
     ]
 
 
+@pytest.mark.parametrize(
+    "text, shown",
+    [
+        ("(goal *ld*)", "(:GOAL 5)"),
+        ("(goal +ld+)", "(:GOAL 7)"),
+        ("(goal (*ld* 1 +ld+ ?x))", "(:GOAL (5 1 7 3))"),
+        ("(*key* 1)", "(:COLOUR 1)"),  # keys obey the same rules
+        ("(goal *symbol*)", "(:GOAL :HELLO)"),
+        ("(goal *list*)", "(:GOAL (HELLO 1))"),
+        ("(goal *nothing*)", "(:GOAL NIL)"),
+        ("(when *ld* (on 1))", "(:ON 1)"),
+        ("(when *nothing* (on 1))", None),
+        ("(at (a location (x *ld*)))", "(:AT\n #<A LOCATION\n    (X 5)>)"),
+        ("(sign *)", "(:SIGN :*)"),
+        ("(sign (+ * ** ++ ***))", "(:SIGN (:+ :* :** :++ :***))"),
+        ("(sign *half)", "(:SIGN :*HALF)"),
+    ],
+)
+def test_a_global_variable_is_evaluated_when_the_designator_is_made(session, text, shown):
+    session.evaluate_text("""(in-package :cl-user) (defvar *ld*) (defconstant +ld+ 7) (defvar *key* :colour) (defvar *symbol* 'hello)
+        (defvar *list* '(hello 1)) (defvar *nothing* nil) (declaim (special *ld*))""")
+    (found,) = session.evaluate_text(f"""(flet ((make (?x) (declare (ignorable ?x)) (desig:a motion (type driving) {text})))
+        (let ((*ld* 5)) (prin1-to-string (second (desig:properties (make 3))))))""")
+    assert str(found) == (shown or "NIL")
+
+
 def test_a_nested_designator_is_a_form_whatever_package_its_operator_is_from():
     (entry,) = form(["at", ["a", "location", ["name", 1]]]).cdr
     assert entry.cdr.cdr.car.car is sym("DESIG::A")

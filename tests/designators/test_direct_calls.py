@@ -9,8 +9,8 @@ from cramhy_runtime.designators.protocol import reference
 from cramhy_runtime.designators.resolution import resolve_designator
 from cramhy_runtime.ground.condition_types import SimpleProgramError
 from cramhy_runtime.ground.data import UNSUPPLIED
-from cramhy_runtime.ground.generic_errors import NoApplicableMethodError
-from cramhy_runtime.ground.generic_functions import add_method, generic, remove_method
+from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
+from cramhy_runtime.ground.dispatch.generic_functions import add_method, generic, remove_method
 from cramhy_runtime.ground.packages import keyword
 
 MOTION = keyword("MOTION")

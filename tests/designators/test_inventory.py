@@ -6,7 +6,7 @@ from cramhy_runtime.session import boot
 from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
-from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import COMMON_LISP, find_package
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.types.types import is_known_type

@@ -13,8 +13,8 @@ BEGINNING = """# The command line
 `make docs` writes this page from the parser of the command line, so it says what `cramhy COMMAND --help` says. A default stands in parentheses at
 the end of a line. `roslisp_repl` is the same as `cramhy repl`. `cramhy --version` prints the version.
 
-Three variables of the environment stand for options: `CRAMHY_TIME` for `--time`, `CRAMHY_BACKTRACE` for `--backtrace`, and `CRAMHY_ROS` for
-`--ros`. An option counts before its variable.
+Four variables of the environment stand for options: `CRAMHY_TIME` for `--time`, `CRAMHY_BACKTRACE` for `--backtrace`, `CRAMHY_ROS` for
+`--ros`, and `CRAMHY_VIEW=no` for `--no-view`. An option counts before its variable.
 """
 
 

@@ -8,7 +8,7 @@ import hy
 import pytest
 from hy.completer import Completer
 
-from cramhy_runtime.repl.hy_completion import Tab
+from cramhy_runtime.repl.hy_completion import HyTab
 
 from .conftest import REQUIRE, Door
 
@@ -109,7 +109,7 @@ def tab(session, monkeypatch):
     """``tab(text)``: what the last word of ``text`` may become in Hy."""
     module = types.ModuleType("a_door")
     hy.eval(hy.read("(require cramhy *)"), module=module)
-    completer = Tab(types.SimpleNamespace(module=module, buffer=[]), lambda: False)
+    completer = HyTab(types.SimpleNamespace(module=module, buffer=[]), lambda: False)
     return lambda text: completer.candidates(text, text[max(map(text.rfind, " \t\n()[]{}`~'")) + 1 :])
 
 

@@ -6,11 +6,11 @@ from cramhy_runtime.session import boot
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.data import Cons, lisp_list
 from cramhy_runtime.languages.commonlisp.objects import class_definition, classes, instances, slots
-from cramhy_runtime.ground import generic_functions as generic
+from cramhy_runtime.ground.dispatch import generic_functions as generic
 from cramhy_runtime.languages.commonlisp.objects.builtin_classes import lisp_mro
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name, find_class
 from cramhy_runtime.languages.commonlisp.objects.instances import make_instance
-from cramhy_runtime.ground.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
+from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
 from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
 
 boot()

@@ -14,7 +14,7 @@ from cramhy_runtime.ground.plain_answers import PlainStream
 from cramhy_runtime.languages.commonlisp.printer.print_controls import bound
 from cramhy_runtime.languages.commonlisp.files import file_streams
 from cramhy_runtime.languages.commonlisp.streams import streams
-from cramhy_runtime.languages.commonlisp.tools import telling_and_asking
+from cramhy_runtime.languages.commonlisp.tools import user_queries
 from cramhy_runtime.languages.commonlisp.streams import stream_functions as functions
 from cramhy_runtime.languages.commonlisp.streams.streams import StringInputStream, StringOutputStream
 
@@ -121,7 +121,7 @@ def test_what_is_no_stream_is_a_type_error():
 def warned(condition):
     stream = StringOutputStream()
     with bound(streams.ERROR_OUTPUT, stream):
-        telling_and_asking.warning_line(condition)
+        user_queries.warning_line(condition)
     return stream.text()
 
 

@@ -22,19 +22,22 @@ PATIENCE = 30  # s; only a test that fails waits so long
 class Terminal:
     """``cramhy`` with ``arguments`` in a pseudo-terminal of its own, or ``program`` with them. A context manager.
 
-    editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used. variables: of the
+    editor: with prompt_toolkit, which echoes what is typed in its own way; without, the terminal's line editing is used, or that of
+    readline where ``variables`` have a TERM that draws. variables: of the
     environment, ``None`` for one that is not set. size: (lines, columns) of the terminal. wrapped: the terminal is kept open by this
     process, too, as a shell does, so that its modes can be looked at (`slave`); `begin` starts the program.
     """
 
     def __init__(self, *arguments, editor=False, variables=None, size=None, wrapped=False, program=None):
         self.text = ""
+        self.raw = b""  # with what moves the cursor and gives colours
         self.seen = 0
         self.slave = None
         environment = {
             **os.environ,
             "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT / 'hy_src'}",
-            "TERM": "dumb",
+            "TERM": "xterm" if editor else "dumb",
+            "CRAMHY_HISTORY": "",
             "PROMPT_TOOLKIT_NO_CPR": "1",
             **(variables or {}),
         }
@@ -80,6 +83,10 @@ class Terminal:
     def type(self, line):
         """Type a line and Enter."""
         os.write(self.master, line.encode() + b"\n")
+
+    def press(self, keys):
+        """Press keys, without Enter."""
+        os.write(self.master, keys.encode())
 
     def control_c(self):
         """Press Ctrl-C; the moment, for `since`."""
@@ -129,6 +136,7 @@ class Terminal:
             data = os.read(self.master, 65536)
         except OSError:  # Linux's way to say that the other end is closed
             return False
+        self.raw += data
         shown = re.sub(r"\x1b\[(\d+)D\x1b\[(\d+)C", lambda moves: " " * (int(moves[2]) - int(moves[1])), data.decode())
         self.text += re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\r", "", shown)
         return bool(data)

@@ -61,11 +61,11 @@ def rooms(monkeypatch):
         ),
         (
             ["repl", "--view", "--origin", "http://a", "--port", "9"],
-            ["rosbridge.start port=9 origins=('http://a',)", "view.start", "host", "close view.start", "close rosbridge.start"],
+            ["rosbridge.start port=9 origins=('http://a',)", "host", "view.start", "close view.start", "close rosbridge.start"],
         ),
         (
             ["eval", "--view", "--serve", "--port", "8080"],
-            ["rosbridge.start port=8080 origins=()", "view.start", "host", "close view.start", "close rosbridge.start"],
+            ["rosbridge.start port=8080 origins=()", "host", "view.start", "close view.start", "close rosbridge.start"],
         ),
         (
             ["run", "x", "--record", "x.mcap", "--ros", "ws://robot:9090"],

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.cli import options, shims
+from cramhy_runtime.cli import options, shells, shims
 
 NO_SESSION = (
     "No master is needed: the ROS graph lives in the process of roslisp_repl.\n"
@@ -24,7 +24,11 @@ SHELLS = {  # how each reads a program: functions, then the commands that follow
     "mksh": ["mksh"],
     "busybox": ["busybox", "sh"],
     "fish": ["fish", "--no-config"],
+    "pwsh": ["pwsh", "-NoProfile", "-NonInteractive", "-Command", "-"],
 }
+LANGUAGES = {"fish": "fish", "pwsh": "powershell"}  # of those that do not read POSIX's
+STATUS = {"fish": "echo $status", "pwsh": "echo $LASTEXITCODE"}
+WHERE = {"pwsh": "(Get-Location).Path"}
 FOLDERS = ["plain", "with a space", """it's "$HOME" `id` \\ and * too"""]
 
 
@@ -51,7 +55,7 @@ def bare(tmp_path, **more):
     runtime = tmp_path / "run"
     runtime.mkdir(mode=0o700, exist_ok=True)
     kept = {key: value for key, value in os.environ.items() if key not in ("ROS_PACKAGE_PATH", "VIRTUAL_ENV", "PYTHONPATH")}
-    return {**kept, "PATH": str(tmp_path / "nothing"), "XDG_RUNTIME_DIR": str(runtime), "HOME": str(tmp_path), **more}
+    return {**kept, "PATH": str(tmp_path / "nothing"), "XDG_RUNTIME_DIR": str(runtime), "HOME": str(tmp_path), "SHELL": "/bin/sh", **more}
 
 
 def functions(clone, tmp_path, *words):
@@ -80,8 +84,7 @@ def typed(shell, text, tmp_path, folder=None):
 
 @pytest.mark.parametrize(("shell", "clone"), IN_FOLDERS, indirect=["clone"])
 def test_the_functions_work_where_nothing_is_on_the_path(shell, clone, tmp_path):
-    language = "fish" if shell == "fish" else "sh"
-    status = "echo $status" if shell == "fish" else "echo $?"
+    language, status, where = LANGUAGES.get(shell, "sh"), STATUS.get(shell, "echo $?"), WHERE.get(shell, "pwd")
     (tmp_path / "cramhy_runtime").mkdir(exist_ok=True)  # the current folder is not where modules are looked for
     (tmp_path / "cramhy_runtime" / "__init__.py").write_text("raise SystemExit('the wrong cramhy')")
     out, complaints, _ = typed(
@@ -95,10 +98,10 @@ rosmsg show geometry_msgs/Point
 cramhy run --eval '(print (quote (1 "a b" $HOME)))' --time virtual nothing.lisp
 {status}
 roscd turtlesim
-pwd
+{where}
 roscd no_such_package
 {status}
-pwd
+{where}
 """,
         tmp_path,
     )
@@ -115,9 +118,10 @@ pwd
 @pytest.mark.parametrize("shell", SHELLS)
 def test_roslisp_repl_serves_so_that_other_terminals_find_it(shell, clone, tmp_path):
     pytest.importorskip("uvicorn")
-    language = "fish" if shell == "fish" else "sh"
     out, complaints, status = typed(
-        shell, functions(clone, tmp_path, "--shell", language) + "roslisp_repl --eval '(print (list 1 \"a b\"))'\n", tmp_path
+        shell,
+        functions(clone, tmp_path, "--shell", LANGUAGES.get(shell, "sh")) + "roslisp_repl --eval '(print (list 1 \"a b\"))'\n",
+        tmp_path,
     )
     assert '(1 "a b")' in out and status == 0
     assert complaints.startswith("; Clients of rosbridge: ws://127.0.0.1:")
@@ -137,10 +141,58 @@ def test_every_command_of_the_slides_is_defined(tmp_path, clone):
 
 
 def test_the_shells_of_the_option_are_those_that_are_known():
-    for shell in shims._FUNCTIONS:
+    for shell in shells.FUNCTIONS:
         assert options.parser().parse_args(["ros-shims", "--shell", shell]).shell == shell
     with pytest.raises(SystemExit):
         options.parser().parse_args(["ros-shims", "--shell", "cobol"])
+
+
+POWERSHELL_WORDS = {
+    "plain": "'plain'",
+    "": "''",
+    "it's": "'it''s'",
+    "C:\\a b\\$HOME `id`": "'C:\\a b\\$HOME `id`'",
+    "J\xfcrgen": "('' + 'J' + [char]0xFC + 'rgen')",
+    "\u2019": "('' + [char]0x2019)",  # which ends a text that begins with ', to PowerShell
+    "\U0001f422 a": "('' + [char]::ConvertFromUtf32(0x1F422) + ' a')",
+    "a\nb": "('' + 'a' + [char]0xA + 'b')",
+}
+
+
+@pytest.mark.parametrize("word", POWERSHELL_WORDS)
+def test_powershell_reads_each_word_as_it_is(word):
+    assert shells.powershell("cramhy", ["python", word]) == (
+        "function cramhy { if ($MyInvocation.ExpectingInput) "
+        f"{{ $input | & 'python' {POWERSHELL_WORDS[word]} @args }} else {{ & 'python' {POWERSHELL_WORDS[word]} @args }} }}\n"
+    )
+
+
+def test_in_powershell_roscd_changes_the_folder_only_when_there_is_one(clone, tmp_path):
+    (line,) = [each for each in functions(clone, tmp_path, "--shell", "powershell").splitlines() if each.startswith("function roscd ")]
+    assert line.startswith("function roscd { $to = & ") and line.isascii()
+    assert line.endswith(" 'ros' 'roscd' @args; if ($LASTEXITCODE -eq 0) { Set-Location -LiteralPath $to } }")
+
+
+@pytest.mark.parametrize("shell", shells.FUNCTIONS)
+def test_each_command_is_a_line_of_its_own(clone, tmp_path, shell):
+    """`Invoke-Expression` and `source` may read them one by one."""
+    assert len(functions(clone, tmp_path, "--shell", shell).splitlines()) == len({"cramhy", "roslisp_repl", "roscd", *shims.TOOLS})
+
+
+@pytest.mark.parametrize(
+    ("system", "shell", "line"),
+    [
+        ("posix", "/bin/bash", 'eval "$(a/cramhy ros-shims)"'),
+        ("posix", "/usr/bin/zsh", 'eval "$(a/cramhy ros-shims)"'),
+        ("posix", "/usr/bin/fish", "a/cramhy ros-shims --shell fish | source"),
+        ("nt", "", "a/cramhy ros-shims | Invoke-Expression"),
+        ("nt", "/usr/bin/bash", 'eval "$(a/cramhy ros-shims)"'),
+    ],
+)
+def test_the_hint_is_a_line_of_the_users_shell(monkeypatch, system, shell, line):
+    monkeypatch.setattr(shells.os, "name", system)
+    monkeypatch.setenv("SHELL", shell)
+    assert shells.line("a/cramhy") == line
 
 
 # ------------------------------------------------------------------------------------------------------- without ``ros``
@@ -157,7 +209,8 @@ def test_the_shells_of_the_option_are_those_that_are_known():
         (["roslisp_repl", "--view"], "repl --view"),
     ],
 )
-def test_a_ros_command_without_ros_is_told_its_right_shape(cramhy, words, meant):
+def test_a_ros_command_without_ros_is_told_its_right_shape(cramhy, monkeypatch, words, meant):
+    monkeypatch.setenv("SHELL", "/bin/sh")
     done = cramhy(*words)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (

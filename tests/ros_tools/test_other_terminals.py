@@ -375,3 +375,53 @@ def test_of_two_sessions_the_newest_is_taken_and_named(far_shell, monkeypatch, c
     monkeypatch.setattr(sessions, "living", lambda: [newest, replace(newest, pid=1, started=1)])
     assert "/turtlesim" in far_shell("rosnode list")
     assert capsys.readouterr().err == f"; 2 sessions run here; this is the newest, process {newest.pid}.\n"
+
+
+# ---------------------------------------------------------------------------------------- the turtle of the session stays
+
+
+@pytest.mark.parametrize("words", [(), ("__name:=turtlesim",), ("__ns:=/", "__name:=turtlesim")])
+def test_whoever_starts_the_sessions_own_simulator_looks_on(far_shell, graph, words):
+    before = far_shell.simulator
+    terminal = far_shell.carry_out(remote_graph.current)
+    assert start(far_shell, terminal, "turtlesim_node", *words)["there"]
+    far_shell.carry_out(terminal.close)
+    far_shell.carry_out(graph.nodes)  # an answer after the other terminal has gone
+    assert before.alive and before.graph.nodes["/turtlesim"].program is before
+
+
+@pytest.mark.parametrize("word", ["_background_r:=5", "turtle1/cmd_vel:=/left"])
+def test_another_simulator_does_not_take_the_name_of_the_sessions_own(far_shell, graph, word):
+    with pytest.raises(Refused) as caught:
+        start(far_shell, graph, "turtlesim_node", word)
+    assert str(caught.value) == (
+        "/turtlesim is the session's own, and would end if another one took its name. Give yours another name: __name:=other. "
+        "To look on at the session's, leave out the words after turtlesim_node."
+    )
+    assert far_shell.simulator.alive
+
+
+def test_a_client_may_replace_what_a_client_has_started(far_shell, graph):
+    far_shell.simulator.shutdown()
+    assert not start(far_shell, graph, "turtlesim_node")["there"]
+    first = far_shell.simulator.graph.nodes["/turtlesim"].program
+    assert not start(far_shell, graph, "turtlesim_node", "_background_r:=5")["there"]
+    assert not first.alive and far_shell("rosparam get /turtlesim/background_r") == "5\n"
+
+
+def test_the_simulator_that_waits_for_the_first_node_is_the_sessions_own(far_shell, graph):
+    from cramhy_runtime.turtlesim.node import start_with_first_node
+
+    far_shell.simulator.shutdown()
+    start_with_first_node()
+    terminal = far_shell.carry_out(remote_graph.current)
+    answer = start(far_shell, terminal, "turtlesim_node")
+    assert answer["there"] and answer["lines"][0].endswith("Starting turtlesim with node name /turtlesim")
+    far_shell.carry_out(terminal.close)
+    assert "/turtlesim" in far_shell.carry_out(graph.nodes)
+
+
+def test_words_that_are_no_names_are_refused(far_shell, graph):
+    with pytest.raises(Refused) as caught:
+        start(far_shell, graph, "turtlesim_node", ":=x")
+    assert "the empty string is not a name in ROS." in str(caught.value)

@@ -7,7 +7,7 @@ import os
 from contextlib import contextmanager
 from io import FileIO
 
-from cramhy_runtime.storage import parts
+from cramhy_runtime.storage import partial_files
 
 ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 CALLS = ("open", "replace", "rename", "link", "mkdir", "fsync", "fchmod")
@@ -74,7 +74,7 @@ def failing(folder, fails, monkeypatch):
         return call
 
     with monkeypatch.context() as patch:
-        patch.setattr(parts, "FileIO", Failing)
+        patch.setattr(partial_files, "FileIO", Failing)
         for name in CALLS:
             if hasattr(os, name):
                 patch.setattr(os, name, guarded(name, getattr(os, name)))

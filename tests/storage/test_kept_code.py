@@ -17,7 +17,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.systems import loader
 from cramhy_runtime.repl.session import Session
-from cramhy_runtime.storage.sealed import Unusable, sealed, unsealed
+from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
 
 root = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away")
 LINE, LABEL = b"# a test\n", "0" * 64

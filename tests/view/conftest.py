@@ -89,13 +89,15 @@ def visit(browser):
 
 
 class Repl:
-    """A REPL that lines are typed into. ``url``: of its page."""
+    """A REPL that lines are typed into. ``url``: of its page. options: of the command line; with a page from the start, unless ``view`` says
+    no. hidden: names of modules that it does not find."""
 
-    def __init__(self, folder, *options):
+    def __init__(self, folder, *options, view=True, hidden=()):
+        program = f"import sys; sys.modules.update(dict.fromkeys({list(hidden)!r})); from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
         environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "DISPLAY": "", "WAYLAND_DISPLAY": ""}
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--view", *options],
+            [sys.executable, "-c", program, "repl", *(["--view"] if view else []), *options],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -105,7 +107,7 @@ class Repl:
         self.printed = queue.Queue()
         self.text = ""
         threading.Thread(target=self._read, daemon=True).start()
-        self.url = next(line for line in self.process.stderr if "http://" in line).split()[-1]
+        self.url = next(line for line in self.process.stderr if "http://" in line).split()[-1] if view else None
 
     def _read(self):
         while text := os.read(self.process.stdout.fileno(), 1 << 16):
@@ -138,8 +140,8 @@ def repl(tmp_path):
     pytest.importorskip("uvicorn", reason="pip install 'cramhy[web]'")
     made = []
 
-    def start(*options):
-        made.append(Repl(tmp_path, *options))
+    def start(*options, **more):
+        made.append(Repl(tmp_path, *options, **more))
         return made[-1]
 
     yield start

@@ -85,7 +85,7 @@ def test_a_server_that_is_there_gets_the_page(session):
 def test_a_browser_is_led_to_the_page_by_a_file_of_the_users_own(session, monkeypatch):
     """The arguments of a browser can be read by everybody on the machine."""
     opened = []
-    monkeypatch.setattr(page_module.webbrowser, "open", lambda address: opened.append(address) or True)
+    monkeypatch.setattr(page_module, "browse", opened.append)
     monkeypatch.setattr(page_module, "has_screen", lambda: True)
     monkeypatch.setattr(sys, "stderr", type("Terminal", (), {"isatty": lambda self: True, "write": lambda self, text: None})())
     page = view.start()
@@ -99,7 +99,7 @@ def test_a_browser_is_led_to_the_page_by_a_file_of_the_users_own(session, monkey
 
 
 def test_no_browser_is_opened_where_nobody_sits(session, monkeypatch):
-    monkeypatch.setattr(page_module.webbrowser, "open", lambda address: pytest.fail("opened"))
+    monkeypatch.setattr(page_module, "browse", lambda address: pytest.fail("opened"))
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)

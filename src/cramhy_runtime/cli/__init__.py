@@ -40,13 +40,17 @@ def session(options, closings, opened=True):
     )
     gc.enable()
     if opened:
+        from . import live_page
         from .servers import NotPossible, open_session
 
+        live_page.offer()
         try:
             open_session(options, closings)
         except NotPossible as problem:
             print(f"cramhy: {problem}", file=sys.stderr)
             sys.exit(2)
+        if options.command == "repl" and options.view is None:
+            live_page.open_with_turtle()
     closings.callback(kernel.stop)
     for system in options.load:
         made.load(system)
@@ -162,17 +166,19 @@ def _checked(options):
 
 
 def _repl(options):
+    from cramhy_runtime.repl import banner
     from cramhy_runtime.repl.console import Console
 
     if not _checked(options):
         return 2
+    greets = banner.wanted() and not options.quiet
     sys.path.append("")  # modules of the current folder are found, as at the prompts of Python and Hy, and hide none of others
     with ExitStack() as closings:
         if options.hy:
             from cramhy_runtime.repl import hy_prompt
 
-            return hy_prompt.run(lambda: session(options, closings))
-        return Console(lambda: session(options, closings)).run()
+            return hy_prompt.run(lambda: session(options, closings), banner.of_hy() if greets else "" if options.quiet else None)
+        return Console(lambda: session(options, closings), banner=banner.of_lisp() if greets else "").run()
 
 
 def _eval(options):
@@ -207,15 +213,18 @@ def _run(options):
 
 
 def _load(options, closings):
+    from cramhy_runtime.repl.progress import Progress
+
     made = session(options, closings)
     if options.picture:
         from .servers import save_picture
 
         closings.callback(save_picture, options.picture)
-    made.load(options.file)
-    if options.package:
-        made.package = options.package.upper()
-    evaluate_forms(made, options.forms)
+    with Progress().during():
+        made.load(options.file)
+        if options.package:
+            made.package = options.package.upper()
+        evaluate_forms(made, options.forms)
 
 
 def _status(work):

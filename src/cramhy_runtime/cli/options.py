@@ -73,13 +73,26 @@ def _port(text):
 _port.__name__ = "port"  # what argparse calls it in its complaint
 
 
-def _opening_options():
-    """What lets others see the session, or the session see others."""
+def _add_view(options, what, default, by_itself=None):
+    """``--view``, which shows ``what``, and ``--no-view`` where a page opens by itself: when ``by_itself`` says."""
+    options.add_argument("--view", action="store_true", default=None, help=f"show {what} in a page ({by_itself or default})")
+    if by_itself:
+        options.add_argument(
+            "--no-view",
+            dest="view",
+            action="store_false",
+            default=None,
+            help="open no page by itself. The variable CRAMHY_VIEW=no says the same (it opens)",
+        )
+
+
+def _opening_options(by_itself=None):
+    """What lets others see the session, or the session see others. by_itself: when its page opens in a browser though nobody asked."""
     options = argparse.ArgumentParser(add_help=False)
     options.add_argument(
         "--serve", action="store_true", help="let rostopic, rosservice ... and other programs of this user connect (nobody)"
     )
-    options.add_argument("--view", action="store_true", help="show the turtle's world and the plan in a page (no page)")
+    _add_view(options, "the turtle's world and the plan", "no page", by_itself)
     options.add_argument("--port", type=_port, default=None, metavar="N", help="where --serve and --view listen (a free port)")
     options.add_argument(
         "--origin",
@@ -125,15 +138,17 @@ class _Version(argparse.Action):
 def parser():
     """The `argparse.ArgumentParser` of ``cramhy``."""
     common, openings = {command: _session_options(command) for command in DEFAULT_TIMES}, _opening_options()
+    of_prompt = _opening_options("on a desktop it opens with the turtle")
     main_parser = argparse.ArgumentParser(prog="cramhy", description="CRAM's robot plan language on Hy and Python.")
     main_parser.add_argument("--version", action=_Version)
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    repl = commands.add_parser("repl", parents=[common["repl"], openings], help="the REPL (also called roslisp_repl)")
+    repl = commands.add_parser("repl", parents=[common["repl"], of_prompt], help="the REPL (also called roslisp_repl)")
     repl.add_argument(
         "--hy",
         action="store_true",
         help="begin in plain Hy, after (require cramhy *), where (in-package ...) leads to Lisp (begin in Lisp)",
     )
+    repl.add_argument("--quiet", action="store_true", help="begin without a banner (two lines, where somebody sits at a terminal)")
     run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file", help="a .lisp, .hy or .asd file")
     run.add_argument(
@@ -148,20 +163,30 @@ def parser():
     test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
     test.add_argument("--junit", default=None, metavar="FILE", help="write the results into FILE, too, in JUnit's XML (no file)")
     simulator = commands.add_parser("turtlesim", help="the simulator alone, for other programs to drive")
-    simulator.add_argument("--view", action="store_true", help="show it in a page, too (no page)")
+    _add_view(simulator, "it", "no page", "on a desktop it opens with the turtle")
     simulator.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
     _add_time(simulator, "wall")
     teleop = commands.add_parser("teleop", help="drive the turtle of a running session with the arrow keys")
     teleop.add_argument("turtle", nargs="?", default="turtle1", help="which one (turtle1)")
-    view = commands.add_parser("view", help="the live page of a running session, or of a simulator of its own")
-    view.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
+    view = commands.add_parser("view", help="open the live page of a running session, or of a simulator of its own")
+    view.add_argument("--port", type=_port, default=None, metavar="N", help="where a simulator of its own listens (a free port)")
     _add_time(view, "wall")
     replay = commands.add_parser("replay", help="show a recording in the page")
     replay.add_argument("file", metavar="FILE.mcap", help="the recording, which --record has written")
     replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
     shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
     shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
-    shims.add_argument("--shell", choices=["sh", "fish"], default="sh", help="whose functions; sh is for bash, zsh and dash, too (sh)")
+    shims.add_argument(
+        "--shell",
+        choices=["sh", "fish", "powershell"],
+        default=None,
+        help="whose functions; sh is for bash, zsh and dash, too (sh; on Windows powershell)",
+    )
     ros = commands.add_parser("ros", usage="cramhy ros COMMAND [WORD ...]", help="a command of ROS: cramhy ros rostopic list")
-    ros.add_argument("ros_command", metavar="COMMAND", help="rostopic, rosservice, roscore, rosrun, catkin_make ..., with the words of ROS")
+    ros.add_argument(
+        "ros_command",
+        metavar="COMMAND",
+        help="rostopic, rosservice, roscore, rosrun, catkin_make ..., with the words of ROS. rosrun turtlesim turtlesim_node opens the "
+        "page on a desktop, unless the variable CRAMHY_VIEW says no",
+    )
     return main_parser

@@ -106,11 +106,12 @@ def _known(package, executable):
 # ------------------------------------------------------------------------------------------------------------ where to run
 
 
-def run(programs, parameters=None, port=None, view=False, time=None):
+def run(programs, parameters=None, port=None, view=None, time=None):
     """Run programs, in the session that there is or in this process, until they end or Ctrl-C; the exit status.
 
-    parameters: values by global name, which are set before. port, view: where a session of this process listens; with the page.
-    time: what ``--time`` says of a session of this process, or ``None``: what CRAMHY_TIME says, or the wall's.
+    parameters: values by global name, which are set before. port: where a session of this process listens. view: whether to open the page
+    of the session; ``None``: if a simulator is among the programs, and in a browser only on a desktop. time: what ``--time`` says of a
+    session of this process, or ``None``: what CRAMHY_TIME says, or the wall's.
     """
     from cramhy_runtime.ros_tools import remote_graph
     from cramhy_runtime.ros_tools.graph_access import NoSession, Refused, SessionEnded
@@ -128,13 +129,13 @@ def run(programs, parameters=None, port=None, view=False, time=None):
                     raise servers.NotPossible(str(problem)) from None
                 if told is not None:
                     _tell(f"The session has ended: {told} here again.")
-                if _run_here(programs, parameters, port, view, time) != "moved":
+                if _run_here(programs, parameters, port, view, time, again=told is not None) != "moved":
                     return 0
                 told = _what(programs)
                 _tell(f"A session has started: {told} there now.")
                 continue
             try:
-                return _run_there(graph, programs, parameters)
+                return _run_there(graph, programs, parameters, view)
             except SessionEnded:
                 told = _what(programs)
             finally:
@@ -147,7 +148,12 @@ def run(programs, parameters=None, port=None, view=False, time=None):
 
 
 def _what(programs):
-    return "the turtle lives" if any(each.executable == "turtlesim_node" for each in programs) else "the program runs"
+    return "the turtle lives" if _has_window(programs) else "the program runs"
+
+
+def _has_window(programs):
+    """Whether one of the programs opens a window in ROS."""
+    return any(each.executable == "turtlesim_node" for each in programs)
 
 
 def _tell(text):
@@ -175,9 +181,12 @@ def _closing(labels):
         print("shutting down processing monitor...\n... shutting down processing monitor complete\ndone", flush=True)
 
 
-def _run_there(graph, programs, parameters):
+def _run_there(graph, programs, parameters, view):
     """Run programs in the session of another process. A closed window, or another end of this process, ends them as Ctrl-C does."""
     from cramhy_runtime.kernel.errors import Terminated
+    from cramhy_runtime.ros_tools.graph_access import Refused
+
+    from . import live_page
 
     for name, value in (parameters or {}).items():
         graph.set_parameter(name, value)
@@ -198,6 +207,12 @@ def _run_there(graph, programs, parameters):
                 labels = _started(program, number, graph.pid) + labels
                 for line in answer["lines"]:
                     show(line)
+            if view or view is None and _has_window(programs):
+                try:
+                    _tell(f"The page: {live_page.show_session(graph, asked=bool(view))}")
+                except Refused as problem:  # of a session that offers no page
+                    if view:
+                        _tell(problem)
             while shown:
                 _, message = log.take()
                 if message["node"] in shown and not message["ended"]:
@@ -212,14 +227,19 @@ def _run_there(graph, programs, parameters):
     return 0
 
 
-def _run_here(programs, parameters, port, view, time=None):
-    """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``."""
+def _run_here(programs, parameters, port, view, time=None, again=False):
+    """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``.
+
+    again: whether they ran in another session before, so that no browser opens by itself.
+    """
     from cramhy_runtime import kernel
     from cramhy_runtime.session import boot, time_setting
     from cramhy_runtime.ros import graph
     from cramhy_runtime.ros.services import Refusal
+    from cramhy_runtime.turtlesim import window
+    from cramhy_runtime.view import page
 
-    from . import servers
+    from . import live_page, servers
 
     try:
         kernel.start(clock=time_setting.decide(time, time_setting.PROMPT))
@@ -232,7 +252,8 @@ def _run_here(programs, parameters, port, view, time=None):
     with ExitStack() as closings:
         closings.callback(kernel.stop)
         try:
-            _, host = servers.serve(closings, port, view)
+            live_page.offer()
+            _, host = servers.serve(closings, port, bool(view))
             if kernel.run_blocking(_others):  # it began while we did, and is older: nobody would tell us of it later
                 return "moved"
             for name, value in (parameters or {}).items():
@@ -249,6 +270,8 @@ def _run_here(programs, parameters, port, view, time=None):
                 for line in lines:
                     show(line)
                 node.program.echo = _both(node.program.echo)
+            if view is None and _has_window(programs):
+                _tell(f"The page: {window.page(show=page.opens_by_itself() and not again, asked=False).url}")
             return _wait(nodes)
         except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
             _closing(labels)
@@ -267,10 +290,13 @@ def _wait(nodes):
     """Wait until all nodes have ended (``"ended"``) or a session has started elsewhere (``"moved"``)."""
     from cramhy_runtime import kernel
 
+    from . import live_page
+
     while any(node.alive for node in nodes):
         kernel.sleep(LOOK_AGAIN)
         newest = kernel.run_blocking(_newest)
         if newest is not None and newest.pid != os.getpid():
+            live_page.move()
             return "moved"
     return "ended"
 

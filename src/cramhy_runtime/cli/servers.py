@@ -128,16 +128,16 @@ def serve(closings, port=None, with_page=False, origins=()):
 
     origins: pages of other servers that may connect. Returns the server, or the page, and the `Host`; raises `NotPossible`.
     """
-    with server_errors_told():
-        server = rosbridge.start(port=port, origins=tuple(origins))
-        closings.callback(server.close)
-        if with_page:  # it takes the server that there is
-            server = view.start()
-            closings.callback(server.close)
     from cramhy_runtime import kernel
     from cramhy_runtime.ros_tools.hosting import Host
 
-    host = Host()
+    with server_errors_told():
+        server = rosbridge.start(port=port, origins=tuple(origins))
+        closings.callback(server.close)
+        host = Host()
+        if with_page:  # it takes the server that there is
+            server = view.start()
+            closings.callback(server.close)
     if with_page:
         print(f"; The page: {server.url}", file=sys.stderr, flush=True)
         if kernel.pace().virtual:

@@ -1,9 +1,9 @@
 """The ROS commands of the slides, for machines without ROS.
 
 ``cramhy ros-shims`` prints shell functions: ``eval "$(.venv/bin/cramhy ros-shims)"`` in bash, zsh, dash and other shells that read POSIX's
-language, ``.venv/bin/cramhy ros-shims --shell fish | source`` in fish. ``cramhy ros-shims --install FOLDER`` writes them as programs. All
-of them call ``cramhy ros TOOL ...``, which is carried out here, by the absolute path of this Python, so that they work where nothing of
-cramhy's is on the PATH. A real ROS on the PATH is left alone.
+language, ``.venv/bin/cramhy ros-shims --shell fish | source`` in fish, and ``| Invoke-Expression`` in PowerShell (`shells`).
+``cramhy ros-shims --install FOLDER`` writes them as programs. All of them call ``cramhy ros TOOL ...``, which is carried out here, by the
+absolute path of this Python, so that they work where nothing of cramhy's is on the PATH. A real ROS on the PATH is left alone.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 from cramhy_runtime import storage
 from cramhy_runtime.ros_tools import running
 
+from . import shells
 from .process_environment import missing, working_folder
 
 _HOMES = {
@@ -31,8 +32,8 @@ _MARK = "made by cramhy ros-shims"
 _OURS = (_MARK, "cramhy_runtime")  # in the first lines of a program: a shim, or a script that pip has made
 
 
-def run(folder=None, shell="sh"):
-    """Print the functions for a shell ("sh", "fish"), or install programs in ``folder``; the exit status."""
+def run(folder=None, shell=None):
+    """Print the functions, or install programs in ``folder``; the exit status. shell: one of `shells.FUNCTIONS`, or `shells.default`."""
     import shutil
 
     names = ["roslisp_repl", *TOOLS, "roscd"]
@@ -47,7 +48,8 @@ def run(folder=None, shell="sh"):
         )
     names = ["cramhy", *(name for name in names if name not in real)]
     if folder is None:
-        print("".join(_FUNCTIONS[shell](name) for name in names), end="")
+        define = shells.FUNCTIONS[shell or shells.default()]
+        print("".join(define(name, words_of(name)) for name in names), end="")
         return 0
     return _install(Path(folder), [name for name in names if name != "roscd"])
 
@@ -59,23 +61,6 @@ def words_of(name):
     """
     words = [os.path.abspath(sys.executable), "-P", "-m", "cramhy_runtime.cli"]
     return words + {"cramhy": [], "roslisp_repl": ["repl", "--serve"]}.get(name, ["ros", name])
-
-
-def _posix(name):
-    program = shlex.join(words_of(name))
-    if name == "roscd":
-        return f'roscd() {{ local to; to="$({program} "$@")" && cd "$to"; }}\n'
-    return f'{name}() {{ {program} "$@"; }}\n'
-
-
-def _fish(name):
-    program = " ".join("'" + word.replace("\\", "\\\\").replace("'", "\\'") + "'" for word in words_of(name))
-    if name == "roscd":
-        return f"function roscd; set -l to ({program} $argv); and cd $to; end\n"
-    return f"function {name}; {program} $argv; end\n"
-
-
-_FUNCTIONS = {"sh": _posix, "fish": _fish}
 
 
 def _install(target, names):
@@ -100,7 +85,7 @@ def _install(target, names):
         return 1
     print(
         f"Wrote {', '.join(names)} into {target}. roscd changes the shell's folder, so it must be a shell function: "
-        f'eval "$({shlex.join(words_of("cramhy"))} ros-shims)"'
+        f"{shells.line(shlex.join(words_of('cramhy')))}"
     )
     return 0
 
@@ -125,7 +110,7 @@ def meant(words):
     meant = ["repl", *words[1:]] if words[0] == "roslisp_repl" else ["ros", *words]
     return (
         f"cramhy: {words[0]} is a command of ROS. Type: {mine} {shlex.join(meant)}\n"
-        f'Or make it a command of this shell first: eval "$({mine} ros-shims)"\n'
+        f"Or make it a command of this shell first: {shells.line(mine)}\n"
     )
 
 

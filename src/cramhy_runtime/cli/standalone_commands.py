@@ -13,46 +13,53 @@ from contextlib import ExitStack
 from . import servers
 
 
-def turtlesim(port=None, view=False, time=None):
-    """The simulator, until Ctrl-C. port: where it listens. view: with the page. time: what ``--time`` says, or ``None``."""
+def turtlesim(port=None, view=None, time=None):
+    """The simulator, until Ctrl-C. port: where it listens. view, time: as for `programs.run`."""
     from . import programs
 
     return programs.run([programs.Program("turtlesim", "turtlesim_node", [])], port=port, view=view, time=time)
 
 
 def view(port=None, time=None):
-    """The page of the session that runs; without one, of a simulator of its own, until Ctrl-C. time: as for `turtlesim`."""
-    from cramhy_runtime.rosbridge import sessions
+    """Open the page of the session that runs; without one, of a simulator of its own, until Ctrl-C. time: as for `turtlesim`."""
+    from cramhy_runtime.rosbridge.no_answers import NOBODY
+    from cramhy_runtime.ros_tools import remote_graph
+    from cramhy_runtime.ros_tools.graph_access import OPEN_PAGE, NoSession, Refused, SessionEnded
+
+    from . import live_page
 
     try:
-        found = sessions.current()
-    except sessions.Unsafe as problem:
-        print(f"cramhy: {problem}", file=sys.stderr)
-        return 2
-    if found is None:
+        servers.require("view", "The page")
+        graph = remote_graph.current()
+    except NoSession as problem:
+        if str(problem):
+            return _complain(problem)
+        print(f"; No session listens here, so this is a simulator of its own. {WHERE_ONE_LISTENS}", file=sys.stderr, flush=True)
         return turtlesim(port, view=True, time=time)
-    if not _has_page(found):
-        print(f"cramhy: the session of process {found.pid} has no page. Start it with: roslisp_repl --view", file=sys.stderr)
-        return 1
-    from cramhy_runtime.view.page import show
-
-    print(f"The page: {found.url}")
-    show(found.url, found.port, sessions.folder())
+    except servers.NotPossible as problem:
+        return _complain(problem)
+    try:
+        print(f"The page: {live_page.show_session(graph)}")
+    except Refused as problem:
+        if str(problem) == NOBODY.format(OPEN_PAGE):
+            return _complain(
+                f"The session of process {graph.pid} offers no page. Its program opens one by: "
+                "from cramhy_runtime import view; view.start()"
+            )
+        return _complain(f"The session of process {graph.pid} does not open its page: {problem}")
+    except SessionEnded as problem:
+        return _complain(problem)
+    finally:
+        graph.close()
     return 0
 
 
-def _has_page(session):
-    """Whether the server of a session gives out a page, and no plain text alone."""
-    from http.client import HTTPConnection, HTTPException
+WHERE_ONE_LISTENS = "To see the turtle of a prompt, type (turtlesim:view) there, or start it with roslisp_repl --serve."
 
-    connection = HTTPConnection(session.host, session.port, timeout=5)
-    try:
-        connection.request("GET", "/")
-        return connection.getresponse().getheader("content-type", "").startswith("text/html")
-    except (OSError, HTTPException):
-        return False
-    finally:
-        connection.close()
+
+def _complain(problem):
+    print(f"cramhy: {problem}", file=sys.stderr)
+    return 2
 
 
 def replay(path, port=None):

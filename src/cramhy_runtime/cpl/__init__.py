@@ -22,12 +22,12 @@
     cpl.run(main)       # "there", after four seconds of virtual time
 
 The page docs/plans-in-python.md tells the whole story. In short: a plan runs below `run` or ``with plan():``. ``par pursue try_all``
-take branches as functions, or begin a ``with`` block that starts them. When a form is left, its branches are dead, and what one of
-them failed with is raised. Waiting is for values that are not ``None`` and not ``False``; 0 and "" are true, as in Lisp.
+take branches as functions, or begin a ``with`` block that starts them. When a form is left, its branches are dead, and the failure
+that decided the form is raised. A task waits for a value that is neither ``None`` nor ``False``; 0 and "" are true, as in Lisp.
 
-Where the parts are (reference: cpl.md): `failures`, `fluents`, `tasks`, `tree` and `forms`, folders in this order, each of which knows only
-those before it; below them `symbols`, `statuses`, `current` (the task that runs), `task_variables`, `hooks`, `logging` and
-`type_checks`; `plain_printing` shows fluents and tasks where no language does; `signatures` is for type checkers.
+Where the parts are (reference: cpl.md): `failures`, `fluents`, `tasks`, `tree` and `forms` are folders in this order, and each knows only
+those before it. Below them are `symbols`, `statuses`, `current` (the task that runs), `task_variables`, `hooks`, `logging` and
+`type_checks`. `plain_printing` shows fluents and tasks when no language is loaded, and `signatures` is for type checkers.
 """
 
 from cramhy_runtime.kernel import Deadlock, TimeLimit, checkpoint, now, run_blocking, cleanup

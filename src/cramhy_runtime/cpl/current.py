@@ -1,4 +1,4 @@
-"""The plan task that runs, if one does. Everything else in this room may ask; nothing here knows what a task is."""
+"""The plan task that runs now, if there is one. All modules of this room ask here; this module itself does not know what a task is."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def current_task() -> AbstractTask[object] | None:
 
 
 def inside_plan(form: object) -> AbstractTask[object]:
-    """The current task; the error of ``form`` (a name) outside of a plan if there is none."""
+    """The current task. Outside of a plan it signals the error that ``form``, a name, must stand inside a plan."""
     active = kernel.active()
     task = None if active is None else active.current.owner
     if task is None:

@@ -1,4 +1,4 @@
-"""The hooks of the plan language (cpl.md section 11); what a hook is stands in ``ground/hooks.py``."""
+"""The hooks of the plan language (cpl.md section 11). ``ground/hooks.py`` explains hooks."""
 
 from __future__ import annotations
 

@@ -1,12 +1,11 @@
 """The event log of the plan language: what each task does, one line per event, by topic.
 
-Topics are keywords, the log tags; the set of active ones is global, and empty at first. A line goes to ``*log-output*`` and says
-when (seconds since the plan began, by the clock and by the processor), which task, what kind of event, and the event. Source:
-cpl.md section 10; the line is the original's to the letter. In virtual time both times are the plan's, so that equal runs log
-equal lines.
+Topics are keywords, the log tags. The set of active tags is global, and empty at first. A line goes to ``*log-output*``. It has the time
+(seconds since the plan began, by the clock and by the processor), the task, the kind of event, and the event. Source: cpl.md section
+10; the line is the original's to the letter. In virtual time both times are the plan's, so that equal runs log equal lines.
 
-Logging costs nothing when no tag is active: the runtime asks ``if active_tags`` before it says anything, and `log-event` does not
-evaluate its arguments then.
+Logging costs nothing when no tag is active: the runtime asks ``if active_tags`` before it logs, and then `log-event` does not
+evaluate its arguments.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ NAME_WIDTH = 20
 
 known_tags = per_image(list(TAGS))
 active_tags = per_image(set())
-"""The names of the active tags. Who wants to log asks first whether there are any."""
+"""The names of the active tags. Code that logs asks first whether there are any."""
 
 
 def tag_list(names):
@@ -51,20 +50,20 @@ def tag_list(names):
 
 
 def log(tag, control, *arguments):
-    """Log an event of the runtime's: its kind is its tag. To be called only when there are `active_tags`."""
+    """Log an event of the runtime, whose kind is its tag. Call this only if there are `active_tags`."""
     if tag in active_tags:
         write_line("~a", (tag,), control, arguments)
 
 
 def log_sending(kind, task, reason):
-    """Log a request to a task; to be called only when there are `active_tags`."""
+    """Log a request to a task. Call this only if there are `active_tags`."""
     log("SEND-EVENT", EVENT + " to ~a", kind, reason, task.name)
 
 
 def log_event(tags, event):
-    """``log-event``: if one of the tags (a Lisp list of keywords) is active, log what ``event()`` tells.
+    """``log-event``: log ``event()`` if one of ``tags``, a Lisp list of keywords, is active.
 
-    That is a sequence: a format control for the kind of event, its arguments, one for what happened, and its arguments.
+    ``event()`` returns four things: a format control for the kind of event, its arguments, one for what happened, and its arguments.
     """
     if not active_tags.isdisjoint(tag.name for tag in tags):
         context, context_arguments, display, arguments = event()
@@ -106,19 +105,19 @@ def shortened(name, width=NAME_WIDTH):
 
 
 def log_enable(tags):
-    """Activate ``tags``, a list of keywords; returns the list of active ones in table order."""
+    """Activate ``tags``, a list of keywords. Returns the active tags in table order. An unknown tag is an error."""
     active_tags.update(_checked(tags))
     return list_active_log_tags()
 
 
 def log_disable(tags):
-    """Make ``tags`` inactive; returns the list of those that are active still."""
+    """Make ``tags`` inactive. Returns the tags that are still active, in table order. An unknown tag is an error."""
     active_tags.difference_update(_checked(tags))
     return list_active_log_tags()
 
 
 def log_set(tags):
-    """Make ``tags``, and no others, the active ones; returns them."""
+    """Make ``tags`` the only active ones. Returns them in table order. An unknown tag is an error."""
     names = _checked(tags)
     active_tags.clear()
     active_tags.update(names)
@@ -137,7 +136,7 @@ def _checked(tags):
 
 
 def check_constant_tags(tags):
-    """At expansion time: ``tags`` (a Python list) must be known."""
+    """Signal a compile-time error if one of ``tags``, a Python list, is not a known tag."""
     for tag in tags:
         if not _is_known(tag):
             error(
@@ -147,10 +146,10 @@ def check_constant_tags(tags):
 
 
 def define_log_tags(tags):
-    """``(define-log-tags tag...)``: make keywords log tags, after those that there are; the list of all."""
+    """``(define-log-tags tag...)``: add keywords to the log tags. Returns the list of all. Other objects than keywords are an error."""
     for tag in python_list(tags):
         if not isinstance(tag, Keyword):
-            error("A log tag is a keyword, which ~S is not.", tag)
+            error("A log tag is a keyword, not ~S.", tag)
         if tag.name not in known_tags:
             known_tags.append(tag.name)
     return list_available_log_tags()

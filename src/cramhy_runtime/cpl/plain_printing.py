@@ -1,4 +1,4 @@
-"""How fluents and tasks look where no language is started: ``#<FLUENT NAME [VALUE]>``, ``#<TASK "NAME" {address}>``."""
+"""How fluents and tasks look when no language is loaded: ``#<FLUENT NAME [VALUE]>``, ``#<TASK "NAME" {address}>``."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from .tasks.tasks import AbstractTask, ToplevelTask
 
 
 def print_fluent(fluent, stream):
-    """The name, and the value of a value fluent in brackets."""
+    """Print the name, and for a value fluent the value in brackets."""
     value = f" [{prin1_to_string(fluent.stored)}]" if isinstance(fluent, ValueFluent) else ""
     stream.write(f"#<FLUENT {princ_to_string(fluent.name)}{value}>")
 
 
 def print_task(task, stream):
-    """The name and an address, which tells tasks of one name apart."""
+    """Print the name, and an address, which distinguishes tasks of the same name."""
     kind = "TOPLEVEL-TASK" if isinstance(task, ToplevelTask) else "TASK"
     print_unreadable(task, stream, f"{kind} {prin1_to_string(task.name)}", identity=True)
 

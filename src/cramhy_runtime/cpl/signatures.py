@@ -1,4 +1,4 @@
-"""What the functions of the plan language take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+"""Types of the arguments of the plan language. Only type checkers read this module: no code imports it when a program runs."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ Thunk = Callable[[], T]
 Same = Callable[[T, T], object]
 """A test whether a new value is the same as the old one."""
 Missed = Literal["NEVER", "ONCE", "ALWAYS"]
-"""What becomes of pulses that nobody saw; Lisp's keywords of these names do as well."""
+"""The treatment of pulses that were not read. Lisp's keywords of these names do as well."""
 Dependent = Net[object] | PulseFluent
 """A fluent that is told of the pulses of another."""
 PlanTree = AbstractTask[object] | TaskTreeNode | Symbol
-"""What a report is about: a task, a task tree or the name of a top-level."""
+"""The subject of a report: a task, a task tree or the name of a top-level."""
 Step = Task[object] | Tag
 Ordering = tuple[Step | ValueFluent[Any], Step]
 """(before, after): the step ``after`` begins when ``before`` is dead, or when the fluent ``before`` has been pulsed."""
 Clause = Callable[..., object]
-"""A function of a policy: its first argument is the `Store` of the use, the others are the parameters of the policy."""
+"""A function of a policy: its first argument is a `Store`, the others are the parameters of the policy."""
 
 
 class Request(Protocol):
-    """A function that asks a task to do something, and waits for that unless ``sync`` is false. Lisp may add methods to it."""
+    """A function that asks a task to do something, and waits for that unless ``sync`` is false. Lisp code may add methods to it."""
 
     def __call__(self, task: AbstractTask[object], *, reason: str | None = None, sync: bool = True) -> None: ...
     def method(self, *specializers: object) -> Callable[[Callable[..., object]], Callable[..., object]]: ...

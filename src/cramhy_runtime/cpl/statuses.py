@@ -11,7 +11,7 @@ ALIVE = (CREATED, RUNNING, WAITING, SUSPENDED)
 DEAD = (FAILED, SUCCEEDED, EVAPORATED)
 DONE = (SUCCEEDED, EVAPORATED)
 ALL = (CREATED, RUNNING, SUSPENDED, SUCCEEDED, FAILED, EVAPORATED)
-"""Those that occur, the type ``status-indicator``; ``:waiting`` is never given."""
+"""The statuses that occur, the type ``status-indicator``. No task is ever ``:waiting``."""
 
 NEXT = {CREATED: (RUNNING, EVAPORATED), RUNNING: (SUSPENDED, SUCCEEDED, FAILED, EVAPORATED), SUSPENDED: (RUNNING, EVAPORATED, FAILED)}
 

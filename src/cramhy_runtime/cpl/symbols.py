@@ -1,6 +1,6 @@
 """The Lisp packages of this room, made before anything interns a symbol in them.
 
-What they contain is declared in ``languages/commonlisp/faces/cpl/package.py``, when all the code is there.
+``languages/commonlisp/faces/cpl/package.py`` declares their contents when all the code is there.
 """
 
 from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym

@@ -1,11 +1,11 @@
 """Task variables: specials that a new task inherits from the task that starts it.
 
-An ordinary special has its global value in every new task, even in the body of ``top-level`` (cpl.md 3.13); a task variable
-starts with the parent's current value, or with what its init function makes of it. Assignments stay in the task.
+An ordinary special has its global value in every new task, even in the body of ``top-level`` (cpl.md 3.13). A task variable starts
+with the parent's current value, or with the value that its init function makes of it. Assignments stay in the task.
 
-The language's own task variables are bound in a new task only if its parent has them bound, so that a task without any costs
-nothing; an assignment to one of these outside of ``let`` is therefore seen by all tasks. ``*current-task*``, ``*current-path*``
-and ``*task-tree*`` are not bound at all: `TaskStateSymbol` computes them from the task that runs.
+The language's own task variables are bound in a new task only if its parent has them bound, so that a task without any costs nothing.
+For this reason all tasks see an assignment to one of these outside of ``let``. ``*current-task*``, ``*current-path*`` and
+``*task-tree*`` are not bound at all: `TaskStateSymbol` computes them from the task that runs.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _declared: dict[Symbol, Callable[..., Any] | None] = per_image({})  # the user's
 
 
 class TaskStateSymbol(Symbol):
-    """A variable whose value is computed by ``getter``, from the current task say; ``setter`` gets what is assigned, if there is one."""
+    """A variable whose value ``getter`` computes, for example from the current task. ``setter``, if there is one, gets assigned values."""
 
     __slots__ = ("getter", "setter")
 
@@ -50,14 +50,14 @@ class TaskStateSymbol(Symbol):
 
 
 def define_task_state(package, name, getter, setter=None):
-    """Make ``name`` in ``package`` a variable that reads the state of tasks. To be called before the name is interned."""
+    """Make ``name`` in ``package`` a variable that reads the state of tasks. Call this before the name is interned."""
     package = find_package(package)
     symbol = package.internal[name] = TaskStateSymbol(name, package, getter, setter)
     return symbol
 
 
 def inherit(symbol: Any, initial: object, within_plans: bool = False) -> Any:
-    """Declare one of the language's own task variables, with its global value; ``within_plans``: no top-level inherits its value."""
+    """Declare one of the language's own task variables, with its global value. With ``within_plans``, no top-level inherits its value."""
     _inherited.add(special(symbol, initial))
     if within_plans:
         _within_plans.add(symbol)
@@ -70,10 +70,11 @@ def define_task_variable(
     *,
     init_function: Callable[[AbstractTask[object], AbstractTask[object] | None, Any], object] | None = None,
 ) -> Symbol:
-    """``(define-task-variable name value)``: every task gets its own binding of ``symbol``, from its parent's value. Returns the symbol.
+    """``(define-task-variable name value)``: give every task its own binding of ``symbol``, with its parent's value. Returns the symbol.
 
-    symbol: one of Lisp, or a name, which becomes a symbol of its own. ``symbol.value`` is the value in the task that asks.
-    ``init_function(task, parent, value)`` computes the initial value in the parent; ``parent`` is nil for a top-level.
+    symbol: a Lisp symbol, or a name, which becomes a new symbol. ``symbol.value`` is the value in the task that asks.
+    ``init_function(task, parent, value)`` computes the initial value, in the parent; ``parent`` is nil for a top-level.
+    Source: cpl.md 3.13.
     """
     if isinstance(symbol, str):
         symbol = Symbol(symbol.upper(), None)
@@ -86,8 +87,8 @@ def define_task_variable(
 
 
 def inherited_bindings(here, task, parent):
-    """The bindings that the new ``task`` starts with, computed in ``here``, the task of the kernel that starts it; ``None`` when there
-    are none."""
+    """The bindings that the new ``task`` starts with, or ``None``. ``here`` is the task of the kernel that starts it, in which they are
+    computed."""
     current = here.dynamic
     if current is None and not _declared:
         return None
@@ -102,13 +103,14 @@ def inherited_bindings(here, task, parent):
 
 
 def bindings_of(stack):
+    """The bindings in ``stack``, a list of [symbol, value]."""
     bindings = Bindings()
     bindings.stack = stack
     return bindings
 
 
 def tv_closure(task, parent, continuation):
-    """A function that binds the task variables, as seen here and now, and calls ``continuation``."""
+    """A function that binds the task variables to their present values and calls ``continuation``."""
     bindings = inherited_bindings(kernel.current(), task, parent) or bindings_of([])
 
     def call(*arguments):

@@ -1,6 +1,6 @@
-"""Functions of one class of objects: what is given another one says so, as the readers of a structure do.
+"""Functions that take objects of one class only: they check that, as the readers of a structure do.
 
-From Python a wrong argument would end in an attribute that is not there; a Lisp user wants to know which value is not of which type.
+Without a check, a wrong argument would end in a missing attribute. A Lisp user wants to know which value is not of which type.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from cramhy_runtime.ground.data import Cons
 
 
 def of(cls):
-    """Let the decorated function of one argument refuse what is no ``cls`` with a type-error."""
+    """A decorator for functions of one argument: an argument that is not a ``cls`` is a type error."""
     expected = cls.lisp_name.partition("::")[2]
 
     def decorate(function):
@@ -26,7 +26,7 @@ def of(cls):
 
 
 def parts_of(path):
-    """The parts of a path, a Lisp list, the deepest first, as a Python list."""
+    """The parts of ``path``, a Lisp list, as a Python list, the deepest first. Other objects are a type error."""
     if path is not None and not isinstance(path, Cons):
         return type_error(path, "LIST", "\n(A path is a list of parts, the deepest first: ((tagged a) (fetch)).)")
     return list(path or ())

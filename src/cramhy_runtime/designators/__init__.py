@@ -1,4 +1,4 @@
-"""Designators: symbolic descriptions that are resolved when their meaning is needed. Usable from Python:
+"""Designators: symbolic descriptions that are resolved when their meaning is needed. From Python:
 
     from cramhy_runtime.designators import Motion, motion_grounding, reference
 
@@ -11,12 +11,14 @@
 
     reference(Driving(speed=1.5))        # ["drive", 1.5], or a DesignatorError where nothing is found
 
-The page docs/reasoning-in-python.md tells the whole story.
+The page docs/reasoning-in-python.md teaches it.
 
-``classes`` the kinds and their properties · ``protocol`` what one can ask of them · ``equating`` chains of designators for one
-thing · ``resolution``, ``locations`` from description to thing · ``hints`` why not · ``predicates`` for Prolog · ``plain_printing``.
-Python's face: ``python_kinds`` making and reading them, ``python_resolution``, ``python_grounding``. The Lisp face, with the notation
-``(a motion ...)``, is ``languages/commonlisp/faces/designators/package.py`` and its neighbours. Reference: designators.md.
+Where the parts are: ``classes`` the kinds and their properties · ``protocol`` generic functions for all · ``equating`` chains of
+designators for one thing · ``resolution``, ``locations`` from description to thing, ``clause_index`` its clauses by property ·
+``hints`` why it failed · ``predicates`` for Prolog · ``defaults`` the first facts, generators and validators · ``plain_printing`` ·
+``symbols`` the Lisp packages. For Python: ``python_kinds`` making and reading them, ``python_resolution``, ``python_grounding``, and
+for type checkers ``signatures``. The notation ``(a motion ...)`` for Lisp is in
+``languages/commonlisp/faces/designators/package.py`` and its neighbours. Reference: designators.md.
 """
 
 from cramhy_runtime import cpl as _cpl  # noqa: F401  the floor below comes first

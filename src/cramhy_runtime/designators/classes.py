@@ -1,10 +1,10 @@
 """Designators: descriptions of things that a plan talks about before it knows which thing it will be.
 
-A designator is a list of ``(key value)`` pairs, ``(a motion (type driving) (speed 5))``, that is *resolved* when its meaning is needed:
-a location to a pose, a motion to a command for a process module, an object to what perception saw. The list is kept as it was
+A designator is a list of ``(key value)`` pairs, ``(a motion (type driving) (speed 5))``. It is *resolved* when its meaning is needed:
+a location to a pose, a motion to a command for a process module, an object to the data of perception. The list is kept as it was
 given: ordered, with repeated keys, neither copied nor checked. Source: designators.md sections 2, 3 and 5.
 
-Designators are equal by identity; that two describe the same thing is said by equating them, see ``equating.py``.
+Designators are equal by identity. Equating two says that they describe the same thing, see ``equating.py``.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from cramhy_runtime.ground.conditions import error, type_error, warn
 from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.generic_functions import generic, when_methods_change
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_functions import generic, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 A, ALL = keyword("A"), keyword("ALL")
 DESCRIPTION = keyword("DESCRIPTION")
 IN_ERROR_TEXT = special(Symbol("*IN-ERROR-TEXT*"))
-"""Whether the text of an error is made, which must not become an error itself."""
+"""True while the text of an error is made, which must not cause an error itself."""
 _object_ids = itertools.count(1)
 _live = Cell({}, fresh=True)  # a weak reference to each living designator, in the order of their making: a run must not depend on addresses
 _classes = per_image({})  # type keyword -> class, or the symbol that is to name it
@@ -47,10 +47,10 @@ _makers = per_image({})  # type keyword -> the function of a description that ma
 
 
 class DesignatorError(SimpleError):
-    """Something about a designator is wrong, mostly that it cannot be resolved.
+    """An error of a ``designator``: mostly, it cannot be resolved.
 
-    ``hint`` is text for a student, why it could not be: ``None`` when there is nothing to say. It is found
-    when somebody asks: by ``told``, a function of no arguments, or by ``explain``.
+    ``hint`` is a text for a student that says why, or ``None``. It is computed on demand: by ``told``, a function of no arguments, or by
+    ``explain``.
     """
 
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR-ERROR"
@@ -125,6 +125,7 @@ class Designator:
 
     @property
     def object_id(self) -> object:
+        """A symbol for the thing. Equated designators have the same one."""
         if self._object_id is None:
             self._object_id = Symbol(f"OBJ-ID-{next(_object_ids)}")
         return self._object_id
@@ -138,46 +139,46 @@ class Designator:
 
 
 Designator._found = Designator.data  # type: ignore[attr-defined]
-"""The slot that holds what an effective designator stands for; kinds of designators may name another one."""
+"""The slot with the value of an effective designator. Kinds of designators may name another slot."""
 
 
 class DesignatorIdMixin:
-    """Designators with an ``object-id``; equated ones have the same."""
+    """Designators with an ``object-id``. Equated ones have the same."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR-ID-MIXIN"
 
 
 class EquateNotificationMixin:
-    """Designators that tell of being equated."""
+    """Designators that call callbacks when they are equated."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::EQUATE-NOTIFICATION-MIXIN"
 
 
 class ObjectDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
-    """An object in the world; perception sets its ``data``."""
+    """An object in the world. Perception sets its ``data``."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::OBJECT-DESIGNATOR"
 
 
 class ActionDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
-    """Something to be done; resolved by Prolog to a plan function and its arguments."""
+    """An action. Prolog resolves it to a plan function and its arguments."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::ACTION-DESIGNATOR"
 
 
 class MotionDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
-    """A movement; resolved by Prolog to a command for a process module."""
+    """A motion. Prolog resolves it to a command for a process module."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::MOTION-DESIGNATOR"
 
 
 class LocationDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
-    """A place; resolved by generators and validators."""
+    """A place. Generators and validators resolve it."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::LOCATION-DESIGNATOR"
@@ -185,14 +186,14 @@ class LocationDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin)
 
 
 class HumanDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin):
-    """A human; perception sets its ``data``."""
+    """A human. Perception sets its ``data``."""
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::HUMAN-DESIGNATOR"
 
 
 class ObjectDesignatorData:
-    """What perception knows of an object: meant for the ``data`` of an object designator. Unset slots are unbound."""
+    """The knowledge of perception about an object, for the ``data`` of an object designator. Unset slots are unbound."""
 
     lisp_name = "CRAM-DESIGNATORS::OBJECT-DESIGNATOR-DATA"
     initargs = {"POSE": "pose", "COLOR": "color", "OBJECT-IDENTIFIER": "object_identifier"}
@@ -203,9 +204,9 @@ class ObjectDesignatorData:
 
 
 def register_designator_class(type_, cls):
-    """Make `make_designator` accept the keyword ``type_``; a later registration replaces an earlier one.
+    """Let `make_designator` accept the keyword ``type_``. A later registration replaces an earlier one. Returns ``type_``.
 
-    ``cls`` may be a symbol that will name a class by the time that one is made.
+    ``cls`` may be a symbol if it names a class by the time the first designator of this type is made.
     """
     _classes[type_] = cls
     _makers.clear()
@@ -229,7 +230,7 @@ STANDARD = frozenset(_types)
 
 
 def type_keyword(designator):
-    """The keyword of its exact class, or ``None`` if that is not registered."""
+    """The keyword for the exact class of ``designator``, or ``None`` if that is not registered."""
     return _types.get(designator.__class__)
 
 
@@ -241,7 +242,7 @@ def new(cls, description):
 def _maker(cls):
     """The function of a description that makes a designator of the class ``cls`` as ``make-instance`` makes it.
 
-    It is the class itself, where users have no say in how it is made.
+    It is the class itself, if users have not customized how its objects are made.
     """
     if cls in STANDARD and not PORTS.classes.customized(cls):
         return cls
@@ -252,7 +253,7 @@ make_designator: MakeDesignator = generic(
     "DESIG::MAKE-DESIGNATOR",
     "(class description &optional parent)",
     documentation="""
-A new designator of the class that the keyword ``class`` stands for; equated to ``parent`` if there is one.""",
+A new designator of the class that the keyword ``class`` stands for. It is equated to ``parent`` if there is one.""",
 )
 
 
@@ -301,7 +302,7 @@ def _undefined_type(type_):
 
 
 def make_all_designator(class_: Keyword, description: Cons | None = None) -> Designator:
-    """What the macro ``all`` makes: a designator with the quantifier ``:all``."""
+    """A new designator with the quantifier ``:all``, as the macro ``all`` makes it. An unknown class is an error (designators.md 3.2)."""
     designator = make_designator(class_, description)
     designator.quantifier = ALL
     return designator
@@ -313,6 +314,7 @@ def get_all_designators():
 
 
 def living():
+    """All living designators, the oldest first, as a Python list."""
     return [designator for reference in list(_live.value) if (designator := reference()) is not None]
 
 
@@ -320,7 +322,7 @@ def living():
 
 
 def merge_desig_descriptions(designator, new_description):
-    """``new_description`` with the old pairs whose keys it lacks in front, reversed, one per key (designators.md 3.3)."""
+    """``new_description``, with the old pairs for missing keys in front of it, reversed, one per key (designators.md 3.3)."""
     merged, keys = new_description, [pair.car for pair in pairs(new_description)]
     for pair in pairs_of(designator):
         if not any(key is pair.car for key in keys):
@@ -330,17 +332,17 @@ def merge_desig_descriptions(designator, new_description):
 
 
 def copy_designator(old_designator, *, new_description=None):
-    """A new, unequated designator of the same type with the merged description."""
+    """A new designator of the same type with the merged description. It is not equated to the old one."""
     return make_designator(type_keyword(old_designator), merge_desig_descriptions(old_designator, new_description))
 
 
 def extend_designator_properties(designator, property_extension):
-    """A new, unequated designator of the same class, ``property_extension`` appended to the description."""
+    """A new designator of the same class, with ``property_extension`` at the end of the description. It is not equated to the old one."""
     return new(designator.__class__, list_from(list(pairs_of(designator)), property_extension))
 
 
 def update_designator_properties(new_properties, old_properties):
-    """``old_properties`` with each new one in front, in place of all of its key."""
+    """``old_properties`` with each new property in front, and without the old ones of its key."""
     result = list(pairs(old_properties))
     for pair in pairs(new_properties):
         result = [pair, *(old for old in result if old.car is not pair.car)]
@@ -348,7 +350,10 @@ def update_designator_properties(new_properties, old_properties):
 
 
 def make_effective_designator(parent, *, new_properties=None, data_object=None, timestamp=None):
-    """A new, unequated designator of the class of ``parent`` that is effective and stands for ``data_object``."""
+    """A new designator of the class of ``parent`` that is effective and stands for ``data_object``. It is not equated to ``parent``.
+
+    timestamp: seconds; the default is the present time.
+    """
     designator = new(parent.__class__, new_properties if new_properties is not None else parent.description)
     designator.data = data_object
     designator.effective = True
@@ -360,7 +365,7 @@ def make_effective_designator(parent, *, new_properties=None, data_object=None, 
 
 
 def check_key(key):
-    """Warn of a property name that is an ordinary symbol: keys are keywords."""
+    """Warn if a property name is an ordinary symbol: keys are keywords."""
     if isinstance(key, Keyword) or not isinstance(key, Symbol) or key.package is None or key.package is DESIG_PROPS:
         return
     warn(
@@ -373,7 +378,7 @@ def check_key(key):
 
 
 def pairs(description):
-    """The entries of a description, which must be lists; another one is a type-error, as in the original."""
+    """Iterate over the entries of a description, which must be lists. Other entries are a type-error, as in the original."""
     if description is not None and not isinstance(description, Cons):
         type_error(description, "LIST")
     for entry in description or ():
@@ -381,14 +386,14 @@ def pairs(description):
 
 
 def pairs_of(designator):
-    """The entries of its description."""
+    """Iterate over the entries of the description of ``designator``."""
     if not isinstance(designator, Designator):
         no_applicable_method("CRAM-DESIGNATORS:DESCRIPTION", 1, designator)
     return pairs(designator.description)
 
 
 def value_of(pair):
-    """The second element of a property; nil if it has none."""
+    """The second element of a property, or nil."""
     rest = pair.cdr
     if isinstance(rest, Cons):
         return rest.car
@@ -396,7 +401,10 @@ def value_of(pair):
 
 
 def desig_prop_value(desig: Designator | None, prop_name: Symbol) -> Any:
-    """The value of the first pair with the key ``prop_name``; nil if there is none, or no designator."""
+    """The value of the first pair with the key ``prop_name``, a keyword. It is nil if there is none, or if ``desig`` is nil.
+
+    A symbol that is not a keyword is a warning. Source: designators.md section 5.
+    """
     if prop_name.__class__ is not Keyword:
         check_key(prop_name)
     if desig is not None:
@@ -407,6 +415,6 @@ def desig_prop_value(desig: Designator | None, prop_name: Symbol) -> Any:
 
 
 def desig_prop_values(designator: Designator, property_name: Symbol) -> Cons | None:
-    """The values of all pairs with the key ``property_name``, in order."""
+    """The values of all pairs with the key ``property_name``, in order, as a Lisp list. Source: designators.md section 5."""
     check_key(property_name)
     return list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is property_name])

@@ -1,25 +1,25 @@
 """An index of clauses by the properties that they ask for.
 
-The rules by which designators are ground all have one form:
+All rules that ground designators have one form:
 
     (<- (motion-grounding ?desig (drive ?motion))
       (desig-prop ?desig (:type :driving))
       (desig-prop ?desig (:speed ?speed))
       ...
 
-so a designator without a speed, or of another type, fails them at once. Prolog indexes clauses by their first argument, and that is
+so they fail at once for a designator without a speed, or of another type. Prolog indexes clauses by their first argument, but that is
 the same variable everywhere; here the properties are the index. When the first argument of a goal is a designator, the clauses whose
-first goals ask for a key that it lacks, or for another type, are left out before anything is proved. In those that are left these
-goals become arguments: what stands above is proved as if it were
+first goals ask for a key that it lacks, or for another type, are left out before anything is proved. In the other clauses these goals
+become arguments: the clause above is proved as if it were
 
     (<- (motion-grounding ?desig (drive ?motion) :driving ?speed)
       ...
 
-for a goal that brings the values along. That is compiled once for each set of keys and type that designators have.
+for a goal that has the values as arguments. This is compiled once for each set of keys and type that designators have.
 
-Nobody can tell the difference but by the clock: only goals ``desig-prop`` with a constant key at the very beginning of a body count,
-which do nothing but fail, and the clauses that are left are tried in their order. For a designator with two properties of one key
-everything is proved as it is written; so it is when users have given ``desig-prop`` itself clauses, or trace it.
+The result is the same, only faster: the index uses only goals ``desig-prop`` with a constant key at the very beginning of a body, which
+can do nothing but fail, and the other clauses are tried in their order. Everything is proved as it is written for a designator with two
+properties of one key, and also when users have given ``desig-prop`` itself clauses, or trace it.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ from .symbols import sym
 DESIG_PROP = sym("DESIG::DESIG-PROP")
 TYPE = keyword("TYPE")
 _SHAPES = 1000
-"""Shapes of designators that an index remembers the clauses for."""
+"""An index remembers the clauses for so many shapes of designators."""
 
 
 def index_by_properties(functor, check=None):
-    """Let the clauses of ``functor`` be looked up by the designator that is the first argument of its goals.
+    """Look up the clauses of ``functor`` by the designator that is the first argument of its goals.
 
     ``check(machine, step)`` is called before each goal while ``*break-on-lisp-errors*`` is true.
     """
@@ -98,7 +98,7 @@ class ClauseIndex:
         return code(m, (code, step[1], designator, *step[3:], *pick(values)))
 
     def _for_shape(self, shape):
-        """(the function that takes the arguments out of the values by their keys, the call function)"""
+        """(A function that picks the arguments from the dict of values, the call function)."""
         type_, keys = shape[0], shape[1:]
         rules = [rule for rule in self.rules if rule.fits(type_, keys)]
         if not rules:
@@ -124,7 +124,7 @@ def _failing(m, step):
 
 
 class _Rule:
-    """A clause, and what it asks of its designator before anything else: ``values``, the patterns by their keys."""
+    """A clause. ``values`` are the properties for which its first goals ask: key → pattern."""
 
     def __init__(self, clause):
         self.clause, self.values = clause, {}
@@ -139,14 +139,14 @@ class _Rule:
                 del self.goals[0]
 
     def fits(self, type_, keys):
-        """Whether a designator of that type, with these keys, can satisfy it."""
+        """Whether a designator of that type, with these keys, can satisfy the clause."""
         if not all(key in keys for key in self.values):
             return False
         wanted = self.values.get(TYPE)
         return not isinstance(wanted, Keyword) or wanted is type_
 
     def with_arguments(self, keys):
-        """The clause with the values of ``keys`` as further arguments, in the place of the goals that ask for them."""
+        """The clause with the values of ``keys`` as further arguments, without the goals that ask for them."""
         head = list_from([*self.clause.head, *(self.values.get(key, ANONYMOUS) for key in keys)])
         return Clause(head, self.goals or None, self.clause.group)
 

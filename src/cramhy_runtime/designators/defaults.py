@@ -1,4 +1,4 @@
-"""What every designator has from the start: Prolog's predicates about designators, and the generators and validators of locations."""
+"""The predicates about designators, and CRAM's own generators and validators of locations, which are there from the start."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Equating: saying that two designators describe the same thing.
 
-Equated designators form a chain from the oldest to the youngest. A new member goes behind the youngest, not behind the one it was
-equated to; if it brings ancestors of its own, these go in front of the oldest. All members get the object id of the oldest, and
-their callbacks are told. Source: designators.md section 6.
+Equated designators form a chain from the oldest to the youngest. A new member goes behind the youngest, not behind the one to which it
+was equated. If it has ancestors of its own, they go in front of the oldest. All members get the object id of the oldest, and their
+callbacks are called. Source: designators.md section 6.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from cramhy_runtime.ground.conditions import error, handler_case, type_error
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import is_symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.lazy_lists import from_iterator
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 on_equate_designators = Hook("CUT::ON-EQUATE-DESIGNATORS", "(successor parent)")
 desig_equal: EqualityOfTwo = generic("DESIG::DESIG-EQUAL", "(desig-1 desig-2)", documentation="Whether both are designators of one chain.")
-first_desig: OfOne = generic("DESIG::FIRST-DESIG", "(desig)", documentation="The oldest of its chain.")
-current_desig: OfOne = generic("DESIG::CURRENT-DESIG", "(desig)", documentation="The youngest of its chain; nil for nil.")
+first_desig: OfOne = generic("DESIG::FIRST-DESIG", "(desig)", documentation="The oldest designator of its chain.")
+current_desig: OfOne = generic("DESIG::CURRENT-DESIG", "(desig)", documentation="The youngest designator of its chain; nil for nil.")
 
 
 @equate.method(Designator, Designator)
@@ -52,7 +52,7 @@ def _equate(parent, successor):
 
 
 def _tell(callbacks, successor):
-    """Call all ``callbacks``: an exit out of one leaves when the others have been told."""
+    """Call all ``callbacks``. An exit from one of them goes on when the others have been called."""
     for index, callback in enumerate(callbacks):
         try:
             callback(successor)
@@ -62,7 +62,7 @@ def _tell(callbacks, successor):
 
 
 def chain(designator):
-    """The members of its chain, oldest first, as a Python list."""
+    """The members of the chain of ``designator``, oldest first, as a Python list."""
     members, member = [], oldest(designator)
     while member is not None:
         members.append(member)
@@ -82,7 +82,7 @@ def _same_chain(first, second):
 
 @first_desig.method(Designator)
 def oldest(designator):
-    """The oldest of its chain."""
+    """The oldest member of the chain of ``designator``."""
     while designator.parent is not None:
         designator = designator.parent
     return designator
@@ -90,7 +90,7 @@ def oldest(designator):
 
 @current_desig.method(Designator)
 def youngest(designator):
-    """The youngest of its chain."""
+    """The youngest member of the chain of ``designator``."""
     while designator.successor is not None:
         designator = designator.successor
     return designator
@@ -102,7 +102,7 @@ def _no_designator(designator):
 
 
 def newest_effective_designator(desig):
-    """The youngest effective member of its chain, or nil."""
+    """The youngest effective member of the chain of ``desig``, or nil."""
     member = current_desig(desig)
     while member is not None and member.effective is None:
         member = member.parent
@@ -110,14 +110,17 @@ def newest_effective_designator(desig):
 
 
 def get_equal_designators(d):
-    """The others of its chain: ancestors oldest first, then successors youngest first."""
+    """The other members of the chain of ``d``: its ancestors oldest first, then its successors youngest first."""
     members = chain(d)
     here = members.index(d)
     return list_from(members[:here] + members[:here:-1])
 
 
 def designator_solutions(desig, from_root=None):
-    """The lazy list of its reference (or that of the oldest) and those of the solutions after it; empty if it has none."""
+    """The lazy list of the references of ``desig`` and of its next solutions; empty if it has none.
+
+    With ``from_root``, it begins with the oldest member of the chain.
+    """
 
     def solutions():
         member = oldest(desig) if from_root is not None else desig
@@ -144,7 +147,7 @@ unregister_equate_callback = generic(
     "DESIG::UNREGISTER-EQUATE-CALLBACK",
     "(designator callback)",
     documentation="""
-Forget ``callback``; an unknown one is ignored.""",
+Stop calling ``callback``. An unknown one is ignored.""",
 )
 
 
@@ -166,7 +169,7 @@ def _unregister_equate_callback(designator, callback):
 
 
 def with_equate_callback(designator, callback, body):
-    """Values of ``body()`` while ``callback`` is registered."""
+    """Call ``body()`` while ``callback`` is registered, and return its values."""
     with told_of_equating(designator, callback):
         return body()
 

@@ -1,8 +1,8 @@
-"""Why a designator could not be resolved, in words for a student.
+"""Hints for a student: why a designator could not be resolved.
 
-A motion or action is resolved by the clauses of ``motion-grounding`` or ``action-grounding``; the hint explains the proof that failed, as
-``(explain designator)`` does: the clause that came furthest, and the property that it misses. It is computed only when somebody looks
-at the error, and proves nothing that could do something a second time: goals that call Lisp are left out.
+The clauses of ``motion-grounding`` or ``action-grounding`` resolve a motion or action. The hint explains the failed proof as
+``(explain designator)`` does: it shows the clause that came furthest, and the property that it misses. It is computed only when the error
+is shown. It proves no goals that might change something a second time: goals that call Lisp are left out.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _BY_PERCEPTION = "{} designator stands for something only after perception has f
 
 
 def hint(designator):
-    """A text of one or more lines, or ``None`` when there is nothing to say."""
+    """A text of one or more lines that says why ``designator`` cannot be resolved, or ``None``."""
     if isinstance(designator, ObjectDesignator):
         return _BY_PERCEPTION.format("An object", "the object")
     if isinstance(designator, HumanDesignator):
@@ -101,7 +101,7 @@ for _name in ("DESIG::MOTION-GROUNDING", "DESIG::ACTION-GROUNDING", "DESIG::LOCA
 
 
 def _no_designator(term):
-    """Why ``term`` is not described, or ``None`` when it is a designator."""
+    """A reason why ``term`` has no properties, or ``None`` if it is a designator."""
     found = deref(term)
     if isinstance(found, Designator):
         return None

@@ -1,9 +1,9 @@
 """Generators and validators: how location designators find places.
 
-A generator takes a designator and gives a lazy, possibly endless list of candidates; the lists of all generators are joined in the
-order of their priorities. Each candidate is shown to the validators. Everything happens on demand: the first solution costs as many
-candidates as it takes, no more. After ``*location-generator-max-retries*`` candidates refused in a row, and one more, the search
-ends. Source: designators.md section 8.
+A generator takes a designator and returns a lazy, possibly endless list of candidates. The lists of all generators are joined in the
+order of their priorities, and the validators judge each candidate. Everything happens on demand: the search for a solution makes no more
+candidates than it needs. It ends when the validators refuse ``*location-generator-max-retries*`` candidates and one more in a row.
+Source: designators.md section 8.
 """
 
 from __future__ import annotations
@@ -34,13 +34,14 @@ FILTERS = inherit(sym("DESIG::*LOCATION-SOLUTION-FILTERS*"), None)
 
 
 class Registry:
-    """Functions by name with a priority; the name is a symbol and means the function that it has when it is called."""
+    """Functions by name, with a priority. The name is a symbol, whose function is looked up at each call."""
 
     def __init__(self):
         self.entries = []  # (priority, name), sorted; of equal priorities the newest first
         self.disabled = set()
 
     def register(self, priority, name):
+        """Enter ``name`` with ``priority``, an integer. A name that is entered already moves. Returns the name."""
         if not is_symbol(name) or name is None:
             _refuse(
                 "The name of a function is wanted, not ~s.",
@@ -63,16 +64,17 @@ class Registry:
         return name
 
     def delete(self, name, forget=True):
+        """Remove ``name``. With ``forget``, forget too that it is disabled."""
         self.entries = [entry for entry in self.entries if entry[1] is not name]
         if forget:
             self.disabled.discard(name)
 
     def all(self):
-        """All functions by ascending priority, disabled ones too, as a Lisp list; the name where there is no function yet."""
+        """All functions by ascending priority, disabled ones too, as a Lisp list. A name without a function stands for itself."""
         return list_from([name if name.function.__class__ is UndefinedFunction else name.function for _, name in self.entries])
 
     def active(self):
-        """The names of those that are not disabled."""
+        """The names that are not disabled, by ascending priority."""
         if not self.disabled:
             return [name for _, name in self.entries]
         return [name for _, name in self.entries if name not in self.disabled]
@@ -87,49 +89,63 @@ validators = per_image(Registry())
 
 
 def register_location_generator(priority, name, documentation=None):
-    """Call the function named ``name`` for candidates; lower priorities come first."""
+    """Ask the function named ``name`` for candidates from now on; it is called with the designator. Returns ``name``.
+
+    priority: an integer; lower priorities come first. Another priority or name is a type error. Source: designators.md 8.1.
+    """
     return generators.register(priority, name)
 
 
 def register_location_validation_function(priority, name, documentation=None):
-    """Show candidates to the function named ``name``, called with the designator and the candidate."""
+    """Let the function named ``name`` judge candidates; it is called with the designator and the candidate. Returns ``name``.
+
+    priority: an integer; lower priorities come first. Another priority or name is a type error. Source: designators.md 8.1.
+    """
     return validators.register(priority, name)
 
 
 def list_location_generators():
+    """All generators, a Lisp list of functions, by ascending priority."""
     return generators.all()
 
 
 def list_location_validation_functions():
+    """All validators, a Lisp list of functions, by ascending priority."""
     return validators.all()
 
 
 def delete_location_generator_function(function_name):
+    """Remove a generator."""
     generators.delete(function_name)
 
 
 def delete_location_validation_function(function_name):
+    """Remove a validator."""
     validators.delete(function_name)
 
 
 def disable_location_generator_function(function_name):
+    """Do not ask a generator until it is enabled."""
     generators.disabled.add(function_name)
 
 
 def enable_location_generator_function(function_name):
+    """Ask a disabled generator again."""
     generators.disabled.discard(function_name)
 
 
 def disable_location_validation_function(function_name):
+    """Do not ask a validator until it is enabled."""
     validators.disabled.add(function_name)
 
 
 def enable_location_validation_function(function_name):
+    """Ask a disabled validator again."""
     validators.disabled.discard(function_name)
 
 
 def location_solutions(designator):
-    """The lazy list of valid candidates for ``designator``; the first is searched for now. Nil if there is none."""
+    """The lazy list of valid candidates for ``designator``, or nil. The first is searched for now."""
     search = Search(designator)
     solutions = search.rest()
     if solutions is None:
@@ -138,15 +154,15 @@ def location_solutions(designator):
 
 
 def why_no_place(designator):
-    """The function that tells why the last search for ``designator`` found nothing."""
+    """A function that makes a text: why the last search for ``designator`` found no place."""
     return designator.__dict__.pop("search").account
 
 
 class Search:
     """The search for the places of a designator, and of those that follow it in its chain.
 
-    It remembers where it stands. So a generator or validator that fails, or a task that is evaporated in one, leaves it where it
-    is, and whoever asks again goes on with the same candidate.
+    It remembers its state. So when a generator or validator fails, or its task is evaporated, the next search goes on with the same
+    candidate.
     """
 
     def __init__(self, designator):
@@ -158,7 +174,7 @@ class Search:
         self.drawn, self.refusal, self.over = {}, None, False
 
     def rest(self):
-        """The lazy list of the valid candidates to come, the first one searched for now."""
+        """The lazy list of the valid candidates that are left, or nil. The first is searched for now."""
         while not self.over and self._to_next_candidate():
             candidate = self.cell.car
             valid, *by = _judge(self.designator, candidate)
@@ -176,7 +192,7 @@ class Search:
         return None
 
     def _to_next_candidate(self):
-        """Go on to the next candidate, unless the one at hand is not judged yet. False if there is none."""
+        """Go on to the next candidate, unless the present one is not judged yet. Returns False if there is none."""
         while True:
             if self.cell is None:
                 if not self.names:
@@ -207,7 +223,7 @@ class Search:
         return given or None
 
     def account(self):
-        """What was searched, and what became of it."""
+        """A text about the search: which generators gave candidates, and why these were refused."""
         asked = [name for _, name in generators.entries if name not in generators.disabled]
         if not self.drawn:
             return (
@@ -259,9 +275,10 @@ def _verdict(name, designator, solution):
 
 
 def validate_location_designator_solution(designator, solution):
-    """Whether the validators let ``solution`` pass: somebody accepts it or nobody minds (designators.md 8.3).
+    """Whether the validators let ``solution`` pass: one accepts it, or all answer ``:unknown`` (designators.md 8.3).
 
-    Verdicts are keywords. Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses at once, ``t`` included.
+    Verdicts are keywords. Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses at once, also ``t``. If ``designator`` is
+    not a location designator, it is a type error.
     """
     if not isinstance(designator, LocationDesignator):
         return type_error(designator, "LOCATION-DESIGNATOR")
@@ -305,7 +322,7 @@ def location_prolog_generator(designator):
 
 
 def location_prolog_validator(designator, solution):
-    """If Prolog knows places for the designator, these are accepted and others are not wanted."""
+    """Accept the places that Prolog knows for the designator. If it knows some, answer ``:maybe-reject`` for others."""
     known = False
     for (value,) in ask(LOCATION_GROUNDING, designator, Var()):
         known = True
@@ -315,7 +332,7 @@ def location_prolog_validator(designator, solution):
 
 
 def filter_solution(designator, solution):
-    """The validator behind `with_designator_solution_filter`: all filters in force must be true."""
+    """The validator of `with_designator_solution_filter`: all filters in force must be true."""
     filters = FILTERS.value
     if filters is None:
         return UNKNOWN
@@ -326,11 +343,14 @@ _IDLE = {
     sym("DESIG::FILTER-SOLUTION"): lambda function: function is filter_solution and FILTERS.value is None,
     sym("DESIG::LOCATION-PROLOG-VALIDATOR"): lambda function: function is location_prolog_validator and not extended(LOCATION_GROUNDING),
 }
-"""Validators of CRAM -> whether the function has nothing to say now, so that it need not be asked."""
+"""Validators of CRAM → a test whether the function would answer ``:unknown`` now, so that it need not be called."""
 
 
 def with_designator_solution_filter(predicate, body):
-    """Values of ``body()`` while only solutions that satisfy ``predicate`` are accepted. What was examined stays decided."""
+    """Call ``body()`` and return its values. Meanwhile only solutions that satisfy ``predicate`` are accepted.
+
+    Candidates that were judged before are not judged again. Source: designators.md 8.4.
+    """
     with binding(FILTERS, Cons(predicate, FILTERS.value)):
         return body()
 
@@ -341,7 +361,7 @@ def next_filtered_designator_solution(designator, filter):
 
 
 def register_defaults():
-    """Register CRAM's own generator and validators under their symbols, which must have their functions."""
+    """Register CRAM's own generator and validators under their symbols. The symbols get their functions elsewhere."""
     register_location_generator(10, sym("DESIG::LOCATION-PROLOG-GENERATOR"))
     register_location_validation_function(1, sym("DESIG::FILTER-SOLUTION"))
     register_location_validation_function(10, sym("DESIG::LOCATION-PROLOG-VALIDATOR"))

@@ -1,4 +1,4 @@
-"""How a designator looks where no language is started: ``#<A MOTION`` and a line ``    (KEY VALUE)`` per property."""
+"""How a designator looks when no language is loaded: ``#<A MOTION`` and a line ``    (KEY VALUE)`` per property."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def _text(thing):
 
 
 def print_designator(designator, stream):
-    """Print the quantifier, the class and the properties; keys and values that are symbols go without colon."""
+    """Print the quantifier, the class and the properties. Keys and values that are symbols are printed without colon."""
     stream.write(f"#<{_text(designator.quantifier)} {_text(type_keyword(designator))}")
     for entry in designator.description or ():
         if isinstance(entry, Cons):

@@ -1,11 +1,11 @@
 """The predicates of designators, for Prolog (designators.md section 9).
 
-``desig-prop`` is the one that plans use; the others look at slots, at the chain of equated designators, and at solutions. Repaired:
-``effective-designator`` tests the designator it is given; the forms with a time, ``(desig-prop d (key value) time)`` and
-``(desig-value d value time)``, give what holds of each designator of the chain once.
+Plans use ``desig-prop``; the others look at slots, at the chain of equated designators, and at solutions. Repaired:
+``effective-designator`` tests the designator that it is given. The forms with a time, ``(desig-prop d (key value) time)`` and
+``(desig-value d value time)``, give the facts about each designator of the chain once.
 
-``action-grounding``, ``motion-grounding`` and ``location-grounding`` are defined here, so that asking one that nobody has extended
-warns of nothing; their default clauses only check, with ``*break-on-lisp-errors*``, that they are asked about the right thing.
+``action-grounding``, ``motion-grounding`` and ``location-grounding`` are defined here, so a goal of one without clauses causes no warning.
+Their default clauses only check, with ``*break-on-lisp-errors*``, the class of the designator.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def _designator(m, term):
 
 
 def _members(m, desig):
-    """The designator that the term ``desig`` is, then the others of its chain."""
+    """The designator in the term ``desig``, then the others of its chain."""
     designator = _designator(m, desig)
     return [] if designator is None else [designator, *(other for other in chain(designator) if other is not designator)]
 
@@ -41,7 +41,7 @@ def _call(name, *arguments):
 
 @step_predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS", arity=2)
 def desig_prop(m, step):
-    """``(desig-prop d (key value))``: the matching properties, in order. Nearly always the key is a keyword, as written."""
+    """``(desig-prop d (key value))``: the matching properties, in order. Nearly always the key is written as a keyword."""
     designator, pair = step[2], step[3]
     if designator.__class__ is Var:
         designator = deref(designator)
@@ -102,7 +102,7 @@ def _pairs(designator):
 
 @predicate("DESIG::DESIG-PROP", group="DESIG::DESIGNATOR-ACCESSORS")
 def desig_prop_at(m, desig, pair, time):
-    """``(desig-prop d (key value) time)``: those of the designator, then of the others of its chain, each with its time."""
+    """``(desig-prop d (key value) time)``: the properties of the designator, then of the others of its chain, each with its time."""
     for member in _members(m, desig):
         yield from _properties(m, member, pair, time, member.timestamp)
 
@@ -132,7 +132,7 @@ _slot("DESIG-VALUE", "data")
 
 @predicate("DESIG::DESIG-VALUE", group="DESIG::DESIGNATOR-ACCESSORS")
 def desig_value_at(m, desig, value, time):
-    """``(desig-value d value time)``: of the designator, then of the others of its chain, each with its time."""
+    """``(desig-value d value time)``: the data of the designator, then of the others of its chain, each with its time."""
     for member in _members(m, desig):
         if m.unify(value, member.data, time, member.timestamp):
             yield
@@ -140,13 +140,14 @@ def desig_value_at(m, desig, value, time):
 
 @test("DESIG::EFFECTIVE-DESIGNATOR", group="DESIG::DESIGNATORS")
 def effective_designator(m, desig):
+    """``(effective-designator d)``: whether the designator has been resolved."""
     designator = _designator(m, desig)
     return designator is not None and designator.effective is not None
 
 
 @test("DESIG::DESIG-REFERENCE", group="DESIG::DESIGNATORS")
 def desig_reference(m, desig, value):
-    """``(desig-reference d ref)``: one that cannot be resolved gives a warning and fails."""
+    """``(desig-reference d ref)``: the reference. A designator that cannot be resolved causes a warning, and the goal fails."""
     designator = _designator(m, desig)
     if designator is None:
         return False
@@ -156,6 +157,7 @@ def desig_reference(m, desig, value):
 
 @test("DESIG::DESIGNATOR-GROUNDINGS", group="DESIG::DESIGNATORS")
 def designator_groundings(m, desig, solutions):
+    """``(designator-groundings d list)``: the lazy list of its references."""
     designator = _designator(m, desig)
     found = designator_solutions(designator) if designator is not None else None
     return found is not None and m.unify(solutions, found)
@@ -163,6 +165,7 @@ def designator_groundings(m, desig, solutions):
 
 @test("DESIG::EQUATED-DESIGS", group="DESIG::DESIGNATORS")
 def equated_desigs(m, desig, others):
+    """``(equated-desigs d list)``: the other designators of its chain."""
     designator = _designator(m, desig)
     return designator is not None and m.unify(others, get_equal_designators(designator))
 
@@ -185,13 +188,14 @@ def _candidates(term):
 
 @test("DESIG::DESIG-CLASS", group="DESIG::DESIGNATORS")
 def desig_class(m, desig, type_):
+    """``(desig-class d class)``: the keyword of its class."""
     designator = _designator(m, desig)
     return designator is not None and type_keyword(designator) is not None and m.unify(type_, type_keyword(designator))
 
 
 @predicate("DESIG::DESIGNATOR", group="DESIG::DESIGNATORS")
 def designator(m, first, *rest):
-    """``(designator d)``: a type test or all living ones; ``(designator class description d)``: makes one or takes it apart."""
+    """``(designator d)``: a type test, or all living designators. ``(designator class description d)`` makes one or takes it apart."""
     if not rest:
         for found in _candidates(first):
             if m.unify(first, found):
@@ -210,12 +214,14 @@ def designator(m, first, *rest):
 
 @test("DESIG::CURRENT-DESIGNATOR", group="DESIG::DESIGNATORS")
 def current_designator(m, desig, current):
+    """``(current-designator d current)``: the youngest designator of its chain."""
     found = _designator(m, desig)
     return found is not None and m.unify(current, youngest(found))
 
 
 @test("DESIG::NEWEST-EFFECTIVE-DESIGNATOR", group="DESIG::DESIGNATORS")
 def newest_effective(m, desig, effective):
+    """``(newest-effective-designator d effective)``: the youngest effective designator of its chain, or nil."""
     found = _designator(m, desig)
     return found is not None and m.unify(effective, newest_effective_designator(found))
 
@@ -240,7 +246,7 @@ built_in_group(sym("DESIG::LOCATION-DESIGNATORS"), sym("DESIG::DESIG-LOC"))
 
 
 def _grounding(group, functor, cls):
-    """Define a grounding predicate, without clauses but the default one, which checks, if wanted, and fails."""
+    """Define a grounding predicate with only the default clause, which checks the class of the designator on demand, and fails."""
     functor = sym(f"DESIG::{functor}")
     built_in_group(sym(f"DESIG::{group}"), functor)
 

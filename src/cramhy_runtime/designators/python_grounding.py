@@ -1,4 +1,4 @@
-"""Grounding written in Python: decorators for functions that say what a designator stands for.
+"""Grounding written in Python: decorators for functions that resolve designators.
 
     @motion_grounding(Driving)
     def drive_command(motion):
@@ -10,16 +10,16 @@
 
     @location_generator(On, priority=5)
     def on_the_table(place):
-        yield from grid(place.table)                # candidates, as many as are wanted
+        yield from grid(place.table)                # candidates, as many as are asked for
 
     @location_validator(priority=5)
     def reachable(place, candidate):
-        return distance(candidate) < 1.2            # True accepts, False refuses, None does not mind
+        return distance(candidate) < 1.2            # True accepts, False refuses, None leaves it to others
 
-The class says for which designators the function is asked; without one it is asked for all of the kind. A motion or action grounding is
-a rule of a fact group of its own, so that rules of Lisp, their order and the hints of errors count it as one of theirs; generators and
-validators are registered with their priority. A second definition of the same name in the same module replaces the first one, and
-`forget` takes a function out again. The functions stay what they are. Source: designators.md 7.1 and 8.
+The class says for which designators the function is called; without a class it is called for all of the kind. A motion or action
+grounding is a rule of a fact group of its own, so it works together with rules of Lisp, in order, and hints in errors show it.
+Generators and validators are registered with their priority. A second definition of the same name in the same module replaces the first
+one, and `forget` removes a function again. The decorators return the functions unchanged. Source: designators.md 7.1 and 8.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ import_predicates(
 
 
 class Grounding:
-    """A function in Python that grounds designators, as it stands in the rule."""
+    """A Python function that grounds designators, as an object in its rule."""
 
     def __init__(self, function: Callable[..., Any], what: str):
         self.function, self.what = function, what
@@ -77,20 +77,20 @@ class Grounding:
 
     @property
     def place(self) -> str:
-        """Where the function stands."""
+        """The place of the function in its file, in parentheses."""
         code = getattr(self.function, "__code__", None)
         return f" ({code.co_filename}:{code.co_firstlineno})" if code is not None else ""
 
     @property
     def where(self) -> str:
-        """What it is, and its place, for messages."""
+        """Its kind, name and place, for messages."""
         return f"the {self.what} {self.name}{self.place}"
 
     def __repr__(self) -> str:
         return f"<{self.where}>"
 
     def called(self, designator: Any, step: Callable[[], Any]) -> Any:
-        """``step()``, whose exceptions are told for which designator they came up."""
+        """The result of ``step()``. Its exceptions get a note that names the designator."""
         try:
             return step()
         except Exception as problem:
@@ -100,7 +100,7 @@ class Grounding:
             raise
 
     def solutions(self, designator: Any) -> Iterator[Any]:
-        """What the function gives for ``designator``, one after the other, as Lisp data."""
+        """Iterate over the solutions of the function for ``designator``, as Lisp data."""
         result = self.called(designator, lambda: self.function(designator))
         if result is None:
             return
@@ -115,7 +115,7 @@ class Grounding:
                 yield self.called(designator, partial(self.lisp_solution, value))
 
     def lisp_solution(self, value: Any) -> Any:
-        """``value`` as the rest of CRAM wants it: a command of an action is a list."""
+        """``value`` as Lisp data. The command for an action becomes a list; without a plan function it is a TypeError."""
         if self.what != "action grounding":
             return to_lisp(value)
         command = value if isinstance(value, (tuple, list)) and value else [value]
@@ -136,7 +136,7 @@ def one_line(designator: Any) -> str:
 
 @natives.predicate("CRAMHY::PYTHON-GROUNDING")
 def python_grounding(m: Any, grounding: Any, designator: Any, solution: Any) -> Iterator[None]:
-    """``(python-grounding function designator ?solution)``: what the function of a `Grounding` gives."""
+    """``(python-grounding function designator ?solution)``: the solutions of the function of a `Grounding`."""
     for value in deref(grounding).solutions(deref(designator)):
         if m.unify(solution, import_term(value, {})):
             yield
@@ -152,7 +152,11 @@ def motion_grounding(kind: type[M], /) -> Grounds[M]: ...
 @overload
 def motion_grounding(function: F, /) -> F: ...
 def motion_grounding(given: Any) -> Any:
-    """Decorator: ``function(motion)`` gives what a motion stands for, mostly a command for a process module; see the head."""
+    """Decorator: ``function(motion)`` gives the solutions of a motion, mostly a command for a process module.
+
+    given: the class of the motions, or the function itself. See the head of this module. A class that is not one of motions is a
+    TypeError. Source: designators.md 7.1.
+    """
     return _decorated(given, MotionDesignator, lambda function, kind: _define_rule(function, kind, "motion"))
 
 
@@ -161,7 +165,11 @@ def action_grounding(kind: type[A], /) -> Grounds[A]: ...
 @overload
 def action_grounding(function: F, /) -> F: ...
 def action_grounding(given: Any) -> Any:
-    """Decorator: ``function(action)`` gives the plan function for an action and its arguments; see the head of this module."""
+    """Decorator: ``function(action)`` gives the plan function for an action and its arguments.
+
+    given: the class of the actions, or the function itself. See the head of this module. A class that is not one of actions is a
+    TypeError. Source: designators.md 7.1.
+    """
     return _decorated(given, ActionDesignator, lambda function, kind: _define_rule(function, kind, "action"))
 
 
@@ -172,7 +180,11 @@ def location_generator(*, priority: int = 10) -> Generates[Any]: ...
 @overload
 def location_generator(function: F, /) -> F: ...
 def location_generator(given: Any = None, /, *, priority: int = 10) -> Any:
-    """Decorator: ``function(location)`` gives candidates for a place, the best first; generators of lower priority are asked first."""
+    """Decorator: ``function(location)`` gives candidates for a place, the best first.
+
+    given: the class of the locations, or the function itself. priority: generators of lower priority are asked first. See the head of
+    this module. Source: designators.md 8.1, 8.2.
+    """
     return _decorated(given, LocationDesignator, lambda function, kind: _define_generator(function, kind, priority))
 
 
@@ -185,7 +197,9 @@ def location_validator(function: F, /) -> F: ...
 def location_validator(given: Any = None, /, *, priority: int = 10) -> Any:
     """Decorator: ``function(location, candidate)`` judges a candidate.
 
-    True accepts it, False refuses it, ``None`` does not mind; ``kw.maybe_reject`` refuses it unless another one accepts it.
+    True accepts it, False refuses it, and ``None`` leaves it to the other validators. ``kw.maybe_reject`` refuses it unless another
+    validator accepts it; other answers are a TypeError. given: the class of the locations, or the function itself. priority: validators
+    of lower priority are asked first. Source: designators.md 8.1, 8.3.
     """
     return _decorated(given, LocationDesignator, lambda function, kind: _define_validator(function, kind, priority))
 
@@ -220,13 +234,13 @@ def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> 
 
 
 def kind_goals(kind: Kind) -> list[Goal]:
-    """The goals that hold for a designator in ``V.designator`` that is a ``kind``: it has the type, and all that is required."""
+    """The goals that test whether the designator in ``V.designator`` is a ``kind``: it has the type, and all required properties."""
     goals = [P.desig_prop(V.designator, [TYPE, kind.type_])] if kind.type_ is not None else []
     return goals + [P.once(P.desig_prop(V.designator, [kw[lisp_name(field)], V._])) for field in kind.required]
 
 
 def _symbol(function: Callable[..., Any]) -> Symbol:
-    """The name under which ``function`` is known: that of its module and itself."""
+    """The name of ``function`` in Lisp, made of the names of its module and itself."""
     module = "" if function.__module__ == "__main__" else f"{function.__module__}."
     found: Symbol = USER.intern(f"{module}{function.__qualname__}".replace(".<locals>", "").replace("_", "-").upper())
     return found
@@ -293,7 +307,7 @@ def _verdict(answer: Any) -> Keyword:
 
 
 def forget(function: Callable[..., object]) -> None:
-    """Take out what a decorator of this module made of ``function``; for another one nothing is done."""
+    """Undo the decorator of this module on ``function``. For other functions this does nothing."""
     taking_out = _forgetting.pop(function, None)
     if taking_out is not None:
         taking_out()

@@ -1,7 +1,7 @@
-"""Designators as Python writes them: ``Motion(type=kw.driving, speed=1.5)`` is ``(a motion (type driving) (speed 1.5))``.
+"""Designators in Python's notation: ``Motion(type=kw.driving, speed=1.5)`` is ``(a motion (type driving) (speed 1.5))``.
 
-`Motion`, `Action`, `Location`, `Object` and `Human` make designators. A class derived from one declares a type of them, as a
-dataclass does:
+`Motion`, `Action`, `Location`, `Object` and `Human` make designators. A class derived from one of them declares a type, as a dataclass
+does:
 
     class Driving(Motion):              # the type :driving
         speed: float                    # m/s
@@ -9,14 +9,14 @@ dataclass does:
 
     motion = Driving(speed=1.5)
 
-What comes out is a designator like any other, and a description of the same type that was written in Lisp is a ``Driving``, too:
-`isinstance` looks at the kind, the type, and whether the properties without default are there. So ``match`` works as well.
+The result is a designator like any other. A description of the same type that was written in Lisp is a ``Driving``, too: `isinstance`
+looks at the kind, the type, and whether the properties without default are there. So ``match`` works as well.
 
-Properties are read as attributes (``motion.speed``) or items (``motion["speed"]``), and never changed; `replace` makes a new designator.
-A key in ``Python_style`` is the keyword ``:python-style``. ``None`` leaves a property out, as ``(when ...)`` does. Values are mapped as
-in Prolog (`python_terms`): strings are strings, names like those of types are keywords, ``kw.driving``. Several values of one key, and
-names that Python does not allow, are given as pairs in front: ``Motion(("goal", 1), ("goal", 2), type=kw.driving)``.
-Designators are equal by identity, and shown as Lisp prints them. Source: designators.md 3 to 5.
+Attributes (``motion.speed``) or items (``motion["speed"]``) read properties. Properties never change; `replace` makes a new designator.
+A key in ``Python_style`` is the keyword ``:python-style``. ``None`` leaves a property out, as ``(when ...)`` does. Values are converted as
+in Prolog (``prolog/python/terms.py``): strings are strings, and names, like those of types, are keywords, ``kw.driving``. Pairs in front
+give several values for one key, and names that Python does not allow: ``Motion(("goal", 1), ("goal", 2), type=kw.driving)``.
+Designators are equal by identity, and their ``repr`` is the text that Lisp prints. Source: designators.md 3 to 5.
 """
 
 from __future__ import annotations
@@ -42,19 +42,19 @@ if TYPE_CHECKING:
 D = TypeVar("D", bound=Designator)
 TYPE = kw.type
 _OWN = frozenset(name for cls in Designator.__mro__ for name in vars(cls) if not name.startswith("_"))
-"""The attributes that every designator has, whatever its properties are."""
+"""The attributes that every designator has beside its properties."""
 _declared: dict[tuple[type, Keyword], list[Kind]] = per_image({})
 """(class of designators, type) → the classes that declare it, the newest first."""
 
 
 @dataclass_transform(kw_only_default=True)
 class Kind(type):
-    """The class of `Motion` and its like, and of the types that are derived from them."""
+    """The metaclass of `Motion`, `Action` and the others, and of the types derived from them."""
 
     designators: type
     """The class of the designators of this kind."""
     type_: Keyword | None
-    """The value of their property ``:type``; ``None`` for a kind as such."""
+    """The value of their property ``:type``; ``None`` for `Motion` and the other kinds themselves."""
     fields: dict[str, Any]
     """The declared properties: Python name → annotation."""
     defaults: dict[str, Any]
@@ -171,7 +171,7 @@ def _key(key: str | Symbol) -> Symbol:
 
 
 class _Readable:
-    """What a type checker is to know of all designators: `Designator` itself learns it below. Attributes are those that are declared."""
+    """Tells type checkers how to read designators; the code below gives `Designator` these methods. They know declared attributes only."""
 
     if TYPE_CHECKING:
         type: Keyword
@@ -181,13 +181,13 @@ class _Readable:
 
 
 class Motion(MotionDesignator, _Readable, metaclass=Kind, of=MotionDesignator):
-    """A movement, which `perform` hands to a process module."""
+    """A motion, which `perform` gives to a process module."""
 
     def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 class Action(ActionDesignator, _Readable, metaclass=Kind, of=ActionDesignator):
-    """Something to be done, by a plan function that `reference` finds."""
+    """An action, for which `reference` finds a plan function."""
 
     def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
@@ -199,13 +199,13 @@ class Location(LocationDesignator, _Readable, metaclass=Kind, of=LocationDesigna
 
 
 class Object(ObjectDesignator, _Readable, metaclass=Kind, of=ObjectDesignator):
-    """An object in the world; perception sets its ``data``."""
+    """An object in the world. Perception sets its ``data``."""
 
     def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
 
 class Human(HumanDesignator, _Readable, metaclass=Kind, of=HumanDesignator):
-    """A human; perception sets its ``data``."""
+    """A human. Perception sets its ``data``."""
 
     def __init__(self, *pairs: Pair, type: Keyword = ..., **properties: object): ...
 
@@ -214,12 +214,12 @@ class Human(HumanDesignator, _Readable, metaclass=Kind, of=HumanDesignator):
 
 
 def properties(designator: Designator) -> list[tuple[str, Any]]:
-    """The properties of a designator in order, as pairs of a Python name and a value; a repeated key comes repeatedly."""
+    """The properties of a designator in order, as pairs of a Python name and a value. A repeated key comes more than once."""
     return [(python_name(entry.car.name), _value(designator, entry)) for entry in _entries_of(designator)]
 
 
 def property_values(designator: Designator, name: str | Symbol) -> list[Any]:
-    """All values of one key, in order."""
+    """All values of the key ``name`` in order, converted for Python."""
     wanted = _key(name).name
     return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name == wanted]
 
@@ -232,9 +232,9 @@ def every(designator: D) -> D:
 
 
 def replace(designator: D, **changed: object) -> D:
-    """A new designator, not equated to the old one, in which these properties have these values; ``None`` takes one out.
+    """A new designator in which these properties have these values; ``None`` removes a property. It is not equated to the old one.
 
-    The order is kept; the first of a repeated key is replaced and the others go; properties that are new stand at the end.
+    The order is kept. For a repeated key, the first property is replaced and the others are removed. New properties come at the end.
     """
     description, left = [], {lisp_name(name): value for name, value in changed.items()}
     done: set[str] = set()
@@ -251,7 +251,7 @@ def replace(designator: D, **changed: object) -> D:
 
 
 def value_of(designator: Designator, key: Symbol) -> Any:
-    """The value of the first property ``key``, as Lisp data; ``None`` if there is none."""
+    """The value of the first property ``key``, as Lisp data, or ``None``."""
     found = _entry(designator, key.name)
     return found.cdr.car if found is not None and found.cdr is not None else None
 
@@ -279,7 +279,7 @@ def _value(designator: Designator, entry: Cons) -> Any:
 
 
 def declaration(designator: Designator, name: str) -> Kind | None:
-    """The class that declares the property ``name`` for the type of ``designator``, if one does."""
+    """The class that declares the property ``name`` for the type of ``designator``, or ``None``."""
     if _declared:
         for cls in designator.__class__.__mro__:
             for kind in _declared.get((cls, value_of(designator, TYPE)), ()):

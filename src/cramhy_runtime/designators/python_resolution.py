@@ -1,7 +1,7 @@
-"""Resolving designators from Python: the functions of ``protocol.py`` and ``equating.py`` with what Python expects.
+"""Resolving designators from Python: the functions of ``protocol.py`` and ``equating.py``, with Python's data and exceptions.
 
-Solutions are Python's: lists are Python lists, and a plan function in a solution is the function itself. What Python code raised in a
-grounding, a generator or a validator is raised by `reference`, that very exception. None of this needs a plan. Source: designators.md 6, 7.
+Lists in solutions are Python lists, and a plan function in a solution is the function itself. `reference` raises the same exception that
+Python code raised in a grounding, a generator or a validator. None of this needs a plan. Source: designators.md 6, 7.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ D = TypeVar("D", bound=Designator)
 
 
 def for_reasoning(function: Callable[P, T]) -> Callable[P, T]:
-    """A decorator: ``function`` may be called outside of plans, and what leaves it is what Python raised."""
+    """A decorator: ``function`` can be called outside of plans, and raises the exceptions that Python code raised."""
     inside = for_python(function)
 
     @wraps(function)
@@ -39,10 +39,11 @@ def for_reasoning(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def reference(designator: Designator, role: object = UNSUPPLIED) -> Any:
-    """What the designator stands for: a pose, a command, an object; always the same object for the same designator.
+    """The object that the designator stands for: a pose, a command, an object. It is always the same for the same designator.
 
-    A motion is what ``motion-grounding`` says, an action the list of its plan function and arguments. Errors: DesignatorError if it cannot
-    be resolved, with a note that says why.
+    For a motion it is the result of ``motion-grounding``; for an action the list of its plan function and arguments. role: chooses a
+    method of ``resolve-designator``. Errors: DesignatorError if it cannot be resolved, with a note that says why; TypeError for anything
+    but a designator. Source: designators.md 7.
     """
     if isinstance(designator, Designator) and designator.effective:
         found = known(designator)
@@ -71,7 +72,7 @@ def _as_python(designator: Designator, found: Any) -> Any:
 
 
 def _notes(self: DesignatorError) -> list[str]:
-    """What stands below a traceback: why the designator could not be resolved, found when the first one looks."""
+    """The note below a traceback that says why the designator could not be resolved. It is computed when it is first read."""
     notes: list[str] | None = self.__dict__.get("notes")
     if notes is None:
         notes = self.__dict__["notes"] = []
@@ -92,14 +93,20 @@ setattr(DesignatorError, "__notes__", property(_notes))
 
 @for_reasoning
 def next_solution(designator: D) -> D | None:
-    """A designator, equated to this one, for the next thing that it may stand for; ``None`` if there is no other."""
+    """A designator for the next solution, equated to this one, or ``None``. A designator that cannot be resolved is a DesignatorError.
+
+    An object or a human has no further solutions, which is an error. Source: designators.md 7.
+    """
     found: D | None = protocol.next_solution(_designator(designator))  # type: ignore[assignment]  # of the same kind
     return found
 
 
 @for_reasoning
 def equate(parent: Designator, successor: D) -> D:
-    """Say that both describe the same thing: the successor, now the youngest of the chain. An error if that was said already."""
+    """Say that both describe the same thing. Returns the successor, which is the youngest of the chain now.
+
+    If they are in one chain already, it is an error. Source: designators.md 6.
+    """
     protocol.equate(_designator(parent), _designator(successor))
     return successor
 
@@ -112,7 +119,7 @@ def equate_callback(designator: Designator, callback: Callable[[Designator], obj
 
 
 def solutions(designator: Designator) -> Iterator[Any]:
-    """Iterate over all that the designator may stand for, each searched for when it is asked for; nothing if it cannot be resolved."""
+    """Iterate over all solutions of the designator. Each is searched for on demand. A designator that cannot be resolved has none."""
     member: Any = _designator(designator)
     while member is not None:
         try:

@@ -1,10 +1,10 @@
 """Resolving: from a description to the thing.
 
-``reference`` resolves a designator once and gives the same value ever after; ``next-solution`` gives a new designator, equated to the
-old one, that stands for the next possibility. Actions and motions are ground by Prolog (``action-grounding``, ``motion-grounding``),
-locations by generators (``locations.py``), objects and humans by perception, which sets their data. Source: designators.md section 7.
+``reference`` resolves a designator once and returns the same value from then on. ``next-solution`` returns a new designator for the next
+solution, equated to the old one. Prolog grounds actions and motions (``action-grounding``, ``motion-grounding``), generators find
+locations (``locations.py``), and perception sets the data of objects and humans. Source: designators.md section 7.
 
-While one task resolves a designator, others that want it wait and get the same value.
+While one task resolves a designator, other tasks that need it wait and get the same value.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
 from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.generic_functions import generic
-from cramhy_runtime.ground.generic_errors import NoApplicableMethodError
+from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
 from cramhy_runtime.ground.printing import princ_to_string
 from ..utilities.lazy_lists import lazy_car, lazy_cdr, tail
 from cramhy_runtime.utilities.wait_queue import Line
@@ -53,31 +53,31 @@ resolve_designator: GenericOf[[Designator, object], Any] = generic(
     "DESIG::RESOLVE-DESIGNATOR",
     "(desig role)",
     documentation="""
-Find what the designator stands for; called by reference. Methods on ``(eql role)`` resolve in their own way.""",
+Find the object that the designator stands for; ``reference`` calls it. Methods on ``(eql role)`` resolve in their own way.""",
 )
 designator_pose = generic(
     "DESIG::DESIGNATOR-POSE",
     "(desig)",
     documentation="""
-The pose of an effective designator; nil before. Methods come from packages that know poses (cram-tf).""",
+The pose of an effective designator; nil for others. Packages that know poses define methods (cram-tf).""",
 )
 designator_distance = generic(
     "DESIG::DESIGNATOR-DISTANCE",
     "(desig-1 desig-2)",
     documentation="""
-The distance of two effective designators; nil if one is not effective.""",
+The distance between two effective designators; nil if one is not effective.""",
 )
 
 
 def unresolved(designator, control, told=None):
-    """Signal that ``designator`` cannot be resolved, with the text ``control``; ``told`` is what is known of why."""
+    """Signal that ``designator`` cannot be resolved, with the text ``control``. ``told`` is a function that makes the hint."""
     problem = DesignatorError(control, designator)
     problem.about, problem.told = designator, told
     return error(problem)
 
 
 def known(designator):
-    """What the designator was found to stand for; ``None`` if that is not known."""
+    """The value to which the designator was resolved, or ``None``."""
     return designator._found if designator.effective else None
 
 
@@ -112,13 +112,13 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
 
 
 _lines = {}
-"""Designator → the line of the tasks that want it while another one resolves it."""
+"""Designator → the line of the tasks that wait while another one resolves it."""
 _wanted = {}
-"""Task → the designator in whose line it stands."""
+"""Task → the designator for which it waits."""
 
 
 def _wait_for_resolver(designator, me):
-    """Wait until nobody resolves ``designator``; an error if that would be for ever, since its resolver waits for ``me``."""
+    """Wait until no task resolves ``designator``. If its resolver waits for ``me``, that would be for ever, and it is an error."""
     ring = [designator]
     while True:
         resolver = ring[-1].resolver
@@ -140,7 +140,7 @@ def _wait_for_resolver(designator, me):
 
 
 def _endless(ring):
-    """Signal that resolving the first of ``ring`` waits for the task that wants it."""
+    """Signal that resolving the first of ``ring`` waits for the task that needs it."""
     if len(ring) > 1:
         others = ", ".join(" ".join(princ_to_string(other).split()) for other in ring[1:])
         hint = f"The task that resolves it waits for {others}, which this task resolves: each waits for the other, for ever."
@@ -163,7 +163,7 @@ class Groundings(Machine):
         self.start = predicate.call, SOLVED, designator, self.value
 
     def rest(self):
-        """The values to come, the first one computed now. A variable is none."""
+        """The lazy list of the values that are left, the first one computed now. Unset variables are left out."""
         while self.next_solution():
             value = resolve(self.value)
             if value.__class__ is not Symbol or not is_var(value):
@@ -265,5 +265,5 @@ def _distance_if_effective(next_method, first, second):
 
 
 def loc_desig_location(loc_desig):
-    """The reference of the current designator; nil if it is no location designator."""
+    """The reference of the youngest designator in the chain of ``loc_desig``; nil if that is not a location designator."""
     return reference(youngest(loc_desig)) if isinstance(loc_desig, LocationDesignator) else None

@@ -1,4 +1,4 @@
-"""What the functions of this room take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+"""Types of the arguments in this room. Only type checkers read this module: no code imports it when a program runs."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ Pair = tuple[Key, object]
 """A property that stands in front of the keyword arguments."""
 Candidates = Iterable[object] | None
 Verdict = bool | Keyword | None
-"""What a validator says: True accepts, False refuses, None does not mind, as ``kw.maybe_reject`` and the other keywords do."""
+"""The answer of a validator: True accepts, False refuses, None leaves it to others. Keywords such as ``kw.maybe_reject`` do as well."""
 EqualityOfTwo = GenericOf[[object, object], bool | None]
 OfOne = GenericOf[[Designator], Designator]
 
 
 class MakeDesignator(GenericOf[..., Designator], Protocol):
-    """What makes a designator: of a kind, such as ``kw.motion``, or of a class."""
+    """A function that makes a designator of a kind, such as ``kw.motion``, or of a class."""
 
     def __call__(self, class_: Keyword | type[Designator], description: Cons | None, parent: Designator | None = None, /) -> Designator: ...
 

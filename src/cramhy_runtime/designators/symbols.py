@@ -1,6 +1,6 @@
 """The Lisp packages of this room, made before anything interns a symbol in them.
 
-What they contain is declared in ``languages/commonlisp/faces/designators/package.py``.
+``languages/commonlisp/faces/designators/package.py`` declares their contents.
 """
 
 from cramhy_runtime.ground.packages import ensure_package, sym

@@ -30,7 +30,7 @@ from cramhy_runtime.cpl.fluents.fluents import living_fluents, tracing_options
 from ..cpl.hooks import on_make_fluent_hook
 from cramhy_runtime.ground.conditions import Condition, warn
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, list_from, one, truth
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 from .knowledge import episode_of

@@ -8,7 +8,7 @@ results (prolog.md 13.1, cpl.md section 11). Nothing is called, and nothing is p
 from __future__ import annotations
 
 from .data import Symbol, one
-from .generic_functions import add_method, generic, remove_method
+from .dispatch.generic_functions import add_method, generic, remove_method
 
 
 class Hook:

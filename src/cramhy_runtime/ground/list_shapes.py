@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from .condition_types import SimpleProgramError
 from .conditions import error
-from .data import Cons
+from .data import conses
 from .ports import PORTS
 
 
 def check_shape(lst, least, most, what, lambda_list):
     """Check that ``lst`` has ``least`` to ``most`` elements (no upper bound: nil); returns it."""
     count, cell = 0, lst
-    while isinstance(cell, Cons):
-        count += 1
-        cell = cell.cdr
+    for each in conses(lst):
+        count, cell = count + 1, each.cdr
     improper = cell is not None and not (most is None and count >= least)
     if improper or count < least or (most is not None and count > most):
         wanted = f"exactly {least}" if least == most else f"at least {least}" if most is None else f"between {least} and {most}"

@@ -389,6 +389,11 @@ def redefined(symbol):
         _redefined[symbol] = _state_of(symbol)
 
 
+def was_redefined(symbol):
+    """Whether a program gave ``symbol``, which all images share, another meaning than it has by itself."""
+    return symbol in _redefined
+
+
 def _state_of(symbol):
     *others, data, reads, writes = _definitions(symbol)
     return (*others, dict(data) if data else data, reads, writes)

@@ -11,7 +11,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class GenericOf(Protocol[P, R]):
-    """A generic function: what it takes and gives, and how methods are added (`cramhy_runtime.ground.generic_functions`)."""
+    """A generic function: what it takes and gives, and how methods are added (`cramhy_runtime.ground.dispatch.generic_functions`)."""
 
     advice: str | None
 

@@ -1,4 +1,4 @@
-"""The kernel: tasks that park and wake, one baton, a clock. The ground floor; it knows nothing of Lisp.
+"""The kernel: tasks that park and wake, one baton, a clock. Everything stands on it, and it knows nothing of Lisp.
 
     from cramhy_runtime import kernel
 
@@ -9,34 +9,33 @@
     kernel.spawn(drive, name="drive").join()      # "there", at once; kernel.now() is 2.0
 
 Plans wait all the time: for a pose, for a failure of a sibling, for two seconds to pass. In CRAM each branch of a plan is
-a thread of SBCL, and time is the wall's. Here a branch is a task, and one task runs at a time: the one that has the
-baton. It passes the baton at points that one can name. It parks (waits for `unpark` or for a time), it yields, it ends,
-or it passed so many checkpoints that others are due. Between two such points nobody else touches anything, so a plan
-needs no locks, a test of a condition and the wait that follows it are one step, and the whole run is deterministic: same
-program, same seed, same order of events from outside, same run.
+a thread of SBCL, and time is wall time. Here a branch is a task, and one task runs at a time: the one that has the
+baton. It passes the baton at named points: it parks (waits for `unpark` or for a time), it yields, it ends, or it has
+used up its slice of checkpoints. Between two such points no other task runs. So a plan needs no locks, a test of a
+condition and the wait after it are one step, and the whole run is deterministic: the same program, the same seed and the
+same order of events from outside give the same run.
 
-Since all waiting comes through here, time is ours as well. When every task is parked nothing can happen before the next
-timer, so the virtual clock jumps there. The wall clock is the same with a pace-maker: it waits before it jumps.
+All waiting goes through the kernel, so it also controls time. When every task is parked, nothing can happen before the next
+timer, and the virtual clock jumps there. The wall clock is the same with a pace-maker: it waits before it jumps.
 
 Where the parts are:
 
-* `scheduler`  the baton, the queue, what is next; `endings` interrupts, stopping, failures nobody looked at; `uncaught` exceptions that
-  end the program; `signals` what the system asks of the process; `inbox` other threads and calls that block; `standard_input` lines
-  that are typed; `terminals` their keys and modes; `asyncio_thread` a thread of the system's that serves clients, and its share of the
-  processor
-* `tasks`      a task, its end, the request to end; `cleanup` what it still does on its way out
-* `timers`, `clocks`, `throttle` (of virtual time that is watched), `budget` (what checkpoints count), `reports` (for people), `errors`
+* `scheduler`  the baton, the queue, the next task; `endings` interrupts, stopping, unhandled failures; `uncaught` exceptions that
+  end the program; `signals` of the system; `inbox` other threads and calls that block; `standard_input` typed lines; `terminals` keys
+  and modes; `asyncio_thread` a thread of the system that serves clients, and its share of the processor
+* `tasks`      a task, its end, the request to end; `cleanup` the cleanup of a task that ends
+* `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
 * `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
-* `active`     the functions below, which act on the kernel that is active; `typing_names`, `signatures` what their annotations say
-* `images`     what is global, in cells and tables, and how the state of one image takes the place of another's
+* `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations
+* `images`     global state, in cells and tables, and how the state of one image takes the place of another's
 
-Taken from trio: cancellation at checkpoints, the shield, a clock that jumps, the deadlock as an error with a text. Left
-out: cancel scopes and nurseries, because CPL brings its own tree and its own rules for it. Taken from Erlang:
-counting reductions. Taken from SimPy: real time on top of simulated time, and not the other way round.
+From trio come cancellation at checkpoints, the shield, a clock that jumps, and the deadlock as an error with a text, but
+not cancel scopes and nurseries, since CPL has its own tree with its own rules. From Erlang comes counting reductions. From
+SimPy comes real time on top of simulated time, and not the other way round.
 
-`install_reporter` lets a floor above describe frames and failures in its own terms (see `reports`). A room that serves a session and
-has to end with it says so by ``at_stop`` of the kernel.
+`install_reporter` lets a floor above describe frames and failures in its own terms (see `reports`). A room that serves a session
+registers with the kernel's ``at_stop`` to end with it.
 """
 
 from .active import (

@@ -1,7 +1,7 @@
 """The active kernel, and the functions that act on it.
 
-A process has one active kernel at a time; tests start hundreds, one after the other. The functions here are what the
-floors above call: `kernel.park(...)` is `kernel.active().park(...)`.
+A process has one active kernel at a time; tests start hundreds, one after the other. The floors above call the functions
+here: `kernel.park(...)` is `kernel.active().park(...)`.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ def start(
     kind: type[K] = Kernel,  # type: ignore[assignment]  # which is what K is then
     cleanup_limit: float | None = CLEANUP_LIMIT,
 ) -> K:
-    """Make a fresh kernel active, whose main task is the caller. The one before, if any, is stopped first.
+    """Make a fresh kernel active, and return it. Its main task is the caller. A kernel that was active is stopped first.
 
-    In the main thread it hears SIGINT and the signals that end a process from now on, if nobody else has a handler for them
+    In the main thread the kernel handles SIGINT and the signals that end a process from now on, unless other code handles them
     (`signals`).
 
     CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", or a back end. SEED: None for first
     come, first served; a number shuffles the order, reproducibly; a function of the queue gives the place in it of the
     task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main task gets `TimeLimit`, or None.
-    KIND: a subclass of `Kernel`, for tests that look on. CLEANUP_LIMIT: seconds that plans get for their cleanup when the process is
-    asked to end, by the kernel's clock and by the wall's, or None.
+    KIND: a subclass of `Kernel`, for tests. CLEANUP_LIMIT: seconds that plans get for their cleanup when the process is
+    asked to end, by the kernel's clock and by the wall clock, or None. Another word for CLOCK or BACKEND is a ValueError.
     """
     before = _active.value
     if before is not None and before.main.carrier.ident == get_ident():
@@ -67,14 +67,14 @@ def start(
 
 
 def stop() -> None:
-    """Stop the active kernel (see `Kernel.stop`); afterwards none is active."""
+    """Stop the active kernel (see `Kernel.stop`). Afterwards no kernel is active."""
     if _active.value is not None:
         _active.value.stop()
 
 
 @contextmanager
 def aside() -> Iterator[None]:
-    """While the block runs, the active kernel is put aside as if there were none, and others may be started and stopped."""
+    """Put the active kernel aside during the block, in which others may be started and stopped. Then it is active again."""
     before, _active.value = _active.value, None
     try:
         yield
@@ -89,9 +89,9 @@ _idle: Cell[Kernel | None] = Cell(None, fresh=True)
 
 @contextmanager
 def at_hand() -> Iterator[None]:
-    """While the block runs a kernel is active: the one that is, or one in virtual time that is there for the moment.
+    """Run the block with an active kernel: the present one, or a temporary one in virtual time.
 
-    For what may be asked outside of any plan. The moment's kernel is kept for the next one, if nothing has happened in it.
+    It is for functions that work outside of plans. A temporary kernel is kept for the next use if nothing has happened in it.
     """
     if _active.value is not None:
         yield
@@ -122,7 +122,7 @@ def _forget(kernel: Kernel) -> None:
 
 @atexit.register
 def _stop_at_exit() -> None:
-    """A script that just ends shall not leave out the cleanup of its tasks, nor what serves them (a recording, a robot's connection)."""
+    """Run the cleanup of tasks, and close what serves them (a recording, a robot's connection), when a script just ends."""
     signals.leaving.set()
     for image in signals.listening_images():
         if image is not images.current():
@@ -156,14 +156,14 @@ def _none() -> NoReturn:
 
 
 def checkpoint() -> None:
-    """Named in every loop's back edge: counts, and now and then lets others run or raises a request to end."""
+    """Count one turn of a loop. From time to time let other tasks run, or raise a request to end. Loops call it in each turn."""
     budget.left = left = budget.left - 1
     if left < 0:
         slice_over()
 
 
 def slice_over() -> None:
-    """What comes when all checkpoints of a slice are used up."""
+    """End the slice: all its checkpoints are used up."""
     if _active.value is None:
         budget.renew()
     else:
@@ -171,18 +171,18 @@ def slice_over() -> None:
 
 
 def refill() -> None:
-    """What a compiled loop calls when it has no more ticks (see ``budget.py``)."""
+    """Get new ticks for a compiled loop that has used up its own (see ``budget.py``)."""
     if budget.refill():
         slice_over()
 
 
 def current() -> Task[object]:
-    """The task that runs. While timers fire and messages are read this is a stand-in, which cannot park."""
+    """The task that runs. While timers fire and messages are read it is a stand-in, which cannot park. Without a kernel: KernelError."""
     return (_active.value or _none()).current
 
 
 def now() -> float:
-    """Seconds of the kernel's clock since `start`."""
+    """Seconds of the kernel's clock since `start`. Without a kernel: KernelError."""
     return (_active.value or _none()).clock.now()
 
 
@@ -252,7 +252,7 @@ def run_blocking(fn: Callable[[*Arguments], T], *args: *Arguments) -> T:
 
 
 def pace() -> Pace:
-    """The `Pace` of the active kernel's time; as fast as the machine computes until it is told otherwise."""
+    """The `Pace` of the active kernel's time. At first time passes as fast as the machine computes."""
     kernel = _active.value or _none()
     if not kernel.clock.virtual:
         return Pace(kernel)
@@ -262,9 +262,9 @@ def pace() -> Pace:
 
 
 def set_clock(kind: ClockName) -> None:
-    """Let the active kernel go on in "virtual" or in "wall" time, from the same second on. Nothing happens if that is its time already.
+    """Let the active kernel go on in "virtual" or in "wall" time, from the same second on. If that is its time already, do nothing.
 
-    Plans that wait keep the moments that they wait for. ValueError for another word.
+    Tasks keep the moments for which they wait. Another word is a ValueError.
     """
     kernel = _active.value or _none()
     before = kernel.clock

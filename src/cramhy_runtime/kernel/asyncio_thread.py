@@ -1,12 +1,11 @@
-"""A thread beside the kernel that runs an asyncio loop: for servers and bridges, and kept from robbing the plan of the processor.
+"""A thread beside the kernel that runs an asyncio loop, for servers and bridges. Its share of the processor is limited.
 
-Python runs one thread at a time, so whatever such a thread computes, the plan does not. A server cannot choose how much it is asked:
-a flood of requests would halve the pace of a plan. So the loop has a `Share` of the processor. It spends as it likes while the kernel
-has nothing to do; while the kernel computes, it gets `SHARE` of the time, and what it has overspent it sleeps off before it looks at
-its sockets again. Then the system's buffers fill, and the flood waits where it came from. What the kernel itself does for the loop
-(`Share.charge`) counts too.
+Python runs one thread at a time, so while such a thread computes, the plan does not. A server cannot choose how many requests it gets:
+a flood of requests would halve the pace of a plan. So the loop has a `Share` of the processor. While the kernel has nothing to do, the
+share is not limited. While the kernel computes, the loop gets `SHARE` of the time. If it has used more, it sleeps before it looks at its
+sockets again; then the system's buffers fill, and the clients wait. Work of the kernel for the loop (`Share.charge`) counts too.
 
-Such a thread never touches tasks: it reaches them by `kernel.post`, and is reached by `Company.call`, from any thread.
+Such a thread never touches tasks. It reaches them with `kernel.post`, and any thread reaches it with `Company.call`.
 """
 
 import asyncio
@@ -26,10 +25,10 @@ WINDOW = 0.1  # s; how often it is asked whether the kernel computes
 
 
 class Share:
-    """What a loop has spent, and how long it has to sleep for it. ``spent``: seconds of the processor so far; ``slept``: of the wall.
+    """The processor time that a loop has used, and how long it must sleep for that.
 
-    idle: gives the seconds of the wall that the kernel has waited so far. What is owed is counted in time of the processor, so that it
-    comes out the same on a machine that has other things to do.
+    ``spent`` is the processor time so far, ``slept`` the wall time, both in seconds. idle: a function that returns for how many seconds of
+    wall time the kernel has waited so far. Debts are counted in processor time, so other load on the machine makes no difference.
     """
 
     def __init__(self, idle, share=SHARE, wall=time.monotonic, own=thread_time, everybody=time.process_time):
@@ -42,11 +41,11 @@ class Share:
         self.busy = self.forgiven = False  # forgiven: nothing is owed any more, since the loop shall end
 
     def charge(self, seconds):
-        """The kernel has spent SECONDS of the processor for the loop. Safe from any thread."""
+        """Note that the kernel has used SECONDS of processor time for the loop. Safe from any thread."""
         self._charged.append(seconds)
 
     def debt(self):
-        """Seconds that the loop has to sleep now, 0 for none. To be called in its thread, often."""
+        """How many seconds the loop must sleep now, 0 for none. Call it often, in the loop's thread."""
         marks = wall, own, everybody, idle = [clock() for clock in self._clocks]
         before, self._marks = self._marks or marks, marks
         if self._window is None:
@@ -69,7 +68,7 @@ class Share:
 
 
 class _PatientSelector(selectors.DefaultSelector):
-    """Looks at the sockets only when nothing is owed."""
+    """Looks at the sockets only when the loop need not sleep."""
 
     def __init__(self, share):
         super().__init__()
@@ -83,7 +82,7 @@ class _PatientSelector(selectors.DefaultSelector):
 
 
 class Company:
-    """The thread, beside KERNEL. MAIN: a coroutine function of no arguments; with it the thread ends. It holds up no exit."""
+    """A thread beside KERNEL that runs MAIN, a coroutine function of no arguments, and then ends. It does not delay the exit."""
 
     def __init__(self, main, name, kernel):
         self.share = Share(lambda: kernel.idle_seconds)
@@ -95,6 +94,7 @@ class Company:
 
     @property
     def alive(self):
+        """Whether the thread runs."""
         return self._thread.is_alive()
 
     def _run(self):
@@ -116,7 +116,7 @@ class Company:
                 self.loop.close()
 
     def call(self, fn, *arguments):
-        """Have FN(*ARGUMENTS) called in the loop, soon; false when the thread has ended. Safe from any thread."""
+        """Call FN(*ARGUMENTS) in the loop, soon. Returns false if the thread has ended. Safe from any thread."""
         try:
             self.loop.call_soon_threadsafe(fn, *arguments)
         except RuntimeError:  # the loop is closed
@@ -124,6 +124,6 @@ class Company:
         return True
 
     def join(self, seconds):
-        """Wait until the thread has ended, SECONDS at most; whether it has."""
+        """Wait until the thread has ended, at most SECONDS. Returns whether it has."""
         self._thread.join(seconds)
         return not self.alive

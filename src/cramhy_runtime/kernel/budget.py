@@ -1,14 +1,14 @@
-"""What is left to the task that runs: checkpoints until others get a turn, and room on its stack.
+"""The budget of the task that runs: checkpoints until others get a turn, and room on its stack.
 
-Erlang counts reductions, we count checkpoints. The count, and never the wall clock, decides when a busy task is
+Erlang counts reductions, the kernel counts checkpoints. The count, and never the wall clock, decides when a busy task is
 preempted, so the order of a run depends on the program alone (law 5). There is one counter for the process, because
-one task runs at a time (law 4); whoever gets the baton gets a full slice, and the ticks that others left.
+one task runs at a time (law 4). A task that gets the baton gets a full slice, and the ticks that others left.
 
 `budget.end()` ends the slice at the next checkpoint. It is short and may be called by a signal handler.
 
-A compiled loop does not call `checkpoint` in each turn. It takes one of `budget.ticks`, an iterator, in each turn, which costs
-Python next to nothing, and calls `refill` when there are no more: then as many checkpoints count at once. All loops share the
-ticks, inner and outer ones, so loops of a few turns count like one of many.
+A compiled loop does not call `checkpoint` in each turn. In each turn it takes one of `budget.ticks`, an iterator, which costs Python
+almost nothing, and calls `refill` when there are no more; then as many checkpoints count at once. Inner and outer loops share the
+ticks, so many loops of a few turns count like one loop of many turns.
 """
 
 import sys
@@ -24,7 +24,7 @@ TICKS = 50  # that are handed out at once
 
 
 class Budget:
-    """The checkpoints that are left to the task that runs; ``ticks`` are those that loops take from, counted already."""
+    """The checkpoints that are left to the task that runs. Loops take ``ticks``, which are counted already."""
 
     __slots__ = ("left", "ticks")
 
@@ -32,17 +32,17 @@ class Budget:
         self.renew()
 
     def renew(self):
-        """A full slice."""
+        """Begin a full slice."""
         self.left = SLICE
         self.ticks = repeat(None, TICKS)
 
     def end(self):
-        """Nothing is left."""
+        """End the slice at the next checkpoint."""
         self.left = 0
         deque(self.ticks, maxlen=0)
 
     def refill(self):
-        """New ticks, if there are none; returns whether the slice is over."""
+        """Get new ticks if there are none. Returns whether the slice is over."""
         if not length_hint(self.ticks):  # else another loop has got new ones since this one did
             self.left -= TICKS
             self.ticks = repeat(None, TICKS)
@@ -56,10 +56,10 @@ STEPS = 40  # levels that a hand-over needs when there is nothing to call
 
 
 def room(levels):
-    """A function that raises RecursionError now if a hand-over would: a task that is out of stack must learn of it before it touches
-    the queue, for a half-done hand-over is a lost task.
+    """A function that raises RecursionError if fewer than LEVELS levels are left.
 
-    `isinstance` goes down one level of Python's limit for each level of its tuple, in some nanoseconds.
+    A task without room on its stack must find out before it touches the queue, since a half-done hand-over loses the task. `isinstance`
+    uses one level of Python's limit for each level of its tuple, in some nanoseconds.
     """
     stairs = int
     for _ in range(levels):

@@ -1,12 +1,12 @@
-"""Cleanup: what still has to be done on the way out, shielded from requests to end.
+"""Cleanup: work that a task does on its way out, shielded from requests to end.
 
 `with cleanup():` stands around the cleanup form of an ``unwind-protect``, and in Python in a ``finally``. A request to end the
-task waits until the block is left (law 2). A wait inside may be stuck, on a fluent that nobody sets any more; then the task, its
-parent and the whole run would be stuck with it. So a wait can be ended from outside (`Task.end_wait`): `WaitEnded` unwinds to the
-innermost such block and no further, the rest of the block is left out, and the exit that led here goes on to the outer blocks.
+task waits until the block is left (law 2). A wait inside may never end, for example for a fluent that is not set any more; then the
+task, its parent and the whole run would wait for ever. So a wait can be ended from outside (`Task.end_wait`): `WaitEnded` unwinds to
+the innermost such block and no further, the rest of the block is left out, and the exit that led here goes on to the outer blocks.
 
-`limit_by` installs a function that is called with each block that is entered and its task. It returns a limit, which is told when the
-block ends, or ``None``.
+`limit_by` installs a function that is called with each block that is entered and its task. It returns ``None``, or a limit that is told
+when the block ends.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 
 class Limit(Protocol):
-    """What holds a block of cleanup to its time."""
+    """Limits the time of a block of cleanup."""
 
     def end(self) -> None:
-        """The block is left."""
+        """Called when the block is left."""
 
 
 class cleanup(shield):  # noqa: N801 (reads as a statement)
-    """A block of cleanup of the current task.
+    """``with cleanup():`` delays requests to end the current task until the block is left.
 
-    ``outer``: the block around it, if one is; ``limit``: what the function of `limit_by` returned.
+    ``outer`` is the block around it, or None. ``limit`` is the result of the function of `limit_by`.
     """
 
     __slots__ = ("outer", "limit")
@@ -62,5 +62,5 @@ class cleanup(shield):  # noqa: N801 (reads as a statement)
 
 
 def limit_by(function: Callable[[cleanup, Task[object]], Limit | None]) -> None:
-    """Call ``function(block, task)`` with each block of cleanup that begins from now on; its ``end()`` is called when the block is left."""
+    """Call ``function(block, task)`` with each block of cleanup that begins from now on. It returns a `Limit` or ``None``."""
     cleanup._begins = staticmethod(function)

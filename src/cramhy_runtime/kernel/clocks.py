@@ -1,11 +1,11 @@
-"""Two clocks: virtual time, and a pace-maker that holds virtual time back to the wall's (law 5).
+"""Two clocks: virtual time, and a pace-maker that slows virtual time down to wall time (law 5).
 
 The scheduler works with times of timers only. When nothing is left to do at this instant it asks its clock to go to
 the next timer. The virtual clock jumps there. The wall clock waits until the operating system's clock says so, or until
-somebody rings the bell (a message in the inbox, an interrupt), and has no other part in the scheduling. SimPy's
+the bell rings (for a message in the inbox, or an interrupt), and has no other part in the scheduling. SimPy's
 `RealtimeEnvironment` has the same shape.
 
-What the original leaves to SBCL's timers and threads (`sleep`, `wait-for :timeout`, `top-level`) all comes here.
+Where the original uses SBCL's timers and threads (`sleep`, `wait-for :timeout`, `top-level`), all calls come here.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ LONGEST_WAIT = 0.05
 class Bell:
     """Wakes the thread that waits while every task is parked.
 
-    A plain lock used as a binary semaphore: unlike a condition it can be rung from a signal handler that interrupted
-    the very thread that waits. A ring with nobody waiting is kept, so none is lost; two rings are one.
+    It is a plain lock used as a binary semaphore: unlike a condition variable it can be rung from a signal handler that interrupted
+    the waiting thread itself. If no thread waits, the ring is kept, so none is lost; two rings are one.
     """
 
     __slots__ = ("_lock", "waited")
@@ -41,13 +41,14 @@ class Bell:
         self.waited = 0.0  # seconds of the wall so far: while nobody in the kernel had anything to do
 
     def ring(self) -> None:
+        """Wake the waiting thread, or let the next wait return at once. Safe from any thread and from signal handlers."""
         try:
             self._lock.release()
         except RuntimeError:
             pass  # it rings already
 
     def wait(self, timeout: float | None = None) -> None:
-        """Wait until the bell rings, TIMEOUT seconds at most; may come back early."""
+        """Wait until the bell rings, at most TIMEOUT seconds. It may return early."""
         if timeout is None or timeout > LONGEST_WAIT:
             timeout = LONGEST_WAIT
         if timeout > 0:
@@ -57,12 +58,12 @@ class Bell:
 
 
 class VirtualClock:
-    """Time that stands still while anything runs, and jumps to the next timer when everything is parked."""
+    """Time that stands still while a task runs, and jumps to the next timer when all tasks are parked."""
 
     virtual = True
     epoch = 1292688669.674
-    """The moment at which virtual time begins, in seconds since 1970: any will do, if it is always the same. It is that of the ROS
-    lecture's transcript, so that stamps look as on the slides."""
+    """The moment at which virtual time begins, in seconds since 1970. Any value will do, if it is always the same. This one comes from the
+    ROS lecture's transcript, so that stamps look as on the slides."""
 
     def __init__(self, begin: float = 0.0):
         self.time = begin
@@ -74,21 +75,21 @@ class VirtualClock:
         return self.time
 
     def go_to(self, when: float, bell: Bell | None = None) -> None:
-        """Let it be WHEN; with a pace, after its wait, or earlier."""
+        """Set the time to WHEN. With a pace, wait first; then the time may be set to an earlier moment."""
         if self.pace is not None:
             when = self.pace.reach(self.time, when)
         if when > self.time:
             self.time = when
 
     def nudge(self, when: float) -> None:
-        """Busy tasks used up their slices: time must not stand still for the others because of them."""
+        """Set the time to WHEN, because busy tasks used up their slices: time must not stand still for the others."""
         self.go_to(when)
 
 
 class WallClock:
-    """Time that passes by itself. OS_CLOCK gives seconds and never goes back; WAIT(bell, seconds) waits.
+    """Time that passes by itself. OS_CLOCK returns seconds and never goes back; WAIT(bell, seconds) waits.
 
-    Both can be given, so that tests pace a run without waiting for it.
+    Tests give both, to pace a run without waiting for it.
     """
 
     virtual = False
@@ -108,18 +109,18 @@ class WallClock:
         return self._os_clock() - self._start
 
     def go_to(self, when: float, bell: Bell) -> None:
-        """Wait until it is WHEN or the bell rings; may come back early."""
+        """Wait until it is WHEN or the bell rings. It may return early."""
         self._wait(bell, when - self.now())
 
     def nudge(self, when: float) -> None:
-        """Wall time needs no help to pass."""
+        """Do nothing: wall time passes by itself."""
 
 
 KINDS: dict[str, type[VirtualClock | WallClock]] = {"virtual": VirtualClock, "wall": WallClock}
 
 
 def make_clock(clock: ClockName | Clock, begin: float = 0.0) -> Clock:
-    """A fresh clock for "virtual" or "wall" that shows BEGIN seconds; a clock object is taken as it is."""
+    """A fresh clock for "virtual" or "wall" that shows BEGIN seconds. A clock object is returned as it is; another word is a ValueError."""
     if isinstance(clock, str) and clock in KINDS:
         return KINDS[clock](begin=begin)
     if isinstance(clock, str):

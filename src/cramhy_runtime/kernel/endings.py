@@ -1,7 +1,7 @@
-"""How a run ends: interrupts, termination, alarms, abandoned cleanup, stopping, and the failures that nobody looked at.
+"""How a run ends: interrupts, termination, alarms, abandoned cleanup, stopping, and unhandled failures.
 
-The main task hears of what concerns the run as a whole, by alarms: Ctrl-C, a signal that ends the process, a deadlock, the time
-limit. An alarm wakes it ahead of the queue. From there the tree comes down in the ordinary way: the main task unwinds, cancels its
+Alarms tell the main task of events that concern the whole run: Ctrl-C, a signal that ends the process, a deadlock, the time
+limit. An alarm wakes it ahead of the queue. Then the tree of tasks ends in the ordinary way: the main task unwinds, cancels its
 children and joins them, and so on below.
 
 An interrupt must work from a signal handler, at any moment: while the main thread has the baton, waits for it, waits for
@@ -35,7 +35,7 @@ PATIENCE = 10  # how often a stopping kernel looks whether calls that block have
 
 
 class Request:
-    """A message in the inbox that asks the main task to end what it does. ``void``: it is dealt with already."""
+    """A message in the inbox that asks the main task to end its work. ``void`` says that it is dealt with already."""
 
     __slots__ = ("_read", "void")
 
@@ -57,7 +57,7 @@ class Endings:
     def interrupt(self) -> None:
         """Raise `Interrupted` in the main task. Safe from signal handlers and from any thread.
 
-        A second call before the first is over (`interrupt_over`, `settle`) gives up cleanup: `Abandoned` is raised at
+        A second call before the first is over (`interrupt_over`, `settle`) abandons cleanup: `Abandoned` is raised at
         every park point and checkpoint of all tasks that are cleaning up, in shields too, and in the main task.
         """
         self._ask_main_task(Interrupted, Abandoned)
@@ -65,20 +65,20 @@ class Endings:
     def terminate(self, number: int) -> None:
         """Raise `Terminated` in the main task, because of the signal NUMBER. Safe from signal handlers and from any thread.
 
-        Plans get `cleanup_limit` seconds for their cleanup. A second call, or an interrupt before it, gives up cleanup as a second
-        interrupt does. A process that does not end by that is ended all the same (`signals`).
+        Plans get `cleanup_limit` seconds for their cleanup. A second call, or a call after an interrupt, abandons cleanup as a second
+        interrupt does. If the process still does not end, it is ended by force (`signals`).
         """
         self.will_end(number)
         self._ask_main_task(lambda: Terminated(number), lambda: TerminatedAtOnce(number))
 
     def will_end(self, number: int) -> None:
-        """The signal NUMBER has asked the process to end; from now on it is watched whether it does."""
+        """Note that the signal NUMBER has asked the process to end, and watch from now on whether it does."""
         if self.ended_by is None:
             self.ended_by = number
             signals.watch(self, number)
 
     def _ask_main_task(self, first: Callable[[], BaseException], second: Callable[[], BaseException]) -> None:
-        """Have an exception raised in the main task: one that FIRST makes, or SECOND when it unwinds already."""
+        """Raise an exception in the main task: the result of FIRST, or of SECOND if the task unwinds already."""
         main = self.main
         if self.interruptible and not self._wakers and get_ident() == main.carrier.ident and (self._unwinding or not main.shielded):
             # We are a signal handler in the main thread, on top of a call that blocks: break it off.
@@ -98,12 +98,12 @@ class Endings:
         self.wake()
 
     def interrupt_over(self) -> None:
-        """Whoever caught `Interrupted` says that it is dealt with: the next interrupt is a first one again. A process that was asked
-        to end goes on to do so."""
+        """Note that `Interrupted` was caught and dealt with: the next interrupt is a first one again. A process that was asked to end
+        still ends."""
         self._unwinding = self.ended_by is not None
 
     def interrupt_waits(self) -> bool:
-        """True if the main task, about to go outside, would only hear when it is back that it was interrupted before."""
+        """True if an interrupt waits that the main task, about to go outside, would otherwise get only when it is back."""
         waiting = self._interrupts  # asked before the alarms, see `_read_interrupt`
         alarms = list(self.main.alarms or ())
         if self.main.shielded:
@@ -116,17 +116,19 @@ class Endings:
         return bool(self._interrupts) or self._unwinding
 
     def cleanup_began(self) -> float | None:
-        """When the cleanup that goes on began to count, by the wall's clock; ``None`` before it stops. First the plan of the main task
-        cleans up, and then what runs beside it, which the plan may need for that: each has the whole limit."""
+        """The time of the wall clock (s) at which the present cleanup began to count; ``None`` before the kernel stops.
+
+        First the plan of the main task cleans up, then the tasks beside it, which the plan may need for that. Each has the whole limit.
+        """
         return self._stops_since
 
     def deaf_for(self) -> float:
-        """For how many seconds an interrupt has been waiting to be read: the task that has the baton passes no checkpoint."""
+        """For how many seconds an interrupt has been waiting, because the task with the baton passes no checkpoint."""
         since = self._asked_at
         return 0.0 if since is None or not self._interrupts else time.monotonic() - since
 
     def take_back(self) -> None:
-        """Nobody reads the requests in the inbox, so the signal handler raises by itself: they are dealt with by that."""
+        """Take back the requests in the inbox, because the signal handler raises an exception itself."""
         for message in list(self._inbox):
             if isinstance(message, Request) and not message.void:
                 message.void = True
@@ -149,20 +151,20 @@ class Endings:
         self._asked_at = time.monotonic() if self._interrupts else None
 
     def _limit_cleanup(self) -> None:
-        """The process shall end: after `cleanup_limit` seconds of the kernel's clock cleanup is given up."""
+        """If the process was asked to end, abandon cleanup after `cleanup_limit` seconds of the kernel's clock."""
         if self.ended_by is not None and self.cleanup_limit is not None:
             self.post(lambda: self._timers.add(self.now() + self.cleanup_limit, self.give_up))
 
     def give_up(self) -> None:
-        """The limit of cleanup is reached: abandon it, in the scheduler."""
+        """Abandon cleanup, because its limit is reached. The scheduler calls it."""
         if not (self._stopping or self.stopped):
             self._abandon_tasks(f"It took longer than {self.cleanup_limit:g} s.")
             if self.ended_by is not None:
                 self._alarm(TerminatedAtOnce(self.ended_by), True)
 
     def _abandon_tasks(self, why: str = "") -> None:
-        """Give up the cleanup of all tasks that were asked to end, and the tasks below them: a request to end would not reach one
-        that is in a shield, and nobody waits for it any more. The user is told whose cleanup it is, and WHY."""
+        """Abandon the cleanup of all tasks that were asked to end, and the tasks below them: a request to end would not reach a task
+        in a shield, and no task waits for it any more. The user is told whose cleanup it is, and WHY."""
         main = self.main
         asked = [task for task in self.tasks if task is not main and task.cancel_request is not None]
         if told := [task for task in asked if not task.abandoned]:
@@ -178,7 +180,7 @@ class Endings:
                 cleaning.add(task)
 
     def _alarm(self, exception: BaseException, pierces_shield: bool) -> None:
-        """Have EXCEPTION raised in the main task, before anything else runs."""
+        """Raise EXCEPTION in the main task, before other tasks run."""
         main = self.main
         if main.alarms is None:
             main.alarms = []
@@ -195,7 +197,7 @@ class Endings:
             self._urgent = main
 
     def leave_for_dead(self, task: Task[object]) -> NoReturn:
-        """TASK swallows every request to end. Count it as dead, and never give it the baton again."""
+        """Count TASK, which swallows every request to end, as dead, and never give it the baton again."""
         carrier = task.carrier
         task._exception = Abandoned()
         self._bury(task)
@@ -207,11 +209,11 @@ class Endings:
     # ------------------------------------------------------------------ stopping
 
     def stop(self) -> None:
-        """Cancel all tasks, let them unwind, and end the kernel. Called by the main task.
+        """Cancel all tasks, let them unwind, and end the kernel. The main task calls it; in other tasks it is a KernelError.
 
-        Tasks get `cleanup_limit` seconds of the kernel's clock; then what serves them is closed (`at_stop`), and their cleanup is
-        abandoned, which the user is told; for calls that block it waits half a second. A task that is still there after that stays
-        parked for ever. Raises `Terminated` if a signal asked for the end of the process meanwhile.
+        Tasks get `cleanup_limit` seconds of the kernel's clock. Then their services are closed (`at_stop`) and their cleanup is
+        abandoned, with a message to the user. For calls that block it waits half a second. A task that is still there after that
+        stays parked for ever. Raises `Terminated` if a signal asked for the end of the process meanwhile.
         """
         if self.stopped:
             return
@@ -243,16 +245,16 @@ class Endings:
             raise Terminated(self.ended_by)  # the signal came while it stopped
 
     def close_what_serves(self) -> None:
-        """Call what was registered by `at_stop`, the last first."""
+        """Call the functions registered with `at_stop`, the last one first."""
         while self._at_stop:
             self._call(self._at_stop.popitem()[0])
 
     def at_stop(self, fn: Callback) -> None:
-        """Have FN called when the kernel stops and the tasks had their time to clean up; what was registered last comes first."""
+        """Call FN when the kernel stops, after the tasks had their time to clean up. The function registered last comes first."""
         self._at_stop[fn] = None
 
     def not_at_stop(self, fn: Callback) -> None:
-        """FN need not be called any more; harmless when it was not registered, or is being called."""
+        """Undo `at_stop`. It is harmless if FN was not registered, or is being called."""
         self._at_stop.pop(fn, None)
 
     def _let_unwind(self, seconds: float) -> None:
@@ -266,9 +268,9 @@ class Endings:
     # ------------------------------------------------------------------ failures that nobody looked at
 
     def _report_unclaimed(self, parent: Task[object] | None = None) -> None:
-        """Tell of the tasks that died of an exception nobody looked at: those whose PARENT is dead now, or all.
+        """Report the unhandled exceptions of dead tasks: of those whose PARENT is dead now, or of all.
 
-        All of them when the instant is over in which they died: whoever waits for them has had the baton since.
+        At the end of the instant in which they died all are reported: tasks that wait for them have had the baton since.
         """
         dead, self._unclaimed = self._unclaimed, []
         for task in dead:

@@ -1,9 +1,8 @@
-"""What the kernel raises.
+"""The exceptions of the kernel.
 
 Requests to end (`Cancelled`, `Interrupted`, `Terminated`, `Abandoned`) are not errors: they derive from `BaseException`, so that no
 `except Exception` and no Lisp handler of `error` swallows them on their way out (law 1: nothing outlives its parent).
-What went wrong with a run as a whole (`Deadlock`, `TimeLimit`) and wrong use of the kernel (`KernelError`) are
-ordinary exceptions.
+Problems of a run as a whole (`Deadlock`, `TimeLimit`) and wrong use of the kernel (`KernelError`) are ordinary exceptions.
 """
 
 from __future__ import annotations
@@ -12,9 +11,9 @@ import signal
 
 
 class Cancelled(BaseException):
-    """Delivered once to a task that was asked to end; its cleanup forms run while this unwinds the stack.
+    """Raised once in a task that was asked to end. Its cleanup forms run while this unwinds the stack.
 
-    `reason` is what the caller of `Task.cancel` gave.
+    `reason` is the argument of `Task.cancel`.
     """
 
     def __init__(self, reason: object = None):
@@ -26,18 +25,18 @@ class Cancelled(BaseException):
 
 
 class WaitEnded(Cancelled):
-    """Somebody ended the wait that a task's cleanup was stuck in (`Task.end_wait`). Unwinds to the end of that cleanup form."""
+    """A wait in a task's cleanup was ended (`Task.end_wait`). It unwinds to the end of that cleanup form."""
 
 
 class Interrupted(KeyboardInterrupt):
-    """The user asked the main task to stop (Ctrl-C). A script that does not catch it ends as Python ends one at Ctrl-C."""
+    """The user asked the main task to stop (Ctrl-C). A script that does not catch it ends as other Python scripts do at Ctrl-C."""
 
     def __str__(self) -> str:
         return "interrupted"
 
 
 class Terminated(SystemExit):
-    """The system asked the process to end by the signal ``number``. Raised in the main task; as exit status it gives 128 + ``number``."""
+    """The system asked the process to end with the signal ``number``. Raised in the main task. The exit status is 128 + ``number``."""
 
     def __init__(self, number: int):
         super().__init__(128 + number)
@@ -48,21 +47,21 @@ class Terminated(SystemExit):
 
 
 class Abandoned(BaseException):
-    """The user asked a second time, while the first request was still unwinding: cleanup is given up."""
+    """Cleanup is abandoned: the user asked for the end a second time, while the first request was still unwinding."""
 
     def __str__(self) -> str:
         return "cleanup abandoned"
 
 
 class TerminatedAtOnce(Abandoned, Terminated):
-    """The system asked the process to end a second time, or cleanup took longer than its limit: cleanup is given up."""
+    """Cleanup is abandoned: the system asked the process to end a second time, or cleanup took longer than its limit."""
 
     def __str__(self) -> str:
         return f"{Terminated.__str__(self)}, cleanup abandoned"
 
 
 class KernelError(RuntimeError):
-    """The kernel was used in a way that cannot work; the text says what to do instead."""
+    """The kernel was used in a way that cannot work. The text says what to do instead."""
 
 
 class Deadlock(Exception):
@@ -74,4 +73,4 @@ class TimeLimit(Exception):
 
 
 class NoStack(Exception):
-    """The system gives no more stacks; the cause says why. Back ends raise it, and the task that needed one fails."""
+    """The system gives no more stacks. The cause says why. Back ends raise it, and the task that needed the stack fails."""

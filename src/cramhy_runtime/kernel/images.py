@@ -1,16 +1,16 @@
-"""What is global belongs to an image, and several images live side by side in a process.
+"""Images: each holds its own global state, and several live side by side in a process.
 
-An image is what a Lisp means by the word: all that is defined and all that is under way, the packages and what their symbols
-mean, registries, the ROS graph, the active kernel. A module that has something global makes it here, as a `Cell` (one value) or
-as `per_image` (a table), and uses it as if there were but one image. When another image becomes the current one, the values go
-with the one that leaves and come with the one that enters (`_switch`). So what belongs to the image that runs is always where
-everybody finds it, and costs nothing; only the change of images costs, a few milliseconds.
+As in other Lisps, an image is the whole state of a session: all definitions and all that runs, the packages and the meanings of their
+symbols, registries, the ROS graph, the active kernel. A module makes its global state here, as a `Cell` (one value) or with `per_image`
+(a table), and uses it as if there were only one image. When another image becomes the current one, the values of the old image are put
+away and those of the new one are put in place (`_switch`). So access to the state of the current image costs nothing; only the change
+of images costs a few milliseconds.
 
 All images share one baton (law 4): a thread acts in an image while it has the turn. It takes the turn when it enters its first
-image, and gives it up when it has left; between, a kernel that waits for the world outside, or has run for `QUANTUM` while other
-threads wait, lets them have theirs (`breathe`, `outside`).
+image, and gives it up when it has left. In between, a kernel that waits for the world outside, or has run for `QUANTUM` while other
+threads wait, lets them have the turn (`breathe`, `outside`).
 
-A program that makes no image has one all the same, the first, and pays nothing for it.
+A program that makes no image uses the first one, and pays nothing for it.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ T = TypeVar("T")
 
 
 class Part(Protocol):
-    """Something of which each image has its own.
+    """A piece of global state of which each image has its own.
 
-    It may also have ``new(state)``: ``state``, what it was when all that comes with us was defined, for an image that begins with no
-    more than that. A part without this function begins as `copy` says.
+    It may also have ``new(state)``, for an image that begins with the definitions of cramhy only: ``state`` is the state at that time.
+    For a part without this function, such an image begins with `copy`.
     """
 
     def take(self) -> Any:
-        """What it is in the current image, to be given to `put` later."""
+        """The state in the current image, for `put`."""
 
     def put(self, state: Any) -> None:
-        """Let it be this in the current image."""
+        """Set the state in the current image."""
 
     def copy(self, state: Any) -> Any:
-        """The same for another image: what is changed in one of the two is not changed in the other."""
+        """A copy of STATE for another image: changes in one of the two do not reach the other."""
 
 
 P = TypeVar("P", bound=Part)
@@ -58,7 +58,7 @@ _cores: list[Any] = []  # what each part is in a new image
 
 
 def part(made: P) -> P:
-    """Let each image have its own of ``made``, a `Part`; returns it. What it is now is what a new image begins with."""
+    """Give each image its own state of ``made``, a `Part`, and return it. A new image begins with the present state."""
     _parts.append(made)
     _cores.append(_new(made, made.take()))
     return made
@@ -69,18 +69,18 @@ def _new(made: Any, state: Any) -> Any:
 
 
 def keep_core() -> None:
-    """Let new images begin with what the current one is now: all that comes with us is defined, and the user has defined nothing yet."""
+    """Let new images begin with the present state, when cramhy has defined everything and the user nothing yet."""
     _cores[:] = [_new(each, each.take()) for each in _parts]
 
 
 def copied(value: Any) -> Any:
-    """``value`` for another image: a copy of what can be changed and says so by its ``copy``; other objects all images share."""
+    """``value`` for another image: a copy if it has a method ``copy``. All images share other objects."""
     copy = getattr(value, "copy", None)
     return value if copy is None else copy()
 
 
 class Cell(Generic[T]):
-    """One global ``value``, of the current image. ``fresh``: it is about something that runs, and in a new image nothing does."""
+    """One global ``value``, of the current image. ``fresh`` says that it is about something that runs, so a new image begins with VALUE."""
 
     __slots__ = ("value", "_begins")
 
@@ -135,8 +135,8 @@ class _Object:
 
 
 def per_image(thing: T) -> T:
-    """Let each image have its own contents of ``thing``, which stays the same object: a dictionary, list, set or deque, or an object
-    with attributes. Returns it."""
+    """Give each image its own contents of ``thing``, and return it: a dictionary, list, set or deque, or an object with attributes. It is
+    the same object in all images."""
     part(_Table(thing) if isinstance(thing, (dict, list, set, deque)) else _Object(thing))
     return thing
 
@@ -145,7 +145,7 @@ def per_image(thing: T) -> T:
 
 
 waiting: deque = deque()
-"""The locks of the threads that wait for their turn, in their order. A kernel looks here whenever time passes."""
+"""The locks of the threads that wait for their turn, in order. A kernel looks here whenever time passes."""
 
 
 class _Turn:
@@ -192,15 +192,15 @@ _entered: dict[int, list[Image]] = {}  # thread -> the images that it has entere
 
 
 class Image:
-    """All that is global, once more. It begins as the process's first one did, with nothing of the user's.
+    """Another set of all global state. It begins like the process's first image, without definitions of the user.
 
     The calling thread acts in it from `enter` to `leave`, or ``with image.entered():``. An image may be entered again after it was left,
-    but by one thread at a time. Other images may be entered within; then this one is the current one again. Threads that use images
-    enter one, each of them.
+    but only by one thread at a time. Other images may be entered within; after them this one is the current one again. Each thread that
+    uses images enters one.
     """
 
     def __init__(self, as_now: bool = False):
-        """as_now: whether it begins as the current image is now, with what is defined there. What runs there does not run here."""
+        """as_now: whether it begins with the present definitions of the current image. Tasks that run there do not run here."""
         self._states = [each.copy(each.take()) for each in _parts] if as_now else None  # while it is not the current one; None: as new
         self._thread: int | None = None
 
@@ -209,7 +209,7 @@ class Image:
         return self._thread in (None, get_ident())
 
     def enter(self) -> None:
-        """Make it the current image."""
+        """Make it the current image. If another thread is in it, it is a KernelError."""
         me = get_ident()
         if not self.may_be_entered():
             raise KernelError("Another thread is in this image. An image is entered by one thread at a time; make one for each.")
@@ -225,7 +225,7 @@ class Image:
         _switch(self)
 
     def leave(self) -> None:
-        """Make that image the current one in which the thread was before."""
+        """Make the image current in which the thread was before."""
         stack = _entered[get_ident()]
         stack.pop()
         if self not in stack:
@@ -237,7 +237,7 @@ class Image:
 
     @contextmanager
     def entered(self) -> Iterator[Self]:
-        """While the block runs, it is the current image."""
+        """``with image.entered():`` makes it the current image during the block."""
         self.enter()
         try:
             yield self
@@ -245,19 +245,19 @@ class Image:
             self.leave()
 
     def forget(self) -> None:
-        """Let it be as new when it is entered again; what it held may go."""
+        """Drop its state: it is as new when it is entered again. For the current image it is a KernelError."""
         if self is _current[0]:
             raise KernelError("The current image cannot be forgotten. Leave it first.")
         self._states = None
 
 
 first = Image()
-"""The image that a process begins with."""
+"""The image with which a process begins."""
 _current = [first]
 
 
 def current() -> Image:
-    """The image that everything global belongs to now."""
+    """The image to which global state belongs now."""
     return _current[0]
 
 
@@ -279,7 +279,7 @@ def _switch(image: Image) -> None:
 
 
 def breathe():
-    """Let a thread that waits have its turn if ours is long enough. For a kernel, where nothing is half done."""
+    """Let a waiting thread have its turn if ours has been long enough. A kernel calls this when no operation is half done."""
     if waiting and time.monotonic() - _turn.since > QUANTUM:
         with outside():
             pass
@@ -287,7 +287,7 @@ def breathe():
 
 @contextmanager
 def outside():
-    """While the block runs, other threads may act in their images; it touches nothing that belongs to one."""
+    """Let other threads act in their images during the block, which must not touch the state of an image."""
     image = _current[0]
     if image._thread is None:
         yield  # nobody has entered an image, and there are no turns
@@ -301,7 +301,7 @@ def outside():
 
 
 def _after_fork():
-    """The threads that waited, or had the turn, did not come along into a forked child."""
+    """Forget threads that waited or had the turn: they do not exist in a forked child."""
     _turn.__init__()
     for thread in [thread for thread in _entered if thread != get_ident()]:
         del _entered[thread]
@@ -310,7 +310,7 @@ def _after_fork():
 
 
 def in_forked_child(call):
-    """From now on CALL is called in each process that this one forks, where the system has forks at all."""
+    """Call CALL in each process that this one forks from now on, if the system has forks."""
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=call)
 

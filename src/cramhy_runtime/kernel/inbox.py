@@ -1,12 +1,12 @@
 """The world outside of the kernel: messages that come in, and calls that block.
 
 Outside threads (bridges, servers, a helper that waits for a socket) never touch tasks. They put a function into the inbox,
-and whoever looks for the next task calls it, with the baton. A task that has to block goes outside itself: it gives the
+and the thread that looks for the next task calls it, with the baton. A task that must block goes outside itself: it gives the
 baton away, blocks, and comes back by a message.
 
-In virtual time the clock stands still as long as a task is outside, for nobody can say how much virtual time its call
-takes; likewise while somebody outside owes an answer (`time_held`). A source that only may send messages
-(`outside_source`) does not hold the clock, but waiting for it is no deadlock.
+In virtual time the clock stands still as long as a task is outside, since it is unknown how much virtual time its call
+takes. It also stands still while a program outside owes an answer (`time_held`). A source that only may send messages
+(`outside_source`) does not hold the clock, but waiting for it is not a deadlock.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Outside:
     # ------------------------------------------------------------------ messages
 
     def post(self, fn: Callback) -> None:
-        """Have FN called in the scheduler, soon. Safe from any thread and from signal handlers. FN must not park."""
+        """Call FN in the scheduler, soon. Safe from any thread and from signal handlers. FN must not park."""
         self._inbox.append(fn)
         self._bell.ring()
 
@@ -46,7 +46,7 @@ class Outside:
             self._call(inbox.popleft())
 
     def outside_source(self) -> OutsideSource:
-        """A context manager: while it is open, messages may still come from outside, and waiting is no deadlock.
+        """A context manager. While it is open, messages may still come from outside, and waiting is not a deadlock.
 
         May be entered and left in any thread.
         """
@@ -54,37 +54,40 @@ class Outside:
 
     @property
     def idle_seconds(self) -> float:
-        """Seconds of the wall for which there was nothing to do, so far. May be asked from any thread."""
+        """Seconds of wall time so far for which there was nothing to do. Any thread may ask."""
         return self._bell.waited
 
     @property
     def hears_outside(self) -> bool:
-        """Whether messages may come from outside, so that whoever waits for something else must not keep the baton."""
+        """Whether messages may come from outside, so that a task that waits for something else must not keep the baton."""
         return self._outside > 0
 
     @property
     def stops(self) -> bool:
-        """Whether it is about to stop."""
+        """Whether the kernel is about to stop."""
         return self._stopping
 
     def count_outside(self, difference: int) -> None:
+        """Change the number of open sources."""
         self._outside += difference
 
     def time_held(self) -> TimeHeld:
-        """A context manager: while it is open, virtual time stands still, as if a task were outside. With the baton only."""
+        """A context manager. While it is open, virtual time stands still, as if a task were outside. Use it only with the baton."""
         return TimeHeld(self)
 
     def count_blocking(self, difference: int) -> None:
+        """Change the number of calls that hold virtual time."""
         self._blocking += difference
 
     # ------------------------------------------------------------------ calls that block
 
     def run_blocking(self, fn: Callable[[*Arguments], T], *args: *Arguments) -> T:
-        """Run FN(*ARGS) outside of the kernel and return what it returns. The baton goes round meanwhile.
+        """Run FN(*ARGS) outside of the kernel and return its result. Other tasks run meanwhile.
 
-        In virtual time the clock stands still as long as such a call is out. A request to end the task is delivered
-        when FN has returned; an interrupt of the main task breaks FN off, if it comes from a signal handler or if FN
-        runs in a helper thread (which then goes on for nothing). Inside of `woken_by` it does not: FN is woken, and returns.
+        In virtual time the clock stands still until FN has returned. A request to end the task is delivered when FN has
+        returned. An interrupt of the main task breaks FN off, if it comes from a signal handler or if FN runs in a helper
+        thread (whose result is then lost). Inside of `woken_by` it does not: FN is woken, and returns. Exceptions of FN are
+        raised here.
         """
         me = self.current
         if me.attention:
@@ -109,10 +112,10 @@ class Outside:
 
     @contextmanager
     def woken_by(self, wake: Callback) -> Iterator[None]:
-        """While the block runs, an interrupt, and a signal that ends the process, calls WAKE, which ends the wait in the block.
+        """During the block, an interrupt, or a signal that ends the process, calls WAKE, which ends the wait in the block.
 
-        For waits that must not be broken off by an exception, since they hold something: a line that was typed. WAKE may be called
-        more than once, by a signal handler and by any thread, and must do no more than both may do.
+        It is for waits that an exception must not break off, since they hold data, such as a typed line. A signal handler or any thread
+        may call WAKE, more than once, so it must be safe for both.
         """
         before = self._wakers
         self._wakers = (*before, wake)
@@ -122,19 +125,19 @@ class Outside:
             self._wakers = before
 
     def wake(self) -> None:
-        """Call what `woken_by` named, the innermost one last."""
+        """Call the functions of `woken_by`, the innermost one last."""
         for wake in self._wakers:
             wake()
 
     def leave(self, task: Task[object]) -> int:
-        """TASK goes outside. Returns the number of this visit, which `comes_back` takes."""
+        """Note that TASK goes outside. Returns the number of this visit, for `comes_back`."""
         self.current = self._scheduler
         task.state = BLOCKED
         self._blocking += 1
         return task.ticket
 
     def comes_back(self, task: Task[object], visit: int | None = None) -> None:
-        """TASK is back from outside, unless it was called back before (then VISIT is an old one)."""
+        """Note that TASK is back from outside, unless it was called back before (then VISIT is an old number)."""
         if task.state is BLOCKED and (visit is None or visit == task.ticket):
             task.ticket += 1
             self._blocking -= 1

@@ -1,7 +1,7 @@
-"""What the kernel tells people: where tasks are parked, why nothing goes on, and what nobody else heard.
+"""Reports for people: where tasks are parked, why the run cannot go on, and unhandled exceptions.
 
-The kernel knows Python frames and exceptions. A `Reporter` describes them in the terms of the floors above; `install_reporter` puts it
-into use. Until then the `PlainReporter` describes them in Python's terms.
+The kernel knows Python frames and exceptions. A `Reporter` describes them in the terms of the floors above; `install_reporter` installs
+it. Until then the `PlainReporter` describes them in Python's terms.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _TUTORIALS = _LIBRARY + "tutorials" + os.sep
 
 
 def of_the_library(file):
-    """Whether ``file``, a path, is code of this library, which means nothing to its user; the tutorials in it are the user's."""
+    """Whether ``file``, a path, is code of this library, which reports do not show. Its tutorials count as the user's."""
     return file.startswith(_LIBRARY) and not file.startswith(_TUTORIALS)
 
 
@@ -33,14 +33,14 @@ class Named(Protocol):
 
 
 class Reporter(Protocol):
-    """Describes to people what the kernel knows in Python's terms."""
+    """Describes frames and exceptions for people."""
 
     def describe_frame(self, frame: FrameType) -> str | None:
-        """A Python frame in the user's terms; ``None`` for a frame that is not the user's. Then the next outer one is tried."""
+        """A Python frame in the user's terms, or ``None`` if it is not the user's; then the next outer frame is tried."""
         ...
 
     def unhandled(self, task: Named, exception: BaseException) -> None:
-        """``task`` died of ``exception`` and nobody looked, or a callback raised it."""
+        """Report ``exception``, which ended ``task`` and was not handled, or which a callback raised."""
         ...
 
 
@@ -75,23 +75,23 @@ installed = Installed()
 
 
 def install_reporter(reporter: Reporter) -> Reporter:
-    """Let ``reporter`` describe frames and failures from now on. Returns the one that did so before."""
+    """Let ``reporter`` describe frames and failures from now on. Returns the reporter that did so before."""
     before, installed.reporter = installed.reporter, reporter
     return before
 
 
 def describe_frame(frame: FrameType) -> str | None:
-    """``frame`` in the user's terms, or ``None``: what the installed reporter answers."""
+    """``frame`` in the user's terms, or ``None``, from the installed reporter."""
     return installed.reporter.describe_frame(frame)
 
 
 def unhandled(task: Named, exception: BaseException) -> None:
-    """Tell of an exception that nobody handled, by the installed reporter."""
+    """Report an unhandled exception with the installed reporter."""
     installed.reporter.unhandled(task, exception)
 
 
 def where(frame):
-    """FRAME or the innermost frame around it that means something to the user, as text; "" if there is none."""
+    """FRAME, or the innermost frame around it that is the user's, as text; "" if there is none."""
     while frame is not None:
         if not frame.f_code.co_filename.startswith(_HERE):
             try:
@@ -105,12 +105,12 @@ def where(frame):
 
 
 def waiting_list(kernel):
-    """For each task that waits: its name, what it waits for, and where; the oldest first."""
+    """Lines for all tasks that wait, the oldest first: the name, what it waits for, and where."""
     return list_of(kernel, [task for task in kernel.tasks if task.state in (PARKED, BLOCKED)])
 
 
 def list_of(kernel, tasks):
-    """For each of TASKS: its name, what it waits for, or that it computes, and where."""
+    """Lines for TASKS: the name, what it waits for or that it computes, and where."""
     lines = []
     for task in tasks[:LONGEST_LIST]:
         waits = task.state in (PARKED, BLOCKED)
@@ -124,7 +124,7 @@ def list_of(kernel, tasks):
 
 
 def tell(text):
-    """Say TEXT to the user, on the process's error output; where nobody reads that any more nothing is said."""
+    """Print TEXT on the process's error output. If that is closed, do nothing."""
     try:
         print(f"cramhy: {text}", file=sys.stderr, flush=True)
     except (OSError, ValueError, AttributeError):  # the terminal was closed, or there is none
@@ -132,8 +132,8 @@ def tell(text):
 
 
 def write_shown(stream, text):
-    """Write TEXT to one of Python's streams. Signs that its encoding lacks are written as escapes, such as ``\\u2192``: a pipe of Windows
-    has cp1252, and a plan does not end because of an arrow that it prints."""
+    """Write TEXT to one of Python's streams. Characters that its encoding lacks are written as escapes, such as ``\\u2192``: a pipe of
+    Windows has cp1252, and a plan must not end because it prints an arrow."""
     try:
         stream.write(text)
     except UnicodeEncodeError as problem:
@@ -141,15 +141,16 @@ def write_shown(stream, text):
 
 
 def abandoned_text(kernel, tasks, why=""):
-    """Whose cleanup is given up: of TASKS, each with what it waits for, and WHY."""
+    """The message that the cleanup of TASKS was given up, with what each waits for, and WHY."""
     whose = "this task" if len(tasks) == 1 else f"these {len(tasks)} tasks"
     return (
-        f"The cleanup of {whose} was given up.{f' {why}' if why else ''} What it was to stop may still be going on:\n"
+        f"The cleanup of {whose} was given up.{f' {why}' if why else ''} The work that it should stop may still be going on:\n"
         f"{list_of(kernel, tasks)}"
     )
 
 
 def deadlock_text(kernel):
+    """The message of a deadlock."""
     return (
         "Nothing can happen any more: every task waits, and no timer and no outside event can wake one.\n"
         f"{waiting_list(kernel)}\n"
@@ -158,6 +159,7 @@ def deadlock_text(kernel):
 
 
 def time_limit_text(kernel, limit):
+    """The message that the time LIMIT (s) was reached."""
     waiting = waiting_list(kernel)
     return (
         f"The run reached its time limit of {limit:g} s.\n"

@@ -1,19 +1,19 @@
 """The scheduler: one baton, a queue, timers, an inbox.
 
 At most one task runs at any moment, the one with the baton (law 4). It gives the baton away at named points: it parks,
-yields, ends, or used up its slice. There is no scheduler thread. Whoever gives the baton away looks for the next
-task on its own stack (`_next`), and jumps to it, or goes on if it is the next itself. What `_next` does, in this order:
+yields, ends, or has used up its slice. There is no scheduler thread. The task that gives the baton away looks for the next
+task on its own stack (`_next`), and jumps to it, or goes on if it is the next itself. `_next` handles, in this order:
 
 1. messages from outside (the inbox),
 2. timers that are due, the one created first before others of the same time,
 3. the first task in the queue (or, with a seed, any of them, by lot; or the one that a given function chooses),
-4. if nothing is runnable, this instant is over: the clock goes to the next timer,
-5. if there is none either, and nobody outside who may send a message: deadlock, which the main task hears of.
+4. if no task is runnable, this instant is over: the clock goes to the next timer,
+5. if there is none either, and no source outside may send a message: a deadlock, which is raised in the main task.
 
 So a run is a function of the program, the seed and the order of messages (law 5).
 
-CRAM leaves all this to the threads of SBCL and gains data races; structured concurrency, parking and the clock that
-jumps are taken from trio and SimPy.
+CRAM leaves all this to the threads of SBCL and gets data races. Structured concurrency, parking and the clock that
+jumps come from trio and SimPy.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def lots(seed: int | float | str) -> Callable[[deque[Task[object]]], int]:
 
 
 class Kernel(Endings, Outside):
-    """A set of tasks with their clock. Made by `kernel.start`; the module's functions act on the one that is active."""
+    """A set of tasks with their clock. `kernel.start` makes it; the functions of `active` act on the active one."""
 
     # Slots, since Python finds attributes of an object that has thirty or more of them in a slower way.
     __slots__ = (
@@ -121,7 +121,7 @@ class Kernel(Endings, Outside):
 
     @property
     def untouched(self) -> bool:
-        """Whether it is as it was at first: no task but the main one, no timer, no message, and no time has passed."""
+        """Whether it is unchanged since its start: no task but the main one, no timer, no message, and no time has passed."""
         return (
             len(self._tasks) == 1
             and self.current is self.main
@@ -135,13 +135,13 @@ class Kernel(Endings, Outside):
 
     @property
     def epoch(self) -> float:
-        """The moment at which its time began, in seconds since 1970."""
+        """The moment at which the kernel's time began, in seconds since 1970."""
         return self.clock.epoch
 
     def spawn(
         self, fn: Callable[[*Arguments], T], *args: *Arguments, name: Name | None = None, parent: Task[object] | None = None
     ) -> Task[T]:
-        """A new task that will run FN(*ARGS), at the end of the queue. PARENT: the current task if not given."""
+        """A new task at the end of the queue, which will run FN(*ARGS). PARENT is by default the current task."""
         me = self.current
         carrier = me.carrier
         if carrier is not None and carrier.ident != get_ident():
@@ -168,11 +168,11 @@ class Kernel(Endings, Outside):
     # ------------------------------------------------------------------ park points
 
     def park(self, why: Why = "", until: float | None = None) -> bool:
-        """Give the baton away until `unpark` (True) or until the clock reaches UNTIL (False).
+        """Give the baton away until `unpark` (True) or until the clock reaches UNTIL, in seconds (False).
 
-        WHY, text or a function of no arguments that gives one, stands in reports. Raises what the task is asked to
-        end with, before or after. What was to be called on this stack before it parks may take its time, and the wake-up may
-        come meanwhile: then the result is True at once, and the caller looks again.
+        WHY, a text or a function that makes one, says in reports what the task waits for. A request to end the task is raised
+        here, before or after the wait. If functions are called on this stack first (`Task.interject`), the wake-up may come
+        meanwhile: then the result is True at once, and the caller looks again.
         """
         me = self.current
         if me.attention and me.deliver():
@@ -199,7 +199,7 @@ class Kernel(Endings, Outside):
         return me.woken
 
     def unpark(self, task: Task[object]) -> bool:
-        """Make a parked task runnable; returns True if it was parked, else nothing happens and the result is False."""
+        """Make a parked task runnable. Returns True if it was parked; otherwise does nothing and returns False."""
         carrier = self.current.carrier
         if carrier is not None and carrier.ident != get_ident():
             self._refuse("wake a task")
@@ -221,7 +221,7 @@ class Kernel(Endings, Outside):
         self._streak = 0
 
     def rouse(self, task: Task[object]) -> None:
-        """Wake TASK, wherever it waits inside of the kernel, because something is to be raised in it."""
+        """Wake TASK, wherever it waits inside of the kernel, because an exception is to be raised in it."""
         if task.state is PARKED:
             self._wake(task, True)
         elif task.state is SETTLING:
@@ -229,7 +229,7 @@ class Kernel(Endings, Outside):
             self._enqueue(task)
 
     def sleep(self, seconds: float) -> None:
-        """Park for SECONDS of the kernel's clock; zero and less yields. Wake-ups do not cut it short."""
+        """Park for SECONDS of the kernel's clock. Zero and less yields. Wake-ups do not shorten it. NaN is a ValueError."""
         if not seconds > 0:
             if seconds != seconds:
                 raise ValueError("The time to sleep is not a number.")
@@ -240,7 +240,7 @@ class Kernel(Endings, Outside):
             pass
 
     def yield_(self) -> None:
-        """Go to the end of the queue. Counts as a checkpoint: who only yields uses up a slice too."""
+        """Go to the end of the queue. It counts as a checkpoint: a task that only yields uses up its slice too."""
         left = budget.left - 1
         if left < 0:
             self.end_slice()
@@ -258,7 +258,7 @@ class Kernel(Endings, Outside):
             me.deliver()
 
     def end_slice(self) -> None:
-        """What a checkpoint does when the slice is over: others get a turn, and requests to end are delivered."""
+        """End the slice, at a checkpoint: others get a turn, and requests to end are delivered."""
         me = self.current
         if me is self._scheduler:
             budget.renew()
@@ -283,10 +283,10 @@ class Kernel(Endings, Outside):
             me.deliver()
 
     def settle(self) -> None:
-        """Let the others run until none is runnable at this instant. The clock does not move.
+        """Let the other tasks run until none is runnable at this instant. The clock does not move.
 
         Tasks that are busy all the time count as done for this instant once each has used up a slice. The REPL calls
-        this after each form, so it also ends what an interrupt began (`interrupt_over`) and reports the dead.
+        this after each form, so it also ends an interrupt (`interrupt_over`) and reports unhandled exceptions.
         """
         me = self.current
         if me.attention:
@@ -304,7 +304,7 @@ class Kernel(Endings, Outside):
         self._report_unclaimed()
 
     def shield(self) -> shield:
-        """A context manager: requests to end the current task wait until the block is left."""
+        """``with kernel.shield():`` delays requests to end the current task until the block is left."""
         return shield(self.current)
 
     def _refuse(self, what: str) -> NoReturn:
@@ -313,7 +313,7 @@ class Kernel(Endings, Outside):
     # ------------------------------------------------------------------ the baton
 
     def rest(self, me: Task[object]) -> None:
-        """Give the baton away; returns when ME has it again. ME is queued or parked already."""
+        """Give the baton away. Returns when ME, which is queued or parked already, has it again."""
         dynamic = me.dynamic
         if dynamic is not None:
             dynamic.leave()
@@ -322,7 +322,7 @@ class Kernel(Endings, Outside):
             dynamic.enter()
 
     def hand_over(self, me: Task[object]) -> None:
-        """The same for a task whose dynamic state is put away."""
+        """As `rest`, for a task whose dynamic state is put away already."""
         task = self._next()
         while task.carrier is None:
             try:
@@ -341,7 +341,7 @@ class Kernel(Endings, Outside):
         budget.left = SLICE
 
     def carry(self, carrier: Carrier) -> Carrier:
-        """The job of every carrier: live the life of the current task, and of new tasks that come next.
+        """The job of every carrier: run the current task, and new tasks that come next.
 
         Returns the carrier that gets the baton. A carrier that was taken as a spare, to hold the baton while a task is
         outside, finds no current task and begins with the search.
@@ -364,7 +364,7 @@ class Kernel(Endings, Outside):
             task.carrier = carrier
 
     def _bury(self, task: Task[object]) -> None:
-        """TASK has ended: tell those who wait for it."""
+        """Mark TASK as dead, and wake the tasks that wait for it."""
         self.current = self._scheduler
         task.state = DEAD
         # What a dead task holds makes no circles, so that it goes without the garbage collector.
@@ -389,7 +389,7 @@ class Kernel(Endings, Outside):
             self.unpark(self.main)
 
     def _next(self) -> Task[object]:
-        """Find the task that gets the baton. The heart of the matter; see the top of this file."""
+        """Find the task that gets the baton, as the top of this file says."""
         self.current = self._scheduler
         queue, entries, clock = self._queue, self._timers.entries, self.clock
         while True:
@@ -435,7 +435,7 @@ class Kernel(Endings, Outside):
         return task
 
     def _time_passes(self) -> None:
-        """Busy tasks have used up this instant, and the others' timers shall not wait for ever."""
+        """Let some time pass, since busy tasks have used up this instant, and the timers of others must not wait for ever."""
         self._streak = self._steps = 0
         if self._watchers:
             self._tell_watchers()
@@ -451,7 +451,7 @@ class Kernel(Endings, Outside):
             self._reach_limit()
 
     def _end_of_instant(self) -> None:
-        """Nothing is runnable: go to the next timer, or wait for a message, or tell the main task that it is over."""
+        """Go to the next timer, or wait for a message, or raise a deadlock or the time limit in the main task. No task is runnable."""
         if self._unclaimed:
             self._report_unclaimed()
             return
@@ -490,31 +490,31 @@ class Kernel(Endings, Outside):
             self.interrupt()
 
     def _time_is_wanted(self) -> bool:
-        """Whether time passes though a task is outside: only the main task is, at the prompt, and somebody else wants it to pass."""
+        """Whether time passes though a task is outside: only the main task is, at the prompt, and a `TimeWanted` is open."""
         if self._blocking != 1 or self.main.state is not BLOCKED:
             return False
         clock = self.clock
         return clock.wanted > 0 if clock.pace is None else clock.pace.time_is_wanted
 
     def wait_for_message(self, seconds: float) -> None:
-        """Wait until something comes into the inbox, SECONDS at most; may come back early. Holds up all tasks."""
+        """Wait until a message comes into the inbox, at most SECONDS. It may return early. No task runs meanwhile."""
         if not self._inbox:
             self._bell.wait(seconds)
 
     def watch_instants(self, fn: Callback) -> None:
         """Call FN in the scheduler whenever nothing is left to do at this instant, before time goes on. It must not park.
 
-        Then every task is where it will be until something new happens: the moment to look at them. While nothing happens, as at
-        the prompt, it is called now and then.
+        At that moment every task is where it stays until something new happens. If nothing happens, as at the prompt, FN is
+        called from time to time.
         """
         self._watchers = (*self._watchers, fn)
 
     def unwatch_instants(self, fn: Callback) -> None:
-        """Call FN no more."""
+        """Stop calling FN."""
         self._watchers = tuple(watcher for watcher in self._watchers if watcher != fn)
 
     def _tell_watchers(self) -> bool:
-        """Returns whether there is something to do now."""
+        """Call the watchers. Returns whether there is something to do now."""
         for watcher in self._watchers:
             self._call(watcher)
         return bool(self._queue or self._inbox)
@@ -526,13 +526,16 @@ class Kernel(Endings, Outside):
     # ------------------------------------------------------------------ timers
 
     def call_at(self, time: float, fn: Callback) -> Timer:
-        """Call FN in the scheduler when the clock reaches TIME (s). FN must not park. Returns the Timer."""
+        """Call FN in the scheduler when the clock reaches TIME, finite seconds, and return the Timer. FN must not park."""
         if not time < INFINITY:
             raise ValueError(f"A timer needs a finite time, not {time}.")
         return self._timers.add(time, fn)
 
     def call_every(self, period: float, fn: Callback, first: float | None = None) -> Timer:
-        """Call FN every PERIOD seconds, from the time FIRST on (one period from now if not given), without drift."""
+        """Call FN every PERIOD seconds, without drift, from the time FIRST on (by default one period from now). Returns the Timer.
+
+        FN must not park. A PERIOD that is not positive and finite is a ValueError.
+        """
         if not 0 < period < INFINITY:
             raise ValueError(f"The period of a timer must be more than 0 s and finite, not {period}.")
         if first is None:
@@ -540,7 +543,7 @@ class Kernel(Endings, Outside):
         return self._timers.add(first, fn, period)
 
     def _fire(self, now: float) -> None:
-        """Fire what is due. What the callbacks add comes in the next turn, so that none can keep the baton for ever."""
+        """Fire the timers that are due. Timers that the callbacks add fire in the next turn, so no callback keeps the baton for ever."""
         timers = self._timers
         entries, newest = timers.entries, timers.order
         while entries and entries[0][0] <= now and entries[0][1] < newest:

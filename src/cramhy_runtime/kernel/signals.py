@@ -1,18 +1,18 @@
-"""Signals: how the system asks a process to end, and how the kernel hears of it.
+"""Signals: how the system asks a process to end, and how the kernel reacts.
 
 SIGINT (Ctrl-C) interrupts the main task. SIGTERM, SIGHUP (the terminal was closed), SIGQUIT, and SIGBREAK on Windows end the process:
-the main task unwinds, plans are ended through their cleanup forms, so a robot gets its stop command, and what serves them is closed.
-The exit status is 128 + the signal's number, as a shell says it. A signal that the process ignores (``nohup``), or that somebody else
-handles, is left alone.
+the main task unwinds, plans end through their cleanup forms, so a robot gets its stop command, and the services of plans are closed.
+The exit status is 128 + the signal's number, as in a shell. A signal that the process ignores (``nohup``), or that other code handles,
+is left alone.
 
 A handler runs between any two instructions of the main thread. So it raises nothing: it puts a message into the inbox
-(`Kernel.interrupt`, `Kernel.terminate`), and the main task hears of it at its next park point or checkpoint. There are two exceptions. A
-blocking call that the main task made by `run_blocking` is broken off. And when nobody has read the message for a second, the main thread
-computes, or waits, in code that knows nothing of the kernel; then the next signal raises right there, as Python's own handler does.
+(`Kernel.interrupt`, `Kernel.terminate`), and the main task gets it at its next park point or checkpoint. There are two exceptions. A
+blocking call of the main task in `run_blocking` is broken off. And if the message is not read for a second, the main thread computes, or
+waits, in code that does not know the kernel; then the next signal raises an exception there, as Python's own handler does.
 
-A program must end even if a plan does not. So the first signal that ends it starts a thread that looks on (`watch`). After a second it
-sends the signal again to a main thread that has not heard it. After the limit of cleanup it has cleanup given up. And if the kernel has
-not stopped soon after that, it says whose fault it is, closes what serves the plans, and ends the process.
+A program must end even if a plan does not. So the first signal that ends it starts a thread that watches (`watch`). After a second the
+thread sends the signal again to a main thread that has not reacted. After the limit of cleanup it abandons cleanup. If the kernel does
+not stop soon after that, it names the task at fault, closes the services of plans, and ends the process.
 """
 
 import _signal  # below `signal`, whose enumerations would take half of the time in which a kernel starts
@@ -42,24 +42,24 @@ _held = 0  # how many programs keep our handlers between kernels
 _program = None  # the process of these programs
 
 received = []
-"""The numbers of the signals that have asked this process to end, the first first."""
+"""The numbers of the signals that have asked this process to end, in order."""
 
 leaving = threading.Event()
-"""It is set when the main program is over, and Python starts no more threads."""
+"""Set when the main program is over and Python starts no more threads."""
 
 restore_terminal = []
-"""Functions that bring the terminal back to what it was; called when a process is ended by force."""
+"""Functions that restore the terminal. They are called when a process is ended by force."""
 
 
 def listen(kernel):
-    """From now on KERNEL hears signals. Only Python's main thread does, so elsewhere nothing happens."""
+    """Let KERNEL handle signals from now on. Only Python's main thread gets signals, so in other threads this does nothing."""
     if threading.current_thread() is threading.main_thread():
         _kernels.append((images.entered_by_main_thread(), kernel))
         _install()
 
 
 def forget(kernel):
-    """KERNEL has stopped: signals are for the one before it, or for whoever had them before us."""
+    """Let the kernel before KERNEL, which has stopped, handle signals again, or else the handlers from before."""
     listening = len(_kernels)
     _kernels[:] = [each for each in _kernels if each[1] is not kernel]
     if len(_kernels) < listening:
@@ -67,12 +67,12 @@ def forget(kernel):
 
 
 def listening_images():
-    """The images that have a kernel which hears signals, without those that another thread is in."""
+    """The images with a kernel that handles signals, without those in which another thread acts."""
     return list(dict.fromkeys(image for image, _ in _kernels if image.may_be_entered()))
 
 
 def _forget_parent():
-    """A forked child has none of its parent's tasks to end, so signals are for whoever had them before us."""
+    """Restore the handlers from before in a forked child, which has none of its parent's tasks to end."""
     _kernels.clear()
     _restore()
 
@@ -82,7 +82,7 @@ images.in_forked_child(_forget_parent)
 
 @contextmanager
 def held():
-    """While the block runs, signals are ours between kernels, too: for a program, which ends in order before and after its session."""
+    """Handle signals during the block between kernels, too, so that a program ends in order before and after its session."""
     global _held, _program
     _held += 1
     _program = os.getpid()
@@ -95,7 +95,8 @@ def held():
 
 
 def answered():
-    """The program is there until somebody ends it, and has done what the signals asked for: its exit status is its own."""
+    """Note that the program has done what the signals asked for: its exit status is its own. For programs that run until they are
+    ended."""
     received.clear()
     for _, kernel in _kernels:
         kernel.ended_by = None
@@ -121,13 +122,13 @@ def _restore():
 
 
 def end_as_interrupted():
-    """The last thing of a process whose main program did not catch Ctrl-C: it ends by the signal, as Python ends it. Else nothing."""
+    """If the main program did not catch Ctrl-C, end the process by the signal, as Python does. It is the last call of a process."""
     if uncaught.ended_by_interrupt():
         end_by(signal.SIGINT)
 
 
 def end_by(number):
-    """End the process by the signal NUMBER itself. For its last moment, in the main thread."""
+    """End the process by the signal NUMBER itself. Call this as the last thing, in the main thread."""
     _flush()
     if threading.current_thread() is threading.main_thread():
         signal.signal(number, signal.SIG_DFL)
@@ -135,7 +136,7 @@ def end_by(number):
 
 
 def _listener():
-    """The kernel that signals are for: the innermost one of the image that the main thread is in. The kernel of an image that was left
+    """The kernel that gets signals: the innermost one of the image in which the main thread acts. The kernel of an image that was left
     does not run, and would never read a message."""
     here = images.entered_by_main_thread()
     return next((kernel for image, kernel in reversed(_kernels) if image is here), None)
@@ -163,7 +164,7 @@ def _hear(number, frame):
 
 
 def _runs_here(kernel):
-    """Whether what has the baton, a task or a callback, surely runs in this thread, and may be broken off."""
+    """Whether the task or callback with the baton surely runs in this thread, and may be broken off."""
     if kernel.stops:  # what serves plans is being closed, and has its time
         return False
     carrier = kernel.current.carrier
@@ -174,7 +175,7 @@ _reminded = set()  # kernels to whose main thread `watch` sends the signal once 
 
 
 def watch(kernel, number):
-    """See to it that the process ends by the signal NUMBER, which KERNEL has been told."""
+    """Make sure that the process ends, after KERNEL was told of the signal NUMBER."""
     try:
         threading.Thread(target=_watch, args=(kernel, number), name="cramhy ends", daemon=True).start()
     except RuntimeError:
@@ -186,7 +187,7 @@ def _watch(kernel, number):
     began = time.monotonic()
 
     def over(seconds):
-        """Whether the kernel stopped within SECONDS after BEGAN."""
+        """Wait until SECONDS after BEGAN. Returns whether the kernel has stopped by then."""
         while not kernel.stopped and time.monotonic() < began + seconds:
             time.sleep(LOOK)
         return kernel.stopped
@@ -208,10 +209,10 @@ def _watch(kernel, number):
 
 @contextmanager
 def interrupted_after(seconds, kernel):
-    """Interrupt the main task of KERNEL if the block takes longer than SECONDS of the wall's clock. Yields an event that is set then.
+    """Interrupt the main task of KERNEL if the block takes longer than SECONDS of wall time. Yields an event that is set then.
 
-    A thread looks on, because SIGALRM is heard by the main thread only, and not at all on Windows. Where the system gives no more
-    threads the block may take as long as it likes.
+    A thread watches the time, because only the main thread gets SIGALRM, and Windows has no such signal. If the system gives no more
+    threads, the block is not limited.
     """
     late, over = threading.Event(), threading.Event()
 
@@ -241,7 +242,7 @@ def _send_to_main_thread(number):
 
 
 def _end_by_force(kernel, number):
-    """The task that has the baton does not give it away: end the process without it."""
+    """End the process, because the task with the baton does not give it away."""
     task = kernel.current
     name = "The program" if task.carrier is None else task.name
 

@@ -1,4 +1,4 @@
-"""What the functions of the kernel take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+"""Types of the arguments of the kernel. Only type checkers read this module: no code imports it when a program runs."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from .tasks import Task
 
 T = TypeVar("T")
 Callback = Callable[[], object]
-"""A function that somebody calls when its time has come; what it returns is not looked at."""
+"""A function that is called later. Its result is ignored."""
 Why = str | Callable[[], str]
-"""What a task waits for, for reports: a text, or a function that makes one when somebody reads it."""
+"""A text for reports that says what a task waits for, or a function that makes it when it is read."""
 Name = str | Callable[[], str]
-"""The name of a task, or a function that makes it when somebody reads it."""
+"""The name of a task, or a function that makes it when it is read."""
 Reason = str | BaseException | Callable[[], BaseException] | None
-"""Why a task is asked to end, or what is to be raised in it for that."""
+"""Why a task is asked to end, or the exception to raise in it for that."""
 ClockName = Literal["virtual", "wall"]
 Clock = VirtualClock | WallClock
 BackendName = Literal["threads", "greenlet"]
 Seed = int | float | str | Callable[[deque[Task[object]]], int]
-"""Who goes next: the seed of a shuffle, or a function of the queue that gives the place of the one that does."""
+"""The order of tasks: the seed of a shuffle, or a function of the queue that returns the place of the task that goes next."""
 
 
 class Carrier(Protocol):
-    """A stack that tasks run on."""
+    """A stack on which tasks run."""
 
     ident: int
 
 
 class Backend(Protocol):
-    """What makes stacks (carriers), and jumps between them; see `cramhy_runtime.kernel.backends`."""
+    """Makes stacks (carriers), and jumps between them; see `cramhy_runtime.kernel.backends`."""
 
     calls_back: bool
 
@@ -48,7 +48,7 @@ class Backend(Protocol):
 
 
 class Dynamic(Protocol):
-    """The dynamic state of a task, such as its bindings of special variables, which goes and comes with the baton."""
+    """The dynamic state of a task, such as its bindings of special variables. It is put away while the task does not have the baton."""
 
     def leave(self) -> None: ...
     def enter(self) -> None: ...

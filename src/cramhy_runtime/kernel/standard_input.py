@@ -1,13 +1,13 @@
-"""Standard input whose wait for a line can be ended, from a signal handler or by another thread, and loses nothing by that.
+"""Standard input whose wait for a line can be ended, by a signal handler or another thread, without loss of input.
 
-Python's own `sys.stdin` waits in a system call, which only an exception in the middle of it breaks off; what was read by then is lost.
-This one waits for two things at once, input and a pipe of its own (`wake`), and moves what it has read into its buffer before anybody
-looks. It takes the place of `sys.stdin` (`install`), so that the prompt and READ-LINE in a form share one buffer.
+Python's own `sys.stdin` waits in a system call, which only an exception can break off; then input that was read already is lost.
+This one waits for two things at once, input and a pipe of its own (`wake`), and moves input into its buffer before any code looks. It
+takes the place of `sys.stdin` (`install`), so that the prompt and READ-LINE in a form share one buffer.
 
 On a terminal it can keep Ctrl-C in its place among the typed lines (`at_prompt`). Otherwise the terminal makes a signal of the key, which
-overtakes what was typed before, and throws that away. So at the prompt the key ends a line, as Enter does, and the line says so.
+overtakes lines that were typed before, and throws them away. So at the prompt the key ends a line, as Enter does, and the line says so.
 
-It needs `select` on files, so where there are only sockets to select from, as on Windows, Python's own stays.
+It needs `select` on files. Where only sockets can be selected, as on Windows, Python's own standard input stays.
 """
 
 import codecs
@@ -24,11 +24,11 @@ CHUNK = 65536
 
 
 class BrokenOff(Exception):
-    """The wait for a line was ended by `StandardInput.wake`."""
+    """`StandardInput.wake` ended the wait for a line."""
 
 
 class StandardInput(io.TextIOBase):
-    """The lines of the text file FILE, which must have a file descriptor."""
+    """A stream of the lines of the text file FILE, which must have a file descriptor."""
 
     def __init__(self, file):
         self._file = file
@@ -44,7 +44,7 @@ class StandardInput(io.TextIOBase):
         self._keys = False  # whether Ctrl-C comes as a character
 
     def reconfigure(self, encoding="utf-8", errors="replace"):
-        """Read bytes as ENCODING says. A byte that is none of it costs no more than itself."""
+        """Decode bytes with ENCODING from now on. A byte that is not valid becomes a replacement character."""
         decoder = codecs.getincrementaldecoder(encoding or "utf-8")("replace" if errors == "strict" else errors)
         self._decoder = io.IncrementalNewlineDecoder(decoder, translate=True)
 
@@ -62,7 +62,7 @@ class StandardInput(io.TextIOBase):
         return True
 
     def wake(self):
-        """End the wait for a line that goes on, or the next one. May be called by a signal handler, and by any thread."""
+        """End the present wait for a line, or the next one. Safe from signal handlers and from any thread."""
         self._woken = True
         try:
             os.write(self._ring, b"!")
@@ -70,11 +70,11 @@ class StandardInput(io.TextIOBase):
             pass  # the pipe is full, or closed: it is awake
 
     def forget_wake(self):
-        """What it was woken for is dealt with."""
+        """Cancel a `wake` that is dealt with already."""
         self._woken = False
 
     def readline(self, size=-1):
-        """The next line with its end, "" at the end of the input. Raises `BrokenOff` when it is woken before there is one."""
+        """The next line with its end, or "" at the end of the input. Raises `BrokenOff` if it is woken before there is one."""
         while True:
             if self._woken:
                 self._woken = False
@@ -86,7 +86,7 @@ class StandardInput(io.TextIOBase):
             self._wait()
 
     def read(self, size=-1):
-        """All that is left, or SIZE characters."""
+        """All input that is left, or SIZE characters."""
         while not self._ended and (size < 0 or len(self._text) < size):
             self._wait()
         size = len(self._text) if size < 0 else size
@@ -94,11 +94,11 @@ class StandardInput(io.TextIOBase):
         return taken
 
     def ready(self):
-        """Whether something can be read without a wait."""
+        """Whether input can be read without a wait."""
         return bool(self._text) or self._ended or bool(readable(self._fd, 0))
 
     def holds_text(self):
-        """Whether something was read already that nobody has taken, so that others who read the same file would not see it."""
+        """Whether the buffer holds input. Other readers of the same file would not see it."""
         return bool(self._text)
 
     def _take_line(self, size):
@@ -146,8 +146,8 @@ class StandardInput(io.TextIOBase):
 
     @contextmanager
     def at_prompt(self, pressed):
-        """While the block waits for a line, Ctrl-C wakes it in its turn. PRESSED is called when the key was pressed after the line
-        that the block has read, but before the terminal makes a signal of it again."""
+        """While the block waits for a line, Ctrl-C wakes it in the order of the typed lines. If the key was pressed after the line that
+        the block has read, but before the terminal makes a signal of it again, PRESSED is called."""
         if not self.isatty():
             yield
             return
@@ -165,7 +165,7 @@ class StandardInput(io.TextIOBase):
                 pressed()
 
     def forget_unfinished_line(self):
-        """Throw away what was typed on the terminal and not entered: Ctrl-C was pressed meanwhile."""
+        """Throw away an unfinished line on the terminal, because Ctrl-C was pressed."""
         if self.isatty():
             with typed_ahead(self._fd):
                 while not self._ended and readable(self._fd, 0):
@@ -174,7 +174,7 @@ class StandardInput(io.TextIOBase):
 
 
 def drop_unfinished(typed, is_end):
-    """What was TYPED, a text or a list of keys, up to the last one that ends a line: the rest is forgotten at Ctrl-C."""
+    """TYPED, a text or a list of keys, up to the last one that ends a line: at Ctrl-C the rest is forgotten."""
     end = len(typed)
     while end and not is_end(typed[end - 1]):
         end -= 1
@@ -182,7 +182,7 @@ def drop_unfinished(typed, is_end):
 
 
 def install():
-    """Let `sys.stdin` be a `StandardInput`, where that is possible; returns it, or what stays there."""
+    """Make `sys.stdin` a `StandardInput` if that is possible, and return `sys.stdin`."""
     if not isinstance(sys.stdin, StandardInput):
         try:
             sys.stdin = StandardInput(sys.stdin)
@@ -192,8 +192,8 @@ def install():
 
 
 def read_line(file):
-    """The next line of the text file FILE, "" at its end. The other tasks run while the current one waits for it, and an interrupt ends
-    the wait without the loss of a line."""
+    """The next line of the text file FILE, or "" at its end. Other tasks run while the current one waits for it, and an interrupt ends
+    the wait without loss of a line."""
     if not isinstance(file, StandardInput):
         return run_blocking(file.readline)
 

@@ -1,12 +1,12 @@
 """A task: one thread of control that runs when it holds the baton, and is parked or queued when it does not.
 
-What CRAM calls a `task` object sits one floor up, with its status fluent and its messages; this is the ground under it:
-a function that runs on a stack of its own, a place in the tree (every task has one parent), a request to end that is
-delivered once, a result or an exception that the joiner decides about.
+CRAM's `task` object is in the room `cpl`, with its status fluent and its messages. Here is the part under it: a function
+that runs on a stack of its own, a place in the tree (every task has one parent), a request to end that is delivered once, and
+a result or an exception for the task that joins it.
 
-Laws kept here: a request to end is delivered exactly once, at a park point or checkpoint, and cleanup that runs after
-that is not disturbed by another one; a task that is cancelled before it ran never runs; an exception is never lost,
-for whoever does not look at it is told about it (`kernel.unhandled`).
+Laws kept here: a request to end is delivered exactly once, at a park point or checkpoint, and another request does not disturb
+the cleanup that runs after that. A task that is cancelled before it ran never runs. An exception is never lost: if no code
+handles it, the user is told (`kernel.unhandled`).
 """
 
 from __future__ import annotations
@@ -40,9 +40,10 @@ T = TypeVar("T", covariant=True, default=Any)
 
 
 class Task(Generic[T]):
-    """Made by `spawn`. Read `name`, `parent`, `state`, `dead`, `result`, `exception`; use `cancel` and `join`. Its function gives a T.
+    """A task, made by `spawn`. Read `name`, `parent`, `state`, `dead`, `result`, `exception`; use `cancel` and `join`.
 
-    `owner` is for the floor above: its own object that this task runs for. `local` is a place for whatever else it keeps with it.
+    T is the type of its function's result. `owner` is for the floor above: its own object for which this task runs. `local` is a
+    namespace for other data of the task.
     """
 
     __slots__ = (
@@ -93,12 +94,12 @@ class Task(Generic[T]):
 
     @property
     def name(self) -> str:
-        """Its name in reports; one given as a function is made when somebody asks."""
+        """Its name in reports. A name given as a function is made when it is asked for."""
         return self._name() if callable(self._name) else self._name
 
     @property
     def local(self) -> SimpleNamespace:
-        """A namespace, made when somebody asks."""
+        """A namespace for data of the task, made when it is first asked for."""
         local = self._local
         if local is None:
             local = self._local = SimpleNamespace()
@@ -106,32 +107,32 @@ class Task(Generic[T]):
 
     @property
     def dead(self) -> bool:
-        """True when its function has returned or unwound, and not a moment before."""
+        """True when its function has returned or unwound completely."""
         return self.state is DEAD
 
     @property
     def exception(self) -> BaseException | None:
-        """What ended it, or None. Whoever reads this takes care of it: it is not reported as unhandled any more."""
+        """The exception that ended it, or None. Code that reads it must handle it: it is not reported as unhandled any more."""
         self.claimed = True
         return self._exception
 
     @property
     def ready(self) -> bool:
-        """True when it waits for nothing but its turn."""
+        """True if it only waits for its turn."""
         return self.state is RUNNABLE
 
     @property
     def cancelled(self) -> bool:
-        """True as soon as it was asked to end, delivered or not."""
+        """True as soon as it was asked to end, even if the request is not delivered yet."""
         return self.cancel_request is not None
 
     def cancel(self, reason: Reason = None) -> None:
         """Ask the task to end: `Cancelled(REASON)` is raised at its next park point or checkpoint.
 
-        While it unwinds the stack nothing disturbs the cleanup. Code that swallows it gets it again at the next such point.
+        While it unwinds the stack, the cleanup is not disturbed. Code that swallows it gets it again at the next such point.
 
-        REASON may also be an exception, or a function of no arguments that returns one; that is raised instead.
-        Wakes the task if it is parked. Inside of `shield` the delivery waits. The first request counts: later ones,
+        REASON may also be an exception, or a function of no arguments that returns one; then that is raised instead.
+        A parked task is woken. Inside of `shield` the delivery waits. The first request counts: later ones,
         and requests to a dead task, do nothing.
         """
         if self.cancel_request is not None or self.state is DEAD:
@@ -144,9 +145,9 @@ class Task(Generic[T]):
                 budget.end()
 
     def end_wait(self, exception: BaseException | Callable[[], BaseException]) -> bool:
-        """Have EXCEPTION, or what the function EXCEPTION returns on the task's stack, raised where it is parked, in shields too.
+        """Raise EXCEPTION where the task is parked, in shields too. EXCEPTION may be a function that returns it on the task's stack.
 
-        Does nothing, and returns False, if the task does not wait: what it computes is never disturbed.
+        If the task does not wait, do nothing and return False: a computation is never disturbed.
         """
         if self.state is not PARKED:
             return False
@@ -156,14 +157,14 @@ class Task(Generic[T]):
         return True
 
     def abandon(self) -> None:
-        """Give up its cleanup: `Abandoned` is raised at every park point and checkpoint from now on, in shields too."""
+        """Abandon its cleanup: `Abandoned` is raised at every park point and checkpoint from now on, in shields too."""
         self.abandoned = self.attention = True
         self.kernel.rouse(self)
 
     def interject(self, fn: Callback) -> None:
-        """Have FN called on the task's own stack at its next park point or checkpoint; FN may park. Wakes it if it is parked.
+        """Call FN on the task's own stack at its next park point or checkpoint. FN may park. A parked task is woken.
 
-        Inside of `shield` the call waits. Suspension of branches (CPL) is made of this.
+        Inside of `shield` the call waits. CPL suspends branches with this.
         """
         self.interjections = [*(self.interjections or ()), fn]
         self.attention = True
@@ -173,10 +174,10 @@ class Task(Generic[T]):
                 budget.end()
 
     def join(self, why: Why | None = None, until: float | None = None, claim: bool = True) -> T | None:
-        """Park until the task is dead, or the clock reaches UNTIL; returns its result, or None if it has none.
+        """Park until the task is dead, or the clock reaches UNTIL (s). Returns its result, or None if it has none.
 
-        Does not raise what ended it: that is in `exception`, for the joiner to decide. With CLAIM false the joiner only
-        waits, and an exception that nobody looks at is reported as if it had not.
+        It does not raise the exception that ended the task; read `exception` for that. With CLAIM false, an exception is still
+        reported as unhandled if no other code reads it. A task that joins itself gets a KernelError.
         """
         kernel = self.kernel
         me = kernel.current
@@ -200,14 +201,14 @@ class Task(Generic[T]):
         return f"the end of task {self.name}"
 
     def describe_why(self) -> str:
-        """What it waits for, as text; a reason given as a function is asked only now, when somebody reads it."""
+        """What it waits for, as text. A reason given as a function is called now."""
         try:
             return str(self.why() if callable(self.why) else self.why)
         except Exception as broken:  # a report must not fail because a part of it does
             return f"something that cannot say what it is ({broken!r})"
 
     def deliver(self) -> bool:
-        """Raise what this task was asked to end with, if it may be raised now. Called by the task itself.
+        """Raise the exception that ends this task, if it may be raised now. The task itself calls it.
 
         Returns True if functions were called (`interject`), which may have taken time.
         """
@@ -250,19 +251,19 @@ class Task(Generic[T]):
         self.attention = waiting or self.delivered is not None or bool(self.alarms) or bool(self.interjections) or self.abandoned
 
     def unwinds(self) -> None:
-        """Called by the task itself, which ends a part of its own stack: until `unwound` nobody disturbs the cleanup in it.
+        """Protect the cleanup in a part of the task's own stack that it is ending, until `unwound`. The task itself calls it.
 
         A request to end the task that comes meanwhile is delivered after that.
         """
         self.cancelled_delivered = True
 
     def unwound(self) -> None:
-        """The part of the stack that ended is gone, and the task lives on."""
+        """End the protection of `unwinds`: the part of the stack is gone, and the task lives on."""
         self.cancelled_delivered = False
         self._look_again()
 
     def spare(self) -> None:
-        """The request to end it is dealt with, though it is alive: only what the main task ran as a plan has ended."""
+        """Forget the request to end the task, though it is alive: only the plan that the main task ran has ended."""
         self.cancel_request = self.delivered = None
         self.unwound()
 
@@ -273,12 +274,12 @@ class Task(Generic[T]):
         return reason if isinstance(reason, BaseException) else Cancelled(reason)
 
     def never_runs(self) -> None:
-        """It was asked to end before its first step: that is its end."""
+        """End the task, which was asked to end before its first step."""
         self.delivered = self._exception = self._cancellation()
         self.cancelled_delivered = True
 
     def ended_as_asked(self) -> bool:
-        """True if what ended it is what somebody asked for, so that nobody has to be told."""
+        """True if a request ended it, so that the exception need not be reported."""
         exception = self._exception
         return exception is None or exception is self.delivered or isinstance(exception, (Cancelled, Abandoned))
 
@@ -287,7 +288,7 @@ class Task(Generic[T]):
 
 
 def _on_its_way(exception: BaseException) -> bool:
-    """True if EXCEPTION still unwinds the stack that asks: what runs is a cleanup on its way, or a handler that has not passed it on."""
+    """True if EXCEPTION still unwinds the caller's stack: the code that runs is a cleanup, or a handler that has not passed it on."""
     handled = sys.exc_info()[1]
     while handled is not None and handled is not exception:
         handled = handled.__context__
@@ -295,7 +296,7 @@ def _on_its_way(exception: BaseException) -> bool:
 
 
 class Alarm:
-    """Something to be raised besides a cancellation: an interrupt, a deadlock, the time limit, the end of a wait."""
+    """An exception to raise in a task besides a cancellation: an interrupt, a deadlock, the time limit, the end of a wait."""
 
     __slots__ = ("exception", "pierces_shield")
 
@@ -305,7 +306,7 @@ class Alarm:
 
 
 class SchedulerTask(Task[object]):
-    """Stands in as the current task while timers fire and messages are read: nobody's stack, so it cannot park."""
+    """Stands in as the current task while timers fire and messages are read. It has no stack of its own, so it cannot park."""
 
     __slots__ = ()
 

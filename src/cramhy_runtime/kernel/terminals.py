@@ -1,8 +1,8 @@
 """Terminals and pipes: which keys send signals, whether a key comes at once, and whether a read would wait.
 
-POSIX tells and sets this by `termios`, and by `select` on any file. Windows has neither: it selects among sockets only, and its console is
-asked by `msvcrt`. A browser has none of them. So each function says what it does where the system does not help; then the terminal stays
-as it is, and nobody knows beforehand whether a read would wait.
+POSIX has `termios` for this, and `select` on any file. Windows has neither: it selects among sockets only, and `msvcrt` asks its console.
+A browser has none of them. So each function says what it does where the system does not help; then the terminal stays as it is, and
+whether a read would wait is unknown beforehand.
 """
 
 import os
@@ -11,6 +11,7 @@ import signal
 from contextlib import contextmanager, nullcontext
 
 from . import signals
+from .typing_names import Any
 
 try:
     import termios
@@ -23,7 +24,7 @@ except ImportError:  # not Windows
 
 INTERRUPT = "\x03"
 _ARROWS = {"H": b"\x1b[A", "P": b"\x1b[B", "M": b"\x1b[C", "K": b"\x1b[D"}
-"""What terminals send for the arrow keys, which Windows names by a letter behind one of these:"""
+"""The codes that terminals send for the arrow keys. Windows names these keys by a letter after one of these:"""
 _SPECIAL = ("\x00", "\xe0")
 PACE = 0.02  # s between two looks at the keys of Windows' console, which nothing but a look can wait for
 
@@ -32,9 +33,9 @@ PACE = 0.02  # s between two looks at the keys of Windows' console, which nothin
 
 
 def readable(file, seconds):
-    """Whether reading from the file, or file descriptor, would return at once, after waiting ``seconds`` for that at most.
+    """Whether a read from the file, or file descriptor, would return at once. Waits for that at most ``seconds``.
 
-    ``None`` where the system cannot tell: for a file without a descriptor, or where only sockets can be waited for.
+    It is ``None`` if the system cannot tell: for a file without a descriptor, or if only sockets can be waited for.
     """
     try:
         return bool(select.select([file], [], [], seconds)[0])
@@ -43,17 +44,33 @@ def readable(file, seconds):
 
 
 def is_terminal(fd):
+    """Whether the file descriptor FD is a terminal."""
     try:
         return os.isatty(fd)
     except OSError:
         return False
 
 
+_CANNOT_DRAW = ("", "dumb", "unknown", "emacs")
+
+
+def draws(file: Any) -> bool:
+    """Whether the text file is a terminal on which something can be drawn and erased, by what the variable TERM says of it.
+
+    Emacs' buffers and other "dumb" ones only take lines. Windows' console draws, and has no TERM.
+    """
+    try:
+        on_terminal = file is not None and file.isatty()
+    except ValueError:  # it is closed
+        return False
+    return on_terminal and os.environ.get("TERM", "" if os.name == "posix" else "windows") not in _CANNOT_DRAW
+
+
 # ----------------------------------------------------------------------------------------------------------------------- modes
 
 
 def ctrl_c_as_a_key(fd, end_of_line=False):
-    """While the block runs, Ctrl-C on the terminal FD sends no signal. It is a character; END_OF_LINE: one that ends a line."""
+    """Let Ctrl-C on the terminal FD be a character during the block, which sends no signal. With END_OF_LINE, it ends a line."""
     if termios is None:
         return nullcontext()
     keys = {termios.VINTR: os.fpathconf(fd, "PC_VDISABLE").to_bytes(1, "little")}
@@ -61,13 +78,13 @@ def ctrl_c_as_a_key(fd, end_of_line=False):
 
 
 def typed_ahead(fd):
-    """While the block runs, a read gets what was typed on the terminal FD so far: the system gives out a line without its end, too."""
+    """Let a read during the block get everything typed on the terminal FD so far, also an unfinished line."""
     return nullcontext() if termios is None else _modes(fd, off=termios.ICANON | termios.ECHO)
 
 
 @contextmanager
 def _modes(fd, on=0, off=0, keys=None):
-    """While the block runs the terminal FD has other local modes (ON, OFF: bits of termios) and special KEYS; then those it had."""
+    """Give the terminal FD other local modes (ON, OFF: bits of termios) and special KEYS during the block, and then restore them."""
     try:
         before = termios.tcgetattr(fd)
         changed = [*before[:6], list(before[6])]
@@ -93,8 +110,8 @@ def _set_modes(fd, modes):
 
 @contextmanager
 def terminal_of_a_session():
-    """While the block runs, the keys that send signals do not throw away what was typed ahead. Afterwards, however the process
-    ends, the terminal is as it was."""
+    """During the block, keys that send signals do not throw away input typed ahead. Afterwards, however the process ends, the terminal
+    is restored."""
     if termios is None or not is_terminal(0):
         yield
         return
@@ -112,11 +129,11 @@ def terminal_of_a_session():
 
 @contextmanager
 def keys_one_by_one():
-    """Within it standard input hands over each key at once, and shows none. The block gets a function that reads: ``read(seconds)`` gives
-    the bytes that were typed within so many seconds, ``b""`` at the end of input, and ``None`` when nothing was typed.
+    """``with keys_one_by_one() as read:`` gives each key of standard input at once, and shows none.
 
-    A terminal is left as it was found, also when the program is stopped and goes on. Input that is no terminal is read as it comes. Where
-    the system cannot tell whether something was typed, ``read`` waits for it.
+    ``read(seconds)`` returns the bytes that were typed within so many seconds, ``b""`` at the end of input, and ``None`` if nothing was
+    typed. The terminal is restored, also when the program is stopped and goes on. Input from another source than a terminal is read as
+    it comes. If the system cannot tell whether a key was typed, ``read`` waits for one.
     """
     if msvcrt is not None and is_terminal(0):
         yield _read_windows_console

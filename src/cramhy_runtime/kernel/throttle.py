@@ -1,12 +1,12 @@
-"""The pace of virtual time, for somebody who watches: slower than the machine could go, paused, or step by step.
+"""The pace of virtual time for spectators: slower than the machine could go, paused, or step by step.
 
-A virtual clock jumps. Who looks at a page wants to see the turtle drive, so the clock asks its pace, if there is one, before it
-jumps: `Pace.reach` waits for the wall's clock as long as the speed demands and says how far plan time may go. A message from
-outside ends the wait early, as with the wall's clock. Paused, time stands still, but for the steps that are asked for; tasks that
-are runnable at this instant still run. What a plan does, and in which order, is the same at every speed (law 5).
+A virtual clock jumps. Users of the page want to see the turtle drive, so the clock asks its pace, if there is one, before it
+jumps: `Pace.reach` waits for the wall clock as long as the speed demands, and says how far plan time may go. A message from
+outside ends the wait early, as with the wall clock. While it is paused, time passes only by steps; tasks that are runnable at
+this instant still run. A plan does the same things in the same order at every speed (law 5).
 
-While the prompt waits for the next form, virtual time stands still. It goes on as far as a step reaches, and as long as
-somebody outside holds a `TimeWanted`: a request to the simulator, which answers in its next tick.
+While the prompt waits for the next form, virtual time stands still. It goes on as far as a step reaches, and as long as a
+`TimeWanted` is open, such as for a request to the simulator, which answers in its next tick.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ FORGOTTEN = 0.25  # s; who is further behind than that does not hurry to catch u
 
 
 class Pace:
-    """How a kernel's time passes. Its methods are called with the baton: in a task, or in what is posted to the kernel.
+    """The pace of a kernel's time. Call its methods with the baton: in a task, or in a function posted to the kernel.
 
-    speed: plan seconds per second of the wall, or ``None``, as fast as the machine computes. on_change: functions of no arguments,
-    called when something about it has changed.
+    ``speed`` is in plan seconds per second of wall time, or ``None`` for as fast as the machine computes. ``on_change`` are functions of
+    no arguments, called after each change.
     """
 
     def __init__(self, kernel: Kernel, os_clock: Callable[[], float] = time.monotonic, wait: Callable[[float], object] | None = None):
@@ -51,29 +51,36 @@ class Pace:
 
     @property
     def speed(self) -> float | None:
+        """Plan seconds per second of wall time; ``None`` is as fast as the machine computes."""
         return self._speed if self.virtual else 1.0
 
     @property
     def busy(self) -> bool:
-        """Whether the main task does something, and does not just wait at the prompt."""
+        """Whether the main task does something, and does not only wait at the prompt."""
         return self._kernel.main.state is not BLOCKED
 
     def pause(self) -> None:
-        """Let plan time stand still."""
+        """Let plan time stand still. In wall time it is a KernelError."""
         self._change(paused=True)
 
     def resume(self) -> None:
-        """Let plan time pass again."""
+        """Let plan time pass again. In wall time it is a KernelError."""
         self._change(paused=False)
 
     def set_speed(self, speed: float | None) -> None:
-        """SPEED: plan seconds per second, above zero; ``None`` or infinity: as fast as the machine computes."""
+        """Set the speed: plan seconds per second, above zero; ``None`` or infinity is as fast as the machine computes.
+
+        Other numbers are a ValueError. In wall time it is a KernelError.
+        """
         if speed is not None and not speed > 0:
             raise ValueError(f"A speed is a number above zero, in plan seconds per second, but not {speed}.")
         self._change(_speed=None if speed is None or speed == math.inf else float(speed))
 
     def step(self, seconds: float) -> None:
-        """Let SECONDS of plan time pass, at once, and pause; also while the prompt waits."""
+        """Let SECONDS of plan time pass, at once, and pause. It works while the prompt waits, too.
+
+        SECONDS that are not positive and finite are a ValueError. In wall time it is a KernelError.
+        """
         if not 0 < seconds < math.inf:
             raise ValueError(f"A step takes a time above zero, in seconds, but not {seconds}.")
         start = max(self._kernel.now(), self._step_end)
@@ -82,7 +89,7 @@ class Pace:
         self._kernel.call_at(self._step_end, self._tell)  # something is due at its end, so the clock has somewhere to go
 
     def reach(self, now: float, when: float) -> float:
-        """How far plan time may go from NOW towards WHEN, after a wait that a message from outside ends."""
+        """How far plan time may go from NOW towards WHEN, after a wait. A message from outside ends the wait."""
         if self.paused:
             if now >= self._step_end:
                 self._wait(math.inf)
@@ -105,14 +112,14 @@ class Pace:
         return when
 
     def clock_changed(self) -> None:
-        """Time is of the other kind from now on."""
+        """Called when time is of the other kind from now on."""
         self.paused = False
         self._step_end, self._anchor = -math.inf, None
         self._tell()
 
     @property
     def time_is_wanted(self) -> bool:
-        """Whether time shall pass even though the prompt waits."""
+        """Whether time passes even though the prompt waits."""
         return self._kernel.clock.wanted > 0 or self._kernel.now() < self._step_end
 
     def _change(self, **changes: Any) -> None:
@@ -133,7 +140,7 @@ class Pace:
 
 
 class TimeWanted:
-    """A context manager: while it is open, virtual time passes at the prompt, too. To be entered and left with the baton."""
+    """A context manager. While it is open, virtual time passes at the prompt, too. Enter and leave it with the baton."""
 
     __slots__ = ("_kernel",)
 

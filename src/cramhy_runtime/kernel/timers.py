@@ -1,9 +1,9 @@
-"""Timers: what happens at a time of the kernel's clock.
+"""Timers: calls and wake-ups at times of the kernel's clock.
 
 One heap holds both kinds of entries: callbacks (`call_at`, `call_every`) and tasks parked with a deadline. Entries are
 tuples `(time, order, what, ticket)`. `order` counts up, so of two entries for the same time the one created first comes
-first; a periodic timer keeps the order it was born with. A task that is woken before its deadline leaves its entry
-behind: the ticket no longer fits, and the entry is skipped, or swept out with others when more than half are stale.
+first; a periodic timer keeps its first order. A task that is woken before its deadline leaves its entry behind: the ticket no
+longer fits, and the entry is skipped, or removed with others when more than half are stale.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MAX_LAG = 1.0  # s; a periodic timer that is later than this (the process slept)
 
 
 class Timer:
-    """A callback that fires once, or again and again until `cancel`. Made by `call_at` and `call_every`."""
+    """A callback that fires once, or again and again until `cancel`. `call_at` and `call_every` make it."""
 
     __slots__ = ("fn", "time", "order", "first", "period", "count", "_heap")
 
@@ -42,13 +42,13 @@ class Timer:
         return self.fn is not None
 
     def cancel(self) -> None:
-        """It fires no more. May be called at any time, in the callback too."""
+        """Stop the timer. It may be called at any time, in the callback too."""
         if self.fn is not None:
             self.fn = None
             self._heap.went_stale()
 
     def advance(self, now: float) -> None:
-        """Set `time` to that of the next firing: by multiplication, so that rounding does not add up to a drift."""
+        """Set `time` to that of the next firing, by multiplication, so that rounding errors do not add up."""
         self.count += 1
         self.time = self.first + self.count * self.period
         if self.time < now - MAX_LAG:
@@ -71,42 +71,43 @@ class TimerHeap:
         self._stale = 0
 
     def add(self, time: float, fn: Callback, period: float | None = None) -> Timer:
-        """A new timer that calls FN at TIME, and every PERIOD seconds from then on if there is one."""
+        """A new timer that calls FN at TIME (s), and from then on every PERIOD seconds if it is given."""
         timer = Timer(self, time, self.order, fn, period)
         self.order += 1
         self.push(timer)
         return timer
 
     def push(self, timer: Timer) -> None:
+        """Enter TIMER with its present time."""
         heappush(self.entries, (timer.time, timer.order, timer, CALLBACK))
 
     def add_deadline(self, time: float, task: Task[object]) -> None:
-        """Wake TASK at TIME, unless it was woken before."""
+        """Wake TASK at TIME (s), unless it was woken before."""
         heappush(self.entries, (time, self.order, task, task.ticket))
         self.order += 1
 
     def pop(self) -> Entry:
-        """Take the first entry out, whether it counts or not."""
+        """Remove and return the first entry, even if it is stale."""
         entry = heappop(self.entries)
         if self._stale and not _counts(entry):
             self._stale -= 1
         return entry
 
     def went_stale(self) -> None:
-        """Some entry no longer counts."""
+        """Note that an entry no longer counts."""
         self._stale += 1
         if self._stale > SWEEP_FROM and self._stale * 2 > len(self.entries):
             self.sweep()
 
     def sweep(self) -> None:
-        """Take out the entries that no longer count; until then each holds its task."""
+        """Remove the entries that no longer count. Until then each refers to its task."""
         # In place, because the scheduler holds this very list.
         self.entries[:] = [entry for entry in self.entries if _counts(entry)]
         heapify(self.entries)
         self._stale = 0
 
     def next_time(self) -> float | None:
-        """The time of the first entry that counts, or None."""
+        """The time (s) of the first entry that counts, or None."""
         entries = self.entries
         while entries:
             if _counts(entries[0]):

@@ -1,11 +1,11 @@
-"""The names that annotations use, without the module that has them: `typing` takes 2 ms, and a plan that runs needs none of it.
+"""The names that annotations use, without the module `typing`: it takes 2 ms to import, and a running plan does not need it.
 
-A type checker reads them from `typing`. When the code runs they are stand-ins, good for annotations that nobody evaluates (all our
-modules have ``from __future__ import annotations``), for the bases of generic classes and for protocols. A generic class whose users
-may write ``Task[int]`` where that is evaluated has ``__class_getitem__ = subscripted``.
+A type checker reads them from `typing`. When the code runs they are stand-ins. These are enough for annotations that are not evaluated
+(all our modules have ``from __future__ import annotations``), for the bases of generic classes and for protocols. If users may write
+``Task[int]`` where it is evaluated, the class has ``__class_getitem__ = subscripted``.
 
-The annotations of users are read here, too. From Python 3.14 on they are computed when somebody asks for them (PEP 649), and may name
-what is not defined yet.
+This module also reads the annotations of users. From Python 3.14 on they are computed on demand (PEP 649), and may contain names that are
+not defined yet.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ else:
     ParamSpec = TypeVarTuple = TypeVar
 
     def dataclass_transform(**options):
-        """For a decorator or metaclass that makes classes with an initializer of their annotations."""
+        """Marks a decorator or metaclass that makes an initializer of the annotations of classes."""
         return lambda made: made
 
     def overload(function):
@@ -64,7 +64,7 @@ else:
 
 
 def annotations_of_body(body: dict[str, Any]) -> dict[str, Any]:
-    """The annotations in the body of a class, as a metaclass gets it: name → type, its text, or what stands for a name not yet defined."""
+    """The annotations in the body of a class, which a metaclass gets: name → type, its text, or a stand-in for an undefined name."""
     if sys.version_info >= (3, 14) and "__annotations__" not in body:
         import annotationlib
 
@@ -75,7 +75,7 @@ def annotations_of_body(body: dict[str, Any]) -> dict[str, Any]:
 
 
 def annotations_of(function: Any) -> dict[str, Any]:
-    """The annotations of a function, as `annotations_of_body` gives them; empty for what has none."""
+    """The annotations of a function, as in `annotations_of_body`; empty if it has none."""
     if sys.version_info >= (3, 14) and (annotate := getattr(function, "__annotate__", None)) is not None:
         import annotationlib
 

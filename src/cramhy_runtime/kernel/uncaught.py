@@ -1,8 +1,8 @@
-"""What nobody caught: the one owner of ``sys.excepthook``, which Python calls when an exception ends the main program.
+"""Uncaught exceptions: the only owner of ``sys.excepthook``, which Python calls when an exception ends the main program.
 
-A kernel installs it, where the hook is still Python's own. A floor above may tell of the exceptions that it knows (`told_by`), in its
-own words; whatever it does not know goes to the hook that stood here before. A program that such a floor tells of ends after Ctrl-C
-without a word, with the status 130, as a command does. Any other Python program ends as Python ends it: with a traceback, by the signal.
+A kernel installs it if the hook is still Python's own. A floor above may report the exceptions that it knows in its own words
+(`told_by`); others go to the hook that was there before. With such a floor, a program ends after Ctrl-C without a message, with the
+status 130, as a command does. Any other Python program ends as usual: with a traceback, by the signal.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ _interrupts = []  # those that ended the main program, where nobody tells of exc
 
 
 def install(instead_of=()):
-    """Be called from now on, if the hook is Python's own or one of ``instead_of``. Somebody else's is left alone."""
+    """Install the hook, if the present one is Python's own or one of ``instead_of``. Other hooks are left alone."""
     if sys.excepthook is sys.__excepthook__ or sys.excepthook in instead_of:
         _before[:] = [sys.excepthook]
         sys.excepthook = _uncaught
 
 
 def told_by(teller, instead_of=()):
-    """Let ``teller(exception)`` tell the user of what nobody caught. It returns whether it has done so.
+    """Let ``teller(exception)`` report uncaught exceptions to the user. It returns whether it has done so.
 
-    instead_of: hooks besides Python's own that give way to ours, as that of a program which runs other programs.
+    instead_of: hooks besides Python's own that are replaced, such as that of a program that runs other programs.
     """
     if teller not in _tellers:
         _tellers.append(teller)
@@ -37,7 +37,7 @@ def told_by(teller, instead_of=()):
 
 
 def _uncaught(kind, exception, traceback):
-    """The main program ends by an exception; or a prompt shows one."""
+    """The hook: an exception ends the main program, or a prompt shows one."""
     at_a_prompt = hasattr(sys, "ps1") or sys.flags.interactive
     if issubclass(kind, (KeyboardInterrupt, Abandoned)) and not issubclass(kind, Terminated) and not at_a_prompt:
         if _tellers:
@@ -49,7 +49,7 @@ def _uncaught(kind, exception, traceback):
 
 
 def ended_by_interrupt():
-    """Whether Ctrl-C ended the main program in Python's way, so that the process is to end by the signal."""
+    """Whether Ctrl-C ended the main program in Python's way, so that the process must end by the signal."""
     return bool(_interrupts)
 
 

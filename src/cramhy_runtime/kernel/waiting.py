@@ -1,6 +1,6 @@
-"""Tasks that wait for a change of something: those who change it tell, and those who wait look for themselves.
+"""Tasks that wait for a change: code that changes something wakes them, and they test a condition themselves.
 
-Waiters are kept in no order, and nothing is handed to them; for that there are the lines of ``utilities/wait_queue.py``.
+Waiting tasks are in no order, and nothing is handed to them; the lines of ``utilities/wait_queue.py`` do that.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 
 class Waiting:
-    """The tasks that wait for one thing. `wait` parks until a condition holds; `changed` has all of them look again."""
+    """The tasks that wait for one thing. `wait` parks until a condition holds; `changed` lets all of them look again."""
 
     def __init__(self) -> None:
         self._tasks: list[Task[object]] = []
 
     def changed(self) -> None:
-        """Have those who wait look again."""
+        """Let the waiting tasks look again."""
         for task in self._tasks:
             unpark(task)
 
     def wait(self, condition: Callable[[], object], why: Why, until: float | None = None) -> bool:
-        """Park the current task until ``condition()`` is true: True; or until the kernel's time ``until``: False.
+        """Park the current task until ``condition()`` is true (True), or until the kernel's time ``until``, in seconds (False).
 
-        why: what it waits for, for reports; a text, or a function that gives it.
+        why: a text for reports that says what it waits for, or a function that makes it.
         """
         task = current()
         self._tasks.append(task)

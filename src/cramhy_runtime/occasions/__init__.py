@@ -1,12 +1,12 @@
-"""Occasions and events: what a robot believes of the world, and what changes it. Usable from Python:
+"""Occasions and events: what a robot believes about the world, and what changes it. From Python:
 
     from cramhy_runtime import occasions
 
     occasions.on_event.add(lambda event: ...)            # called with each event
     occasions.holds(lisp_list(CUP_ON_TABLE))             # the binding lists under which an occasion holds, or None
 
-``events`` events and the hooks that they reach · ``occasions`` what holds · ``time_terms`` points and stretches of time ·
-``fluent_predicates``, ``task_predicates`` what holds of fluents and tasks during an episode · ``current_episode`` which one ·
+Where the parts are: ``events`` events and their hooks · ``occasions`` goals that hold in the world · ``time_terms`` points and spans of
+time · ``fluent_predicates``, ``task_predicates`` fluents and tasks during an episode · ``current_episode`` the episode for these ·
 ``symbols`` the Lisp package. Reference: projection-and-events.md part B.
 """
 

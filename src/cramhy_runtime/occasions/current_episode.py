@@ -1,4 +1,4 @@
-"""Which episode the predicates of this room ask: the current one. Without one they warn, and fail."""
+"""The predicates of this room ask about the current episode. Without one they warn, and fail."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cramhy_runtime.ground.packages import sym
 
 
 def asked_episode(predicate):
-    """The current episode, or ``None`` after a warning that ``predicate``, a designator, would need one."""
+    """The current episode. If there is none, warn that ``predicate``, the name of a functor, needs one, and return ``None``."""
     episode = current_episode()
     if episode is None:
         warn(
@@ -23,7 +23,7 @@ def asked_episode(predicate):
 
 
 def asked_nodes(predicate):
-    """All nodes of the task tree of the current episode, parents before children; none, after a warning, without an episode."""
+    """All nodes of the task tree of the current episode, parents before children. Without an episode warn, and return none."""
     episode = asked_episode(predicate)
     root = None if episode is None else episode.tree()
     return [] if root is None else nodes_of(root)

@@ -1,13 +1,13 @@
-"""Events: something happened in the world, and whoever keeps a picture of the world is told.
+"""Events: when something happens in the world, all code that keeps beliefs about the world is told.
 
-``(on-event event)`` is a hook: all methods for the event's class and the classes above it run, the most specific one first, in the task
-that calls it; there is no queue. ``(clear-belief)`` is the hook by which all pictures are emptied. Source: projection-and-events.md B1.
+``(on-event event)`` is a hook: all methods for the event's class and the classes above it run, the most specific first, in the task that
+calls it, without a queue. ``(clear-belief)`` is the hook that makes all code forget its beliefs. Source: projection-and-events.md B1.
 """
 
 from __future__ import annotations
 
 from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 
@@ -16,7 +16,7 @@ clear_belief = Hook("CRAM-OCCASIONS-EVENTS::CLEAR-BELIEF", "()")
 
 
 class Event:
-    """What happened; to be subclassed. ``timestamp``: when, in seconds, by default now."""
+    """Something that happened; derive classes from it. ``timestamp`` is the time in seconds, by default the present."""
 
     lisp_name = "CRAM-OCCASIONS-EVENTS::EVENT"
     initargs = {"TIMESTAMP": "timestamp"}
@@ -29,6 +29,6 @@ event_timestamp = generic(
     "CRAM-OCCASIONS-EVENTS::EVENT-TIMESTAMP",
     "(event)",
     documentation="""
-When ``event`` happened: seconds, a double-float.""",
+The time at which ``event`` happened: seconds, a double-float.""",
 )
 event_timestamp.method(Event)(lambda event: event.timestamp)

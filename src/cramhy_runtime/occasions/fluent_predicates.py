@@ -1,4 +1,4 @@
-"""What fluents were during an episode, for Prolog. Fluents are known by name, and only if they were traced.
+"""Predicates about the values of fluents during an episode. Fluents are known by name, and only if they were traced.
 
 ``(fluent ?name)``, ``(holds (fluent-value name ?value) time)``, and ``(fluent-value fluent ?value)`` for a fluent object, now.
 Source: projection-and-events.md B4.
@@ -34,7 +34,7 @@ define_fact_group(
 
 @predicate("CPL-IMPL::FLUENT", group=GROUP)
 def fluent(m, name):
-    """``(fluent f)``: any symbol; the names of the traced fluents when ``f`` is unbound."""
+    """``(fluent f)``: true for any symbol; the names of the traced fluents if ``f`` is unbound."""
     known = deref(name)
     if known.__class__ is not Var:
         if isinstance(known, Symbol) or known is None:
@@ -48,7 +48,7 @@ def fluent(m, name):
 
 @test("CRAM-OCCASIONS-EVENTS::FLUENT-VALUE", group=GROUP)
 def fluent_value(m, thing, value):
-    """``(fluent-value f v)``: the value that a fluent, an object, has now."""
+    """``(fluent-value f v)``: the present value of a fluent, an object."""
     found = deref(thing)
     return isinstance(found, Fluent) and m.unify(value, found.peek())
 

@@ -1,17 +1,17 @@
-"""Occasions: what holds in the world. An occasion is a goal; any predicate can be one.
+"""Occasions: goals that hold in the world. Any predicate can be an occasion.
 
-``holds`` is a predicate of Prolog and a generic function. The predicate has one argument, the occasion, for what holds now, and two, the
-occasion and a time (``time_terms.py``), for what held during the episode that is asked about; other packages extend it by clauses, some
-with three arguments, the timeline first. The function asks it. Source: projection-and-events.md B2.
+``holds`` is a predicate of Prolog and a generic function. With one argument, an occasion, the predicate is about the present; with two,
+the occasion and a time (``time_terms.py``), about a time in the current episode. Other packages extend it by clauses, some with three
+arguments, the timeline first. The function asks the predicate. Source: projection-and-events.md B2.
 
-Repaired: with a time, the function asks the clauses of two arguments, too; the original asks those of three only, of which it has none.
+Repaired: with a time, the function asks the clauses of two arguments, too; the original asks only those of three, and has none.
 """
 
 from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
 from ..prolog.query import prolog
 from cramhy_runtime.prolog.builtins.rete import clear_alpha_network, match_fact, rete_assert, rete_holds, rete_retract
@@ -31,7 +31,7 @@ holds = generic(
     "CRAM-OCCASIONS-EVENTS::HOLDS",
     "(occasion &optional time-specification)",
     documentation="""
-The lazy list of the binding lists under which ``occasion`` holds: now, or at the time that is given as a term such as ``(at 5.0d0)``.""",
+The lazy list of the binding lists under which ``occasion`` holds, now or at a time such as ``(at 5.0d0)``.""",
 )
 
 
@@ -50,14 +50,14 @@ _asserted = per_image([])  # the occasions that assert_occasion remembers
 
 
 def assert_occasion(occasion):
-    """Deprecated: let ``occasion`` be a fact of the rete memory."""
+    """Deprecated: assert ``occasion`` as a fact in the rete memory."""
     deprecate("ASSERT-OCCASION is deprecated.")
     _asserted.append(occasion)
     rete_assert(occasion)
 
 
 def retract_occasion(occasion):
-    """Deprecated: take back the asserted occasions that match the pattern ``occasion``."""
+    """Deprecated: retract the asserted occasions that match the pattern ``occasion``."""
     deprecate("RETRACT-OCCASION is deprecated.")
     for fact in list(_asserted):
         if match_fact(occasion, fact, {}) is not None:

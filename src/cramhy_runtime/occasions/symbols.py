@@ -1,6 +1,6 @@
 """The Lisp package of this room, made before anything interns a symbol in it.
 
-What it contains is declared in ``languages/commonlisp/faces/occasions/package.py``.
+``languages/commonlisp/faces/occasions/package.py`` declares its contents.
 """
 
 from cramhy_runtime.designators import symbols as _designators  # noqa: F401  its packages come first

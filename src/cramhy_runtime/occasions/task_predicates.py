@@ -1,10 +1,10 @@
-"""What tasks did during an episode, for Prolog: nodes of its task tree, what became of them, when.
+"""Predicates about tasks during an episode: the nodes of its task tree, their outcomes and times.
 
-A task that is given is taken as it is, an unbound one ranges over all of the episode, parents before children. What is known of a
-task does not depend on tracing: only when it was made, and the statuses between its start and its end, are told by the
-trace of its status fluent alone. Source: projection-and-events.md B4.
+A bound task is used as it is; an unbound one ranges over all tasks of the episode, parents before children. Most answers do not need
+tracing. Only the time when a task was made, and the statuses between its start and its end, come from the trace of its status fluent.
+Source: projection-and-events.md B4.
 
-Repaired: ``error-type`` of an unbound variable is one warning and fails; ``task-next-sibling`` works; times and outcomes are known without
+Repaired: ``error-type`` of an unbound variable warns once and fails. ``task-next-sibling`` works. Times and outcomes are known without
 tracing, too.
 """
 
@@ -43,7 +43,7 @@ define_fact_group(
 
 
 def _nodes(term, functor):
-    """The nodes that ``term`` may be."""
+    """The nodes that ``term`` may stand for."""
     found = deref(term)
     if found.__class__ is Var:
         return asked_nodes(functor)
@@ -51,7 +51,7 @@ def _nodes(term, functor):
 
 
 def _of_each_node(functor, answer):
-    """Define ``(functor task value)``: for each task what ``answer(node, episode)`` gives, unless that is `NOTHING`."""
+    """Define ``(functor task value)``: the value is ``answer(node)`` for each task, unless that is `NOTHING`."""
 
     @predicate(functor, group=GROUP)
     def ask(m, task, value):
@@ -76,7 +76,7 @@ def top_level(m, task):
 
 @predicate("CPL-IMPL::TASK", group=GROUP)
 def task(m, node):
-    """``(task task)``: every node, also when the variable is bound."""
+    """``(task task)``: all nodes that unify with the argument."""
     for found in asked_nodes("CPL-IMPL::TASK"):
         if m.unify(node, found):
             yield
@@ -84,6 +84,7 @@ def task(m, node):
 
 @predicate("CRAM-OCCASIONS-EVENTS::GOAL-TASK", group=GROUP)
 def goal_task(m, node):
+    """``(goal-task task)``: the nodes of goals."""
     for found in _nodes(node, "CRAM-OCCASIONS-EVENTS::GOAL-TASK"):
         if goal_task_tree_node_p(found) and m.unify(node, found):
             yield
@@ -141,7 +142,7 @@ def _first_time(node, statuses, attribute):
 
 @predicate("CRAM-OCCASIONS-EVENTS::TASK-STATUS-AT", group=GROUP)
 def task_status_at(m, node, status, time):
-    """The statuses of tasks whose durations include ``time``: as traced, or from the start and end of the task."""
+    """The statuses of tasks whose durations include ``time``, from the trace, or from the start and end of the task."""
     for found in _nodes(node, "CRAM-OCCASIONS-EVENTS::TASK-STATUS"):
         for was, start, end in _traced(found) or _known_statuses(found):
             fit = included(m, start, end, time)
@@ -162,7 +163,7 @@ def _known_statuses(node):
 
 @test("CRAM-OCCASIONS-EVENTS::ERROR-TYPE", group=GROUP)
 def error_type(m, condition, type_):
-    """``(error-type e type)``: the type of a condition."""
+    """``(error-type e type)``: the type of a condition. An unbound condition is a warning, and the goal fails."""
     found = deref(condition)
     if found.__class__ is Var:
         warn(SimpleWarning("[PROLOG WARNING] Trying to call ERROR-TYPE on unbound variable."))
@@ -174,7 +175,7 @@ def error_type(m, condition, type_):
 
 
 def _relation(functor, down, up):
-    """Define ``(functor task other)``; ``down(node)`` lists the others of a task, ``up(node)`` the tasks of an other."""
+    """Define ``(functor task other)``. ``down(node)`` lists the others for a task, ``up(node)`` the tasks for an other."""
 
     @predicate(functor, group=GROUP)
     def ask(m, first, second):

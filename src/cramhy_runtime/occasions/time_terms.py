@@ -1,7 +1,7 @@
-"""Points and stretches of time, as terms: ``(at t)``, ``(throughout t1 t2)``, ``(during t1 t2)``.
+"""Terms for points and spans of time: ``(at t)``, ``(throughout t1 t2)``, ``(during t1 t2)``.
 
-Times are double-floats, as `current_timestamp` gives them; a stretch includes its start, not its end. A time of another type fits
-nothing, and a warning says so. Source: projection-and-events.md B3.
+Times are double-floats in seconds, as in `current_timestamp`. A span includes its start, not its end. A time of another type never
+matches, and a warning says so. Source: projection-and-events.md B3.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ GROUP = "TIME"
 
 @test("CRAM-OCCASIONS-EVENTS::DURATION-INCLUDES", group=GROUP)
 def duration_includes(m, duration, time):
-    """``(duration-includes (throughout t1 t2) time)``: whether ``time`` is in that stretch; an unbound point of time becomes its start."""
+    """``(duration-includes (throughout t1 t2) time)``: whether ``time`` is in that span. An unbound point of time becomes its start."""
     stretch = times_of(m, duration, THROUGHOUT, 2)
     if stretch is None or None in stretch:
         return False
@@ -28,7 +28,7 @@ def duration_includes(m, duration, time):
 
 
 def included(m, start, end, time):
-    """``None`` if ``time``, a term, is not between ``start`` and ``end``; else the terms to be unified, two by two, so that it is."""
+    """The terms to unify, two by two, so that the term ``time`` is between ``start`` and ``end``; ``None`` if that is impossible."""
     term = deref(time)
     if term.__class__ is Var:
         return term, lisp_list(AT, start)
@@ -52,7 +52,7 @@ def included(m, start, end, time):
 
 
 def times_of(m, term, kind, count):
-    """The times in the term ``(kind time...)``, ``None`` for each that is unbound; ``None`` if it is no such term."""
+    """The list of the times in the term ``(kind time...)``, with ``None`` for unbound ones. It is ``None`` if the term is another one."""
     term = deref(term)
     if term.__class__ is not Cons or deref(term.car) is not kind:
         return None

@@ -1,4 +1,4 @@
-"""Process modules and the executive: how a plan moves a robot. Usable from Python:
+"""Process modules and the executive: how a plan moves a robot. From Python:
 
     from cramhy_runtime import cpl
     from cramhy_runtime.designators import Motion, motion_grounding, reference
@@ -23,12 +23,12 @@
 
     cpl.run(main)       # "there", after five seconds
 
-The page docs/reasoning-in-python.md tells the whole story.
+The page docs/reasoning-in-python.md teaches it.
 
-``modules`` the module, its queue and main loop · ``executing`` a plan's requests · ``asynchronous`` modules that return at once ·
-``registry`` names · ``running`` starting them around a body · ``matching`` the right one for a designator, ``hints`` why there is
-none · ``executive`` perform · ``symbols`` the Lisp packages · ``python_modules`` Python's face.
-Reference: process-modules.md.
+Where the parts are: ``modules`` the module, its queue and main loop · ``executing`` a plan's requests · ``asynchronous`` modules that
+return at once · ``registry`` names · ``running`` starting them around a body · ``matching`` finding the module for a designator,
+``hints`` why there is none · ``executive`` perform · ``symbols`` the Lisp packages · ``python_modules`` functions for Python ·
+``signatures`` types for type checkers. Reference: process-modules.md.
 """
 
 from .asynchronous import AsynchronousProcessModule, fail_process_module, finish_process_module

@@ -1,11 +1,11 @@
-"""Asynchronous process modules: ``pm-execute`` hands the designator over and returns; somebody says later that it is finished.
+"""Asynchronous process modules: ``pm-execute`` hands the designator over and returns; later the module reports that it is finished.
 
-Users define a class and methods: ``on-input`` is called for each designator, one after the other; ``on-run`` may do work beside it;
-``on-cancel`` is called for unfinished designators when the module is cancelled; ``synchronization-fluent`` says when the next input
-may be taken. `finish_process_module` and `fail_process_module` report the end. Source: process-modules.md section 6.
+Users define a class and methods. The module calls ``on-input`` for each designator, one after the other. ``on-run`` may do work beside it.
+``on-cancel`` is called for unfinished designators when the module is cancelled. ``synchronization-fluent`` says when the module may take
+the next input. `finish_process_module` and `fail_process_module` report the end. Source: process-modules.md section 6.
 
-Repaired: callers that want to hand something over stand in line; a caller or monitor of a module that ends is told so, where the
-original waits for ever; of a failure of several designators every monitor of one hears; a module that finishes all designators while
+Repaired: callers that hand over a designator stand in line. A caller or monitor of a module that ends gets an error, where the original
+waits for ever. If several designators fail, every monitor of one of them gets the failure. A module that finishes all designators while
 others are waiting stays ``:running``.
 """
 
@@ -22,7 +22,7 @@ from cramhy_runtime.cpl.tasks.waiting import wait_for, whenever
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.locks import Lock
 from .executing import NEVER, await_online, finished_fluent, monitor_process_module, pm_cancel, pm_execute, running_fluent
@@ -49,37 +49,37 @@ on_input = generic(
     "CPM::ON-INPUT",
     "(process-module input-designator)",
     documentation="""
-What an asynchronous module does with an input; users write methods.""",
+Called by an asynchronous module with each input. Users write methods.""",
 )
 on_cancel = generic(
     "CPM::ON-CANCEL",
     "(process-module input-designator)",
     documentation="""
-What an asynchronous module does with an unfinished designator when it is cancelled; users write methods.""",
+Called by an asynchronous module that is cancelled, with each unfinished designator. Users write methods.""",
 )
 on_run = generic(
     "CPM::ON-RUN",
     "(process-module)",
     documentation="""
-What an asynchronous module does beside taking inputs, from its start to its end; users write methods.""",
+Called by an asynchronous module at its start, for work beside taking inputs, up to its end. Users write methods.""",
 )
 synchronization_fluent = generic(
     "CPM::SYNCHRONIZATION-FLUENT",
     "(process-module designator)",
     documentation="""
-The fluent that is true when an asynchronous module may take the designator; users write methods.""",
+The fluent that is true when an asynchronous module may take the designator. Users write methods.""",
 )
 finish_process_module: Finish = generic(
     "CPM::FINISH-PROCESS-MODULE",
     "(process-module &key designator)",
     documentation="""
-Say that the module has finished one designator, or all of them.""",
+Report that the module has finished one designator, or all of them.""",
 )
 fail_process_module: Fail = generic(
     "CPM::FAIL-PROCESS-MODULE",
     "(process-module error &key designator)",
     documentation="""
-Say that one designator, or all unfinished ones, failed with the condition ``error``.""",
+Report that one designator, or all unfinished ones, failed with the condition ``error``.""",
 )
 
 on_input.advice = "Say what the module does with an input: (defmethod cpm:on-input ((module ...) input) ...)."
@@ -92,7 +92,7 @@ running_fluent.advice = finished_fluent.advice = "Of an asynchronous module, (cp
 
 
 class AsynchronousProcessModule(AbstractProcessModule):
-    """A module that takes the next designator while others are still being processed."""
+    """A module that takes the next designator while it still processes others."""
 
     lisp_name = "CRAM-PROCESS-MODULES::ASYNCHRONOUS-PROCESS-MODULE"
     initargs = {"NOTIFICATION-FLUENT": "notification_fluent"}
@@ -106,7 +106,7 @@ class AsynchronousProcessModule(AbstractProcessModule):
         self.input_lock = Lock(f"for the input of {self.name.name}")
 
     def run(self, name: Symbol) -> None:
-        """Take inputs, under ``name``, until the task, or a branch of it, is evaporated or ``on-input`` or ``on-run`` fails."""
+        """Take inputs, under ``name``, until the task or a branch of it is evaporated, or ``on-input`` or ``on-run`` fails."""
         self.online(
             name, lambda: pursue(self._work_beside, self._take_inputs, self._process, lambda: whenever(self.cancel, self._cancel_all))
         )
@@ -117,6 +117,7 @@ class AsynchronousProcessModule(AbstractProcessModule):
             pause(lambda: f"the end of process module {self.name.name}")
 
     def ended(self) -> None:
+        """Forget all designators, and wake the tasks that wait for the module."""
         self.queue.clear()
         self.unfinished.clear()
         self.input.set(None)
@@ -153,17 +154,19 @@ class AsynchronousProcessModule(AbstractProcessModule):
 
     @property
     def pending(self) -> list[Designator]:
-        """What was handed over and has not come to ``on-input`` yet."""
+        """The designators that were handed over and have not reached ``on-input`` yet."""
         return [*([self.input.stored] if self.input.stored is not None else ()), *self.queue]
 
     def changed(self) -> None:
+        """Wake the tasks in `await_change`."""
         self.notification_fluent.pulse()
 
     def await_change(self) -> None:
+        """Wait until a designator is handed over, finished or failed."""
         wait_for(fl_pulsed(self.notification_fluent, handle_missed_pulses=NEVER))
 
     def await_while_online(self, fluent: object) -> None:
-        """Wait for ``fluent``; that the module ends meanwhile is an error."""
+        """Wait for ``fluent``. If the module ends meanwhile, it is an error."""
         over = fl_funcall(lambda status: True if status is OFFLINE else None, self.status_fluent)
         wait_for(fl_or(fluent, over) if isinstance(fluent, Fluent) else fluent)
         if self.status_fluent.stored is OFFLINE:

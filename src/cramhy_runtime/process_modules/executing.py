@@ -1,8 +1,8 @@
-"""What a plan does with a process module: execute a designator, cancel it, ask for the status, wait for a result.
+"""Requests of a plan to a process module: execute a designator, cancel it, ask for the status, wait for a result.
 
-``pm-execute`` sends a request, waits, and returns the values of the module's body, or signals its failure, the identical object, in the
-caller. A caller that is evaporated takes its request back, or has the run cancelled and waits until that is over; so does one
-that is suspended, which asks again after its wake-up. Source: process-modules.md sections 4.3 and 4.4.
+``pm-execute`` sends a request, waits, and returns the values of the module's body, or signals its failure, the same object, in the
+caller. A caller that is evaporated takes its request back, or cancels the run and waits until that is over. A caller that is suspended
+does the same, and asks again after its wake-up. Source: process-modules.md sections 4.3 and 4.4.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cramhy_runtime.cpl.tasks.waiting import wait_for
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import error, type_error, warn
 from cramhy_runtime.ground.data import Cons, Symbol, python_list, values
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import keyword
 from .modules import OFFLINE, RUNNING, AbstractProcessModule, ProcessModule, Request
 from .registry import module_called, not_running
@@ -35,21 +35,21 @@ pm_execute: Execute = generic(
     "CPM::PM-EXECUTE",
     "(process-module input &key task)",
     documentation="""
-Send a designator to a process module and wait: the values of its body.""",
+Send a designator to a process module, wait, and return the values of the module's body.""",
 )
 pm_cancel: GenericOf[[ModuleOrName], object] = generic(
-    "CPM::PM-CANCEL", "(process-module)", documentation="Cancel what the module does now; nobody waits."
+    "CPM::PM-CANCEL", "(process-module)", documentation="Cancel the present run of the module, without waiting for that."
 )
 pm_status: GenericOf[[ModuleOrName], Fluent[Keyword]] = generic(
     "CPM::PM-STATUS", "(process-module)", documentation="The fluent of its status."
 )
-running_fluent = generic("CPM::RUNNING-FLUENT", "(process-module)", documentation="A fluent: is its status :running?")
-finished_fluent = generic("CPM::FINISHED-FLUENT", "(process-module)", documentation="A fluent: is its status not :running?")
+running_fluent = generic("CPM::RUNNING-FLUENT", "(process-module)", documentation="A fluent that is true while its status is :running.")
+finished_fluent = generic("CPM::FINISHED-FLUENT", "(process-module)", documentation="A fluent that is true unless its status is :running.")
 monitor_process_module: Monitor = generic(
     "CPM::MONITOR-PROCESS-MODULE",
     "(process-module &key designators)",
     documentation="""
-Wait until the module has finished and return a stored result, that of a listed designator if there is a list.""",
+Wait until the module has finished, and return a stored result; if there is a list, that of a designator in it.""",
 )
 
 status.method(AbstractProcessModule)(lambda module: module.status_fluent)
@@ -78,7 +78,7 @@ def _execute(module, input_, *, task=None):
 
 
 def _attempt(module, input_, caller):
-    """Send the request and wait for it; the `Request`, finished."""
+    """Send the request and wait for it. Returns the finished `Request`."""
     if module.status_fluent.stored is OFFLINE:  # it has ended while the caller was suspended
         return error(not_running(module.name))
     before = module.request or (module.queue[0] if module.queue else None)
@@ -102,7 +102,7 @@ def _attempt(module, input_, caller):
 
 
 def _old_result(module):
-    """What the module was left with: nothing is run for the input nil."""
+    """The stored result of the module, for the input nil, which runs nothing."""
     stored = module.result_fluent.stored
     return signal_failure(stored) if isinstance(stored, BaseException) else values(*python_list(stored))
 

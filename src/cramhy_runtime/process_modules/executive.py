@@ -1,7 +1,7 @@
 """The executive: ``perform`` a designator (process-modules.md section 8).
 
-A motion goes to a matching process module; an action is resolved to a plan function and its arguments, which is called. Each
-``perform`` is a node of the task tree. An action with a ``:goal`` is not done when the goal holds already, and must make it hold.
+A motion goes to a matching process module. An action is resolved to a plan function and its arguments, and the function is called. Each
+``perform`` is a node of the task tree. An action with a ``:goal`` is left out if the goal holds already; otherwise it must achieve it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction,
 from cramhy_runtime.ground.dynamic import unbind
 from cramhy_runtime.ground.list_shapes import check_shape
 from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import keyword
 from ..occasions.occasions import holds
 from .hints import why_none_runs
@@ -40,7 +40,7 @@ _COMMAND_SHAPE = lisp_list(sym("EXE::COMMAND"), sym("&REST"), sym("EXE::ARGUMENT
 
 
 class DesignatorReferenceFailure(SimplePlanFailure, DesignatorError):
-    """A designator to be performed cannot be resolved. A plan failure and an error."""
+    """A designator cannot be resolved, so it cannot be performed. It is both a plan failure and an error."""
 
     lisp_name = "CRAM-EXECUTIVE::DESIGNATOR-REFERENCE-FAILURE"
     initargs = {**DesignatorError.initargs, "RESULT": "result"}
@@ -51,7 +51,7 @@ class DesignatorReferenceFailure(SimplePlanFailure, DesignatorError):
 
 
 class DesignatorGoalParsingFailure(SimplePlanFailure, DesignatorError):
-    """The goal of an action designator is not a list. A plan failure and an error."""
+    """The goal of an action designator is not a list. It is both a plan failure and an error."""
 
     lisp_name = "CRAM-EXECUTIVE::DESIGNATOR-GOAL-PARSING-FAILURE"
     initargs = DesignatorReferenceFailure.initargs
@@ -66,7 +66,7 @@ generic_perform: GenericOf[[Designator], Any] = generic(
     "EXE::GENERIC-PERFORM",
     "(designator)",
     documentation="""
-Perform a motion or action designator; called by perform in a task of its own.""",
+Perform a motion or action designator. ``perform`` calls it in a task of its own.""",
 )
 
 
@@ -77,7 +77,11 @@ generic_perform.advice = (
 
 
 def perform(designator: Designator) -> Any:
-    """Perform ``designator`` as a goal: the values of the process module or plan function. Only inside of a plan."""
+    """Perform ``designator`` as a goal, and return the values of the process module or plan function.
+
+    Fails with a plan failure if no module matches and runs, if the designator cannot be resolved, or if its plan function is not defined.
+    Outside of a plan it is an error. Source: process-modules.md section 8.
+    """
     if bodies_of(PERFORM)[0] is not _own_body:  # somebody has defined the goal anew
         return call_goal(PERFORM, lisp_list(designator))
     parameters = lisp_list(designator)
@@ -105,7 +109,10 @@ _own_body = bodies_of(PERFORM)[0]
 
 
 def try_reference_designator(designator: Designator, error_message: str = "") -> Any:
-    """Resolve ``designator``; if that cannot be, fail with ``designator-reference-failure`` and ``error_message`` in the text."""
+    """Resolve ``designator`` and return its reference. If that is impossible, fail with ``designator-reference-failure``.
+
+    ``error_message`` is a part of its text.
+    """
     case = enter_case(_REFUSED)
     try:
         try:

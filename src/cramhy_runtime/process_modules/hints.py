@@ -1,8 +1,8 @@
-"""Why no process module was found for a designator, in words for a student.
+"""Hints for a student: why no process module was found for a designator.
 
-Three things must come together: a clause of ``matching-process-module`` names the module, one of ``available-process-module`` says that
-it can be used, and it runs. The hint tells the first that is missing. It is computed when the failure is shown, by a proof that calls
-nothing; see ``designators/hints.py``.
+Three things are necessary: a clause of ``matching-process-module`` names the module, a clause of ``available-process-module`` says that it
+can be used, and it runs. The hint names the first that is missing. It is computed when the failure is shown, by a dry proof; see
+``designators/hints.py``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _MOST_GOALS = 2000
 
 
 def why_none_runs(designator):
-    """The text for ``designator``, for which `running_matches` found no module."""
+    """The hint for ``designator``, for which `running_matches` found no module."""
     with reasoning():  # a failure may be looked at when its kernel has stopped
         return _missing(designator)
 

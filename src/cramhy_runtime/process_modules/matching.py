@@ -1,4 +1,4 @@
-"""Which process module is right for a designator: asked of Prolog (process-modules.md section 7)."""
+"""Finding the process modules for a designator, with Prolog (process-modules.md section 7)."""
 
 from __future__ import annotations
 
@@ -39,12 +39,16 @@ def matching_process_module_names(action_designator: Designator) -> Cons | None:
 
 
 def running_matches(designator: Designator) -> list[Symbol]:
+    """Those of `matching_names` that are running."""
     modules = running().modules
     return [name for name in matching_names(designator) if name in modules]
 
 
 def matching_available_process_modules(action_designator: Designator, *, fail_if_none: bool | None = None) -> Cons | None:
-    """Those of them that are running; none is a plan failure with ``fail_if_none``."""
+    """The names of modules that match ``action_designator``, are available and running, as a Lisp list.
+
+    With ``fail_if_none``, an empty list is a plan failure. Source: process-modules.md section 7.
+    """
     names = running_matches(action_designator)
     if not names and truth(fail_if_none):
         return fail_with_advice(
@@ -54,9 +58,10 @@ def matching_available_process_modules(action_designator: Designator, *, fail_if
 
 
 def pm_execute_matching(action_designator: Designator) -> Any:
-    """Have the matching modules execute ``designator``, one after the other until one succeeds: the first value.
+    """Let the matching modules execute ``action_designator``, one after the other until one succeeds. Returns its first value.
 
-    If all fail, with the failure of the first. Lisp errors end it at once.
+    If all fail, it fails with the failure of the first. A Lisp error is signalled at once. If there is no such module, it is a plan
+    failure. Source: process-modules.md section 7.
     """
     names = running_matches(action_designator)
     if not names:
@@ -67,7 +72,7 @@ def pm_execute_matching(action_designator: Designator) -> Any:
 
 
 def execute_by(names: list[Symbol], designator: Designator) -> Any:
-    """Have the running modules ``names`` execute ``designator``, one after the other until one succeeds: the first value."""
+    """Let the running modules ``names`` execute ``designator``, one after the other until one succeeds. Returns its first value."""
     observed = on_preparing_performing.methods or on_finishing_performing.methods
     run_id = on_preparing_performing.first(designator, list_from(names)) if observed else None
     success = None

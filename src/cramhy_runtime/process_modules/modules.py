@@ -1,12 +1,12 @@
 """Process modules: the parts of a plan that talk to the robot, one request at a time.
 
-A module is a task that waits for designators; `run` is its main loop. Requests queue up, each with a result of its own; the body
-runs as an `Errand` of the module's task, so that it can be evaporated, with its cleanup, while the module lives on. How a plan sends
-a request and waits for it is in ``executing.py``. Source: process-modules.md sections 2 and 4.
+A module is a task that waits for designators; `run` is its main loop. Requests queue up, each with a result of its own. The body runs as
+an `Errand` of the module's task, so it can be evaporated, with its cleanup, while the module lives on. Plans send requests and wait for
+them with ``executing.py``. Source: process-modules.md sections 2 and 4.
 
-Repaired: each request has its own result, so two callers cannot get each other's; a caller that is evaporated or suspended waits
-until the body it asked for is over, so no motion outlives its plan (law 1); a run cancelled by somebody else is a plan failure in
-its caller, where the original returns an old result; a module that ends fails the requests that are left.
+Repaired: each request has its own result, so a caller cannot get the result of another. A caller that is evaporated or suspended waits
+until its run of the body is over, so no motion outlives its plan (law 1). If another task cancels a run, the caller gets a plan failure,
+where the original returns an old result. When a module ends, the requests that are left fail.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from cramhy_runtime.ground.hooks import Hook
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import class_name, find_class_or_error
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import CURRENT, keyword
 from .registry import ended_because, in_one_line, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym
@@ -64,7 +64,7 @@ PM_DEBUGGER_HOOK = inherit(sym("CPM::*PROCESS-MODULE-DEBUGGER-HOOK*"), None)
 CONTINUE_PM, TERMINATE_PM = sym("CPM::CONTINUE-PM"), sym("CPM::TERMINATE-PM")
 
 own_fluents = weakref.WeakSet()
-"""The fluents that process modules make for themselves, such as ``NAVIGATION-STATUS``."""
+"""The fluents of process modules themselves, such as ``NAVIGATION-STATUS``."""
 
 on_process_module_started = Hook("CPM::ON-PROCESS-MODULE-STARTED", "(module input)")
 on_process_module_finished = Hook("CPM::ON-PROCESS-MODULE-FINISHED", "(module input result)")
@@ -79,7 +79,7 @@ Run a process module, an object or the name of its class, until the task is evap
 
 
 class Request:
-    """One call of ``pm-execute``: the designator, who asked, and what came of it."""
+    """One call of ``pm-execute``: the designator, its ``caller``, and the result."""
 
     __slots__ = ("input", "caller", "started", "finished", "values", "failure", "cancelled", "errand", "waiter")
 
@@ -92,19 +92,21 @@ class Request:
         self.waiter = kernel.current()
 
     def finish(self) -> None:
+        """Wake the task that waits for the result."""
         self.finished = True
         self.waiter.kernel.unpark(self.waiter)
 
     def cancel(self) -> None:
+        """End the run of the body, if it has begun."""
         self.cancelled = True
         if self.errand is not None:
             self.errand.end()
 
 
 class Results:
-    """What a module's runs returned, until ``monitor-process-module`` takes it or nobody holds the designator any more.
+    """The values of a module's runs, until ``monitor-process-module`` takes them or the designator is gone.
 
-    The values stand with the designator, for they may hold it: in a weak table of our own they would keep it for ever.
+    The designator itself holds the values, since they may refer to it: values in a weak table would keep it alive for ever.
     """
 
     def __init__(self):
@@ -112,6 +114,7 @@ class Results:
         self._key = object()
 
     def note(self, designator, values):
+        """Keep ``values`` for ``designator``."""
         if not isinstance(designator, Designator):
             return
         inputs, number = self._inputs, id(designator)
@@ -120,7 +123,7 @@ class Results:
         designator.__dict__.setdefault("_results_of_modules", {})[self._key] = values
 
     def take(self, wanted):
-        """The values for the first designator among ``wanted`` that has some, or for any one if it is empty; else ``None``."""
+        """Take the values for the first designator in ``wanted`` that has some, or for any designator if it is empty; or ``None``."""
         for number in [id(designator) for designator in wanted] or list(self._inputs):
             if number in self._inputs:
                 return self._inputs.pop(number)().__dict__["_results_of_modules"].pop(self._key)
@@ -128,7 +131,7 @@ class Results:
 
 
 class AbstractProcessModule:
-    """What synchronous and asynchronous modules share: a name, and fluents for input, status, cancellation and caller."""
+    """The base of synchronous and asynchronous modules: a name, and fluents for input, status, cancellation and caller."""
 
     lisp_name = "CRAM-PROCESS-MODULES::ABSTRACT-PROCESS-MODULE"
     initargs = {"NAME": "name", "INPUT": "input", "STATUS": "status_fluent", "CANCEL": "cancel", "CALLER": "caller"}
@@ -151,7 +154,10 @@ class AbstractProcessModule:
         return made
 
     def online(self, name: Symbol, work: Callable[[], object]) -> None:
-        """Call ``work()``, the main loop, while the module is registered under ``name`` and its status is not ``:offline``."""
+        """Call ``work()``, the main loop. Meanwhile the module is registered under ``name`` and its status is not ``:offline``.
+
+        If it runs already, or a module of that name runs, it is an error.
+        """
         inside_plan("PM-RUN")
         if self.status_fluent.stored is not OFFLINE:
             error("Process module `~a' already running.", self.name)
@@ -177,11 +183,11 @@ class AbstractProcessModule:
             self.ended()
 
     def ended(self) -> None:
-        """The main loop is over: tell those who wait for the module."""
+        """Called when the main loop is over: tell the tasks that wait for the module."""
 
 
 class ProcessModule(AbstractProcessModule):
-    """A module that processes one designator after the other; its body is the primary method of ``pm-run``."""
+    """A module that processes one designator after the other. Its body is the primary method of ``pm-run``."""
 
     lisp_name = "CRAM-PROCESS-MODULES::PROCESS-MODULE"
     initargs = {"RESULT": "result_fluent"}
@@ -202,7 +208,7 @@ class ProcessModule(AbstractProcessModule):
             self.sleeper.kernel.unpark(self.sleeper)
 
     def withdraw(self, request: Request) -> None:
-        """Its caller gives up: take it out of the queue, or cancel its run and wait until that is over."""
+        """Take ``request`` out of the queue, or cancel its run and wait until that is over, because its caller gives up."""
         if request in self.queue:
             self.queue.remove(request)
             return
@@ -215,7 +221,7 @@ class ProcessModule(AbstractProcessModule):
     # ---------------------------------------------------------------------------------------------------------- main loop
 
     def run(self, body: Callable[[], object], name: Symbol) -> None:
-        """Serve requests, under ``name``, until the task is evaporated or the module is told to terminate."""
+        """Serve requests, under ``name``, until the task is evaporated or the restart ``terminate-pm`` is chosen."""
         self.online(name, lambda: self._serve_all(body))
 
     def _serve_all(self, body: Callable[[], object]) -> None:
@@ -271,7 +277,7 @@ class ProcessModule(AbstractProcessModule):
         return handler_bind([(Error, lambda problem: None if isinstance(problem, PlanFailure) else self._ask_what_to_do(problem))], body)
 
     def _ask_what_to_do(self, problem):
-        """The debugger, or the hook in its place, for an error of the body; both restarts make the body fail with it."""
+        """Call the debugger, or the hook in its place, for an error of the body. With both restarts the body fails with the error."""
 
         def terminate():
             self.terminating = True
@@ -329,7 +335,7 @@ class ProcessModule(AbstractProcessModule):
 def define_process_module(name: Symbol, body: Callable[[Any], object]) -> Cons | None:
     """``(def-process-module name (designator) ...)``: define the class ``name`` of modules whose body is ``body(designator)``.
 
-    The body gets the youngest equated designator of the input. Returns the names of all modules.
+    The body gets the youngest designator in the chain of the input. Returns the names of all modules. Source: process-modules.md 4.1.
     """
     cls = PORTS.classes.define(name, ProcessModule)
     pm_run.method(cls)(lambda module, module_name=None: body(current_desig(module.input.stored)))
@@ -337,7 +343,7 @@ def define_process_module(name: Symbol, body: Callable[[Any], object]) -> Cons |
 
 
 def make_module(name: Symbol, class_name: Symbol | None = None) -> AbstractProcessModule:
-    """A new module called ``name`` of the class ``class_name`` (default: ``name``)."""
+    """A new module called ``name`` of the class ``class_name`` (default: ``name``). A class that does not exist is an error."""
     return make_instance(find_class_or_error(class_name or name), NAME, name)
 
 
@@ -357,4 +363,5 @@ def _run_module(next_method, module, name=None):
 
 
 def sym_of_class(module):
+    """The name of the class of ``module``."""
     return class_name(type(module))

@@ -11,12 +11,11 @@
 
     cpl.run(main)
 
-A motion that is performed must stand for something: see `motion_grounding`. A module is a function that is called with one designator
-after the other, each call a task of its own that ends with who asked for it. An asynchronous one is a class derived from
-`AsynchronousModule`. Both have a name that Lisp can use, in the package PYTHON-USER or as ``name=`` says. What is said about which
-designators a module is for is a fact group of its own, which ``(matching-process-module ...)`` and ``(available-process-module ...)``
-find; `perform` asks for them in order of definition. Failures of a module are raised where it was asked, the very exception. Source:
-process-modules.md 2 to 8.
+A motion can be performed only if it can be resolved: see `motion_grounding`. A module is a function that is called with one designator
+after the other. Each call is like a task of its own, and ends when its caller ends. An asynchronous module is a class derived from
+`AsynchronousModule`. Both have a name for Lisp, in the package PYTHON-USER or from ``name=``. The rules which designators a module is for
+are a fact group of their own, for ``(matching-process-module ...)`` and ``(available-process-module ...)``; `perform` asks the modules in
+order of definition. A failure of a module is raised in its caller, the same exception. Source: process-modules.md 2 to 8.
 """
 
 from __future__ import annotations
@@ -60,7 +59,7 @@ import_predicates(MATCHING, AVAILABLE, PROJECTION_RUNNING)
 
 
 class Module(Name, Generic[D, T]):
-    """A process module that is a function in Python; it is equal to its name. Called, it is the function: nothing is queued then."""
+    """A process module that is a function in Python. It is equal to its name. A call of it calls the function directly."""
 
     __slots__ = ("body",)
     __class_getitem__ = subscripted
@@ -78,10 +77,11 @@ def process_module(body: Callable[[D], T], /) -> Module[D, T]: ...
 @overload
 def process_module(*kinds: type[D], matches: Body | None = None, name: Name | Symbol | None = None) -> Defines[D]: ...
 def process_module(*given: Any, matches: Body | None = None, name: Any = None) -> Any:
-    """Decorator: the function is a process module, ``body(designator)``; what it returns is what `execute` and `perform` return.
+    """Decorator: make a process module of a function ``body(designator)``, whose result `execute` and `perform` return.
 
-    kinds: the declared types of the designators that `perform` gives to it; matches: a function that says it, ``matches(designator)``;
-    without any of them only `execute` reaches it. name: its name for Lisp. A definition of the same name replaces the old one.
+    given: the declared types of designators that `perform` gives to it. matches: a function ``matches(designator)`` that says whether
+    `perform` may give it one. Without both, only `execute` reaches the module. name: its name for Lisp. A definition of the same name
+    replaces the old one. Anything but declared types is a TypeError.
     """
     plain = len(given) == 1 and not isinstance(given[0], type)
 
@@ -125,16 +125,16 @@ def _say_what_it_is_for(name: Symbol, kinds: Any, matches: Any) -> None:
 
 
 class AsynchronousModule(asynchronous.AsynchronousProcessModule):
-    """A module that takes the next designator while others are still being processed: derive a class from it.
+    """A module that takes the next designator while it still processes others. Derive a class from it:
 
         class Arm(AsynchronousModule, kinds=[Reaching]):
             def on_input(self, motion): ...        # begin; may wait, and others queue up meanwhile
-            def on_cancel(self, motion): ...       # for each unfinished one, when the module is cancelled
-            def on_run(self): ...                  # beside, as long as the module runs
-            def ready(self, motion): ...           # a fluent, or True, that says when the motion may be taken
+            def on_cancel(self, motion): ...       # for each unfinished motion, when the module is cancelled
+            def on_run(self): ...                  # other work, as long as the module runs
+            def ready(self, motion): ...           # a fluent, or True: when the module may take the motion
 
-    `finish` and `fail` say what became of a designator, and `monitor` waits for that. Class options: ``kinds``, ``matches`` and ``name``
-    as for `process_module`. `execute` of it returns when the module has taken the designator.
+    `finish` and `fail` report the end of a designator, and `monitor` waits for that. `execute` returns when the module has taken the
+    designator. Class options: ``kinds``, the declared types of designators; ``matches`` and ``name`` as for `process_module`.
     """
 
     module_name: Symbol
@@ -149,27 +149,27 @@ class AsynchronousModule(asynchronous.AsynchronousProcessModule):
         _say_what_it_is_for(cls.module_name, kinds, matches)
 
     def on_input(self, designator: Any) -> object:
-        """Begin with a designator."""
+        """Begin with a designator. Derived classes must define it."""
         raise NotImplementedError(f"{type(self).__name__} does not say what it does with a designator: def on_input(self, designator): ...")
 
     def on_cancel(self, designator: Any) -> object:
-        """The module was cancelled, and this designator is not finished. By default nothing is done."""
+        """Called for each unfinished designator when the module is cancelled. By default it does nothing."""
 
     def on_run(self) -> object:
-        """What runs beside; by default nothing."""
+        """Work beside taking inputs. By default there is none."""
 
     def ready(self, designator: Any) -> object:
-        """A fluent that is true when the designator may be taken. By default they are taken at any time."""
+        """A fluent that is true when the module may take the designator. By default it may at any time."""
         return True
 
     @for_python
     def finish(self, designator: Designator | None = None) -> None:
-        """Say that a designator, or all that were begun, is finished."""
+        """Report that a designator, or all that were begun, are finished. Any other designator, or an idle module, is an error."""
         asynchronous.finish_process_module(self, designator=designator)
 
     @for_python
     def fail(self, failure: BaseException, designator: Designator | None = None) -> None:
-        """Say that a designator, or all that were begun, failed; `monitor` raises ``failure``."""
+        """Report that a designator, or all that were begun, failed: `monitor` raises ``failure``. Another designator is an error."""
         asynchronous.fail_process_module(self, from_python(failure), designator=designator)
 
 
@@ -179,7 +179,7 @@ asynchronous.on_run.method(AsynchronousModule)(lambda module: module.on_run())
 asynchronous.synchronization_fluent.method(AsynchronousModule, None)(lambda module, designator: module.ready(designator))
 
 Designation = Module | type[AsynchronousModule] | Name | Symbol | str
-"""What names a process module: itself, or a name; a string is an alias that `process_modules` gave."""
+"""A process module, or its name. A string is an alias given by `process_modules`."""
 
 
 # -------------------------------------------------------------------------------------------------------------------- in plans
@@ -187,10 +187,10 @@ Designation = Module | type[AsynchronousModule] | Name | Symbol | str
 
 @contextmanager
 def process_modules(*running: Designation, **aliases: Designation) -> Iterator[None]:
-    """``with process_modules(navigation, left=arm, right=arm):`` the modules run while the block does, and have ended after it.
+    """``with process_modules(navigation, left=arm, right=arm):`` runs the modules during the block. After it they have ended.
 
-    A keyword is the name of one more module of that kind. Errors: whatever keeps a module from starting; after the block, what one failed
-    with.
+    A keyword is the name of one more module of that kind. Errors: a module cannot start; after the block, the failure of a module.
+    Source: process-modules.md section 5.
     """
     if kernel.active() is None:
         inside_plan("PROCESS-MODULES")
@@ -210,10 +210,11 @@ def execute(module: Module[D, T], designator: D) -> T: ...
 def execute(module: type[AsynchronousModule] | Symbol | str, designator: Designator) -> Any: ...
 @for_python
 def execute(module: Designation, designator: Designator) -> Any:
-    """Have ``module`` execute a designator, and wait: what its function returns; what it fails with is raised.
+    """Let ``module`` execute a designator, wait, and return the result of its function. Its failure is raised.
 
-    Requests queue up. The call ends with the caller: when that is ended, the function is; when it is suspended, the function is ended, and
-    called again afterwards. Several values of a module of Lisp are a tuple.
+    Requests queue up. If the caller is ended, its call of the function is ended. If the caller is suspended, the call is ended too, and
+    made again afterwards. Several values of a module of Lisp are a tuple. Errors: an unknown module, TypeError for anything but a
+    designator, and calls outside of plans. Source: process-modules.md 4.3.
     """
     inside_plan("EXECUTE")
     return in_python(_asked(executing.pm_execute, module, _checked(designator)))
@@ -221,10 +222,10 @@ def execute(module: Designation, designator: Designator) -> Any:
 
 @for_python
 def perform(designator: Designator) -> Any:
-    """Perform a motion, by a process module that matches it, or an action, by its plan function: what that returns.
+    """Perform a motion by a process module that matches it, or an action by its plan function. Returns the result.
 
-    Failures: SimplePlanFailure if there is no module or plan function, ReferenceFailure if the designator cannot be resolved, and what
-    the module or the plan fails with.
+    Failures: SimplePlanFailure if there is no module or plan function, ReferenceFailure if the designator cannot be resolved, and the
+    failures of the module or the plan. Anything but a designator is a TypeError. Source: process-modules.md section 8.
     """
     inside_plan("PERFORM")
     return in_python(executive.perform(_checked(designator)))
@@ -232,21 +233,24 @@ def perform(designator: Designator) -> Any:
 
 @for_python
 def monitor(module: Designation, *designators: Designator) -> Any:
-    """Wait until ``module`` has finished one of the designators, or, without any, all it has: what it returned; a failure is raised."""
+    """Wait until ``module`` has finished one of the designators, or, without any, all that it has. Returns the result.
+
+    A failure of the module is raised. If the module ends meanwhile, it is an error. Source: process-modules.md 4.4, 6.
+    """
     inside_plan("MONITOR")
     return in_python(_asked(lambda found: executing.monitor_process_module(found, designators=list_from(designators)), module))
 
 
 @for_python
 def cancel(module: Designation) -> None:
-    """End what ``module`` does now; nobody waits for that here. Who asked for it gets a failure."""
+    """End the present run of ``module``, without waiting for that. The caller of the run gets a failure. Source: process-modules.md 4.4."""
     inside_plan("CANCEL")
     _running(module).cancel.set(True)
 
 
 @for_python
 def status(module: Designation) -> Fluent[Keyword]:
-    """The fluent of its status: ``kw.waiting``, ``kw.running``, ``kw.failed``, and ``kw.offline`` when it has ended."""
+    """The fluent of the status of ``module``: ``kw.waiting``, ``kw.running``, ``kw.failed``, or ``kw.offline`` when it has ended."""
     inside_plan("STATUS")
     found: Fluent[Keyword] = _running(module).status_fluent
     return found
@@ -258,7 +262,7 @@ def running_module(module: type[M]) -> M: ...
 def running_module(module: Name | Symbol | str) -> modules.AbstractProcessModule: ...
 @for_python
 def running_module(module: Designation) -> Any:
-    """The object of a running module: that of an `AsynchronousModule` has its `finish` and `fail`."""
+    """The object of a running module. For an `AsynchronousModule` it has `finish` and `fail`. An unknown module is an error."""
     inside_plan("RUNNING-MODULE")
     return _running(module)
 
@@ -297,5 +301,5 @@ def _checked(designator: Any) -> Designator:
 
 
 def in_python(value: Any) -> Any:
-    """What a form of Lisp returns as Python sees it: several values are a tuple."""
+    """The result of a Lisp form, converted for Python: several values are a tuple."""
     return tuple(map(to_python, value)) if value.__class__ is MultipleValues else to_python(value)

@@ -1,9 +1,9 @@
-"""Which process modules are defined, and which run under which names (process-modules.md section 3).
+"""The process modules that are defined, and those that run, by name (process-modules.md section 3).
 
-Running modules are in the value of ``*running-process-modules*``, so that a projection may bind it and see its own modules only.
-Repaired: a module that ends takes all its aliases with it, ``with-process-module-aliases`` makes aliases that can be seen, and no alias
-or registration takes a name away from another module. A name that nothing runs under is an error at once, which tells the nearest name
-that is, and why the module ended if it did.
+The value of ``*running-process-modules*`` holds the running modules, so a projection may bind it and see only its own modules.
+Repaired: all aliases of a module end with it. ``with-process-module-aliases`` makes aliases that can be seen. No alias or registration
+takes a name away from another module. A name without a running module is an error at once, which tells the nearest name, and why the
+module ended if it did.
 """
 
 from __future__ import annotations
@@ -32,19 +32,25 @@ T = TypeVar("T")
 
 
 class UnknownProcessModule(SimpleError):
+    """No module runs under a name."""
+
     lisp_name = "CRAM-PROCESS-MODULES::UNKNOWN-PROCESS-MODULE"
 
 
 class ProcessModuleRunning(SimpleError):
+    """A module runs under a name already."""
+
     lisp_name = "CRAM-PROCESS-MODULES::PROCESS-MODULE-RUNNING"
 
 
 class ProcessModuleNotRunning(SimpleError):
+    """A module has ended, or was never started."""
+
     lisp_name = "CRAM-PROCESS-MODULES::PROCESS-MODULE-NOT-RUNNING"
 
 
 class Registry:
-    """The running modules by name, in order of registration, the tasks that wait for one, and why modules that failed have ended."""
+    """The running modules by name, in order of registration, the tasks that wait for a module, and why modules ended that failed."""
 
     def __init__(self) -> None:
         self.modules: dict[Symbol, AbstractProcessModule] = {}
@@ -52,22 +58,25 @@ class Registry:
         self.reasons: dict[Symbol, str] = {}  # name -> text
 
     def copy(self) -> Registry:
-        """One of another image: nothing runs there yet."""
+        """An empty registry for another image, where no module runs yet."""
         return Registry()
 
     def add(self, name: Symbol, module: AbstractProcessModule) -> None:
+        """Enter ``module`` under ``name``, and wake the tasks that wait for modules."""
         self.modules[name] = module
         self.reasons.pop(name, None)
         for task in self.waiters:
             task.kernel.unpark(task)
 
     def remove(self, module: AbstractProcessModule, reason: str | None = None) -> None:
+        """Remove all names of ``module``. ``reason`` says why it failed."""
         for name in self.names(module):
             del self.modules[name]
             if reason is not None:
                 self.reasons[name] = reason
 
     def names(self, module: AbstractProcessModule) -> list[Symbol]:
+        """The names of ``module``, in order of registration."""
         return [name for name, running in self.modules.items() if running is module]
 
 
@@ -81,17 +90,19 @@ def running() -> Registry:
 
 
 def register_process_module(name: Symbol) -> Cons | None:
-    """Note that ``name`` is the class of a process module; returns the list of such names, the newest first."""
+    """Note that ``name`` is the class of a process module. Returns the list of such names, the newest first."""
     _defined.pop(name, None)
     _defined[name] = True
     return get_process_module_names()
 
 
 def is_defined(name: object) -> bool:
+    """Whether ``name`` is the class of a process module."""
     return name in _defined
 
 
 def get_process_module_names() -> Cons | None:
+    """The names of all classes of process modules, a Lisp list, the newest first."""
     return list_from(list(reversed(_defined)))
 
 
@@ -101,7 +112,7 @@ def get_running_process_module(name: Symbol) -> AbstractProcessModule | None:
 
 
 def get_running_process_module_name(module):
-    """The name that the running ``module`` got first, or nil."""
+    """The first name of the running ``module``, or nil."""
     names = running().names(module)
     return names[0] if names else None
 
@@ -112,13 +123,14 @@ def get_running_process_module_names(module):
 
 
 def module_called(name: Any) -> Any:
-    """The running module that ``name`` stands for; an unknown name is an error."""
+    """The running module called ``name``. An object that is not a symbol is returned as it is; an unknown name is an error."""
     if not isinstance(name, Symbol) and name is not None:
         return name
     return running().modules.get(name) or unknown(name)
 
 
 def unknown(name: object) -> NoReturn:
+    """Signal that no module runs under ``name``."""
     error(_with_hint(UnknownProcessModule("Unknown process module: ~a ", name), name))
 
 
@@ -128,7 +140,7 @@ def not_running(name: object) -> ProcessModuleNotRunning:
 
 
 def ended_because(problem):
-    """What ended a module, as a text that holds no object of the plan."""
+    """A text that says why a module ended. It refers to no object of the plan."""
     problem = from_python(opened(problem))
     locate(problem, problem)
     place = describe(getattr(problem, "position", None))
@@ -136,7 +148,7 @@ def ended_because(problem):
 
 
 def in_one_line(thing: object) -> str:
-    """``thing`` as ``princ`` shows it, on one line."""
+    """``thing`` as ``princ`` prints it, on one line."""
     return " ".join(princ_to_string(thing).split())
 
 
@@ -173,7 +185,7 @@ def _nearest(name, names):
 
 
 def start_under(name, module=None):
-    """Register ``module`` under ``name``, or only see whether that is possible; that a module runs under it is an error."""
+    """Register ``module`` under ``name``, or without ``module`` only check the name. If a module runs under it, it is an error."""
     if name in running().modules:
         return error(ProcessModuleRunning("Process module `~a' already running. foo foo", name))
     if module is not None:
@@ -181,7 +193,10 @@ def start_under(name, module=None):
 
 
 def process_module_alias(alias: Symbol, name: Symbol) -> Symbol:
-    """Let ``alias`` be another name of the running module ``name``, until that ends."""
+    """Let ``alias`` be another name of the running module ``name``, until that ends. Returns ``alias``.
+
+    An unknown ``name``, and an alias under which another module runs, are errors. Source: process-modules.md section 3.
+    """
     module = get_running_process_module(name)
     if module is None:
         error(_with_hint(UnknownProcessModule("Could not find process module with name `~s'", name), name))
@@ -197,7 +212,7 @@ def process_module_alias(alias: Symbol, name: Symbol) -> Symbol:
 
 
 def with_process_module_aliases(aliases: Iterable[tuple[Symbol, Symbol]], body: Callable[[], T]) -> T:
-    """Values of ``body()`` while the aliases, pairs (alias, name), are in force."""
+    """Call ``body()`` while the aliases, pairs (alias, name), are in force, and return its values. See `process_module_alias`."""
     made = []
     try:
         for alias, name in aliases:
@@ -210,9 +225,9 @@ def with_process_module_aliases(aliases: Iterable[tuple[Symbol, Symbol]], body: 
 
 
 def with_process_module_registered_running(name: Symbol, module: AbstractProcessModule, body: Callable[[], T]) -> T:
-    """Values of ``body()`` while ``module`` is registered under ``name``; no main loop is started for it.
+    """Call ``body()`` while ``module`` is registered under ``name``, and return its values. No main loop is started for it.
 
-    Nothing happens to a module that runs under that name already.
+    If a module runs under that name already, it stays registered instead.
     """
     made = []
     if get_running_process_module(name) is None:
@@ -232,7 +247,7 @@ def _forget(pairs):
 
 
 def wait_for_process_module_running(process_module: Symbol | AbstractProcessModule, *, timeout: float | None = None) -> bool | None:
-    """Wait until the module (a name or an object) is registered: true; nil if that takes longer than ``timeout`` seconds."""
+    """Wait until the module (a name or an object) is registered, and return true; after ``timeout`` seconds return nil."""
     registry, me = running(), kernel.current()
     until = None if timeout is None else kernel.now() + timeout
 

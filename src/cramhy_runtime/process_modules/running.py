@@ -1,8 +1,8 @@
 """``with-process-modules-running``: modules that live as long as a body (process-modules.md section 5).
 
-The modules run in a top-level of their own beside the body. Repaired: an error while they start reaches the caller at once, and
-leaving the form waits until they have ended, so the same modules can be started again right away. A module that fails later ends
-alone; the others go on, requests to it are told why, and the form fails with its failure when the body is over (law 3).
+The modules run in a top-level of their own beside the body. Repaired: an error while they start reaches the caller at once. The form is
+left only when they have ended, so the same modules can be started again at once. A module that fails later ends alone: the others go on,
+errors of requests to it say why, and the form fails with its failure when the body is over (law 3).
 """
 
 from __future__ import annotations
@@ -35,8 +35,11 @@ T = TypeVar("T")
 
 
 def with_process_modules_running(modules: Iterable[RunningAs], body: Callable[[], T]) -> T:
-    """Values of ``body()`` while ``modules`` run, an iterable of class names or of pairs (alias, class name). The caller may be outside of
-    plans."""
+    """Run ``modules`` during ``body()``, and return its values. It works outside of plans too.
+
+    modules: class names, or pairs (alias, class name). Errors: a module cannot start; after the body, the failure of a module. Source:
+    process-modules.md section 5.
+    """
     if not modules:
         return body()
     with modules_running(modules):
@@ -45,7 +48,7 @@ def with_process_modules_running(modules: Iterable[RunningAs], body: Callable[[]
 
 @contextmanager
 def modules_running(modules: Iterable[RunningAs]) -> Iterator[None]:
-    """``with modules_running([...]):`` the same for the block."""
+    """``with modules_running([...]):`` does the same for a block."""
     group = _Group([_names(module) for module in modules])
     group.start()
     try:
@@ -69,7 +72,7 @@ def _names(module: Any) -> tuple[Any, Any]:
 
 
 class _Group:
-    """The modules of one form, and the task at their root. ``names`` are pairs (name, class name)."""
+    """The modules of one form, and their root task. ``names`` are pairs (name, class name)."""
 
     def __init__(self, names):
         self.names = [name for name, _ in names]
@@ -81,6 +84,7 @@ class _Group:
         self.root.ended = lambda task: self._wake()
 
     def start(self):
+        """Start the modules."""
         finished_plans.beside(self.root)
         self.root.execute()
 
@@ -95,7 +99,7 @@ class _Group:
         self.caller.kernel.unpark(self.caller)
 
     def await_start(self):
-        """Return when all modules run; what one failed with before that is signalled here."""
+        """Return when all modules run. If one fails before that, its failure is signalled here."""
         registry = self.registry
         registry.waiters.append(self.caller)
         try:
@@ -116,25 +120,26 @@ class _Group:
         return self.root.status in DEAD or any(task.status in DEAD for task in self.tasks)
 
     def end(self):
+        """End the modules, and wait until they are dead."""
         self.root.ended = None
         end_tasks([self.root], "Body ended.")
 
     def failures(self):
-        """What modules failed with, or the root with all of them, as when the system has no stack for one."""
+        """The failures of modules, or of the root with all of them, for example if the system has no stack for one."""
         failures = [opened(task.result) for task in self.tasks if task.status is FAILED]
         if not failures and self.root.status is FAILED:
             failures.append(opened(self.root.result))
         return failures
 
     def failure(self):
-        """The failure of the first module that failed, which tells those of the others; ``None`` if none did."""
+        """The failure of the first module that failed, with those of the others beside it; ``None`` if none failed."""
         first, *others = self.failures() or (None,)
         if others:
             _add_beside(first, others)
         return first
 
     def tell(self, problem):
-        """The body is left with ``problem``: what modules failed with is told with it, or instead where it only follows from that."""
+        """Note the failures of modules beside ``problem``, with which the body is left. If it only follows from one, raise that instead."""
         failures = [failure for failure in self.failures() if failure is not problem]
         if not failures:
             return
@@ -155,7 +160,7 @@ def _add_beside(problem, failures):
 
 
 class _Modules(Branches):
-    """The tasks of modules. ``told()`` is called at each end."""
+    """The tasks of modules. ``told()`` is called each time that one ends."""
 
     __slots__ = ("told",)
 

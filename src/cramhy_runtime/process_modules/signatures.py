@@ -1,4 +1,4 @@
-"""What the functions of this room take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+"""Types of the arguments in this room. Only type checkers read this module: no code imports it when a program runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 ModuleOrName = AbstractProcessModule | Symbol
 RunningAs = Symbol | tuple[Symbol, Symbol]
-"""A module to be started: its name, or (alias, name)."""
+"""A module to start: its name, or (alias, name)."""
 
 
 class Defines(Protocol[D]):
@@ -28,18 +28,26 @@ class Defines(Protocol[D]):
 
 
 class Execute(GenericOf[..., Any], Protocol):
+    """The type of ``pm-execute``."""
+
     def __call__(self, process_module: ModuleOrName, input: Designator, /, *, task: AbstractTask[object] | None = None) -> Any: ...
 
 
 class Monitor(GenericOf[..., Any], Protocol):
+    """The type of ``monitor-process-module``."""
+
     def __call__(self, process_module: ModuleOrName, /, *, designators: Cons | None = None) -> Any: ...
 
 
 class Finish(GenericOf[..., None], Protocol):
+    """The type of ``finish-process-module``."""
+
     def __call__(self, process_module: AsynchronousProcessModule, /, *, designator: Designator | None = None) -> None: ...
 
 
 class Fail(GenericOf[..., None], Protocol):
+    """The type of ``fail-process-module``."""
+
     def __call__(
         self, process_module: AsynchronousProcessModule, error: BaseException, /, *, designator: Designator | None = None
     ) -> None: ...

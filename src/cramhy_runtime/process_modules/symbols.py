@@ -1,6 +1,6 @@
 """The Lisp packages of this room, made before anything interns a symbol in them.
 
-What they contain is declared in ``languages/commonlisp/faces/process_modules/package.py``.
+``languages/commonlisp/faces/process_modules/package.py`` declares their contents.
 """
 
 from cramhy_runtime.designators import symbols as _designators  # noqa: F401  its packages come first

@@ -1,12 +1,12 @@
-"""Projection: running a plan in an imagined world. Usable from Python:
+"""Projection: running a plan in an imagined world. From Python:
 
     from cramhy_runtime import projection as proj
 
     proj.define_projection_environment(KITCHEN, variables=[(ROBOT_POSE, lambda: start)], modules=[(NAVIGATION, IMAGINED_NAVIGATION)])
     proj.with_projection_environment(KITCHEN, lambda: cpl.top_level(plan)).result     # the list of the plan's values
 
-``environments`` what an imagined world is made of, and a body in it · ``clocks`` its time · ``own_modules`` which process modules it sees
-· ``symbols`` the Lisp package. Reference: projection-and-events.md part A.
+Where the parts are: ``environments`` imagined worlds, and running a body in one · ``clocks`` their time · ``own_modules`` their process
+modules · ``symbols`` the Lisp package. Reference: projection-and-events.md part A.
 """
 
 from .clocks import LinearClock, PartiallyOrderedClock, clock_time, clock_wait, with_partially_ordered_clock_disabled

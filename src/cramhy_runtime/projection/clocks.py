@@ -1,13 +1,12 @@
-"""Clocks of imagined worlds: time that passes because somebody says that something would have taken it.
+"""Clocks of imagined worlds: their time passes when code says how long an action would have taken.
 
-A `LinearClock` adds up: whoever waits moves it. A `PartiallyOrderedClock` is for plans whose branches act side by side: their waits
-overlap, as two motions of two arms do. It moves in steps from one awaited moment to the next, each a little real time after the
-last one so that branches which begin to wait together are counted together. That little time is the kernel's, so in virtual time
-nothing depends on luck. Law: after a wait the clock shows at least the time before it plus the duration. Source:
-projection-and-events.md A2.
+A `LinearClock` adds up all waits. A `PartiallyOrderedClock` is for plans whose branches act side by side: their waits overlap, as the
+motions of two arms do. It moves in steps from one awaited moment to the next. Between two steps there is a short delay of the kernel's
+clock, so that branches which begin to wait together are counted together; in virtual time the result is always the same. Law: after a
+wait the clock shows at least the time before it plus the duration. Source: projection-and-events.md A2.
 
-Repaired: a clock is disabled as long as anybody disables it; in the original a form that is active twice enables it when its inner
-activation ends. A duration that is no real number of at least 0 is an error, where the original sets a linear clock back.
+Repaired: a clock is disabled as long as any form disables it; in the original a form that is active twice enables it when its inner
+activation ends. A duration that is not a real number from 0 on is an error, where the original sets a linear clock back.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import lisp_list
 from cramhy_runtime.ground.numbers import need_real
 from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from . import symbols  # noqa: F401  the package must exist
 from .symbols import sym
 
@@ -31,13 +30,13 @@ clock_wait = generic(
     "CRAM-PROJECTION::CLOCK-WAIT",
     "(clock duration)",
     documentation="""
-Let ``duration`` pass on ``clock``: it shows at least its old time plus the duration when this returns.""",
+Let ``duration`` pass on ``clock``. When this returns, the clock shows at least its old time plus the duration.""",
 )
 partially_ordered_clock_enabled = generic(
     "CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK-ENABLED",
     "(clock)",
     documentation="""
-True if nobody disables ``clock`` at the moment.""",
+True unless a form disables ``clock`` now.""",
 )
 
 _DURATION = lisp_list(sym("REAL"), 0)
@@ -49,7 +48,7 @@ def _check(duration):
 
 
 class LinearClock:
-    """A clock that every wait moves, by its whole duration and at once. ``initial_time``: a real number."""
+    """A clock that every wait moves at once, by its whole duration. initial_time: a real number."""
 
     lisp_name = "CRAM-PROJECTION::LINEAR-CLOCK"
     initargs = {"INITIAL-TIME": "time"}
@@ -61,8 +60,8 @@ class LinearClock:
 class PartiallyOrderedClock:
     """A clock on which parallel waits overlap.
 
-    ``initial_time``: a real number. ``increment_delay``: seconds of the kernel's clock between two steps, in which waits count as
-    begun together.
+    initial_time: a real number. increment_delay: the time between two steps, in seconds of the kernel's clock; waits that begin within it
+    count as begun together.
     """
 
     lisp_name = "CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK"
@@ -76,6 +75,7 @@ class PartiallyOrderedClock:
         self.held_up = []  # tasks of the kernel that wait for it to be enabled
 
     def await_enabled(self):
+        """Wait until no form disables the clock."""
         me = kernel.current()
         while self.disabled:
             self.held_up.append(me)
@@ -85,7 +85,7 @@ class PartiallyOrderedClock:
                 self.held_up.remove(me)
 
     def step(self):
-        """Go on to the next moment that somebody waits for."""
+        """Go on to the next awaited moment."""
         for end in self.ends:
             if end > self.time:
                 self.time = end
@@ -127,7 +127,10 @@ def _enabled(clock):
 
 
 def with_partially_ordered_clock_disabled(clock, body):
-    """Values of ``body()``, during which the time of ``clock`` does not advance; it does when all such forms have been left."""
+    """Call ``body()`` and return its values. The time of ``clock`` stands still until all such forms have been left.
+
+    A clock of another class is a type error. Source: projection-and-events.md A2.
+    """
     if not isinstance(clock, PartiallyOrderedClock):
         return type_error(clock, sym("CRAM-PROJECTION::PARTIALLY-ORDERED-CLOCK"))
     clock.disabled += 1

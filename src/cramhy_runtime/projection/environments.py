@@ -1,15 +1,15 @@
-"""Projection environments: imagined worlds that plans are tried in.
+"""Projection environments: imagined worlds in which plans are tried.
 
 An environment gives variables values of their own, runs process modules that move no robot, and has code for its beginning and its
-end. `with_projection_environment` runs a body in one: the variables are bound for this task and the tasks that it starts, and for
-nobody else, so that several projections may go on side by side, or one in the other. Special projection variables are bound anew in
-every environment. Source: projection-and-events.md A1.
+end. `with_projection_environment` runs a body in one. The variables are bound only for this task and the tasks that it starts, so several
+projections may run side by side, or one inside the other. Special projection variables are bound anew in every environment. Source:
+projection-and-events.md A1.
 
-The order: the variables are bound, all initialisers before any; the process modules start; ``startup``; the special projection
-variables are bound; the body; ``shutdown``, however the body or ``startup`` ended; the process modules end; the bindings are undone. The
-modules see the environment's variables, and of the special projection variables the values outside.
+The order: all initialisers run, then the variables are bound. The process modules start. ``startup`` runs. The special projection
+variables are bound. The body runs. ``shutdown`` runs, however the body or ``startup`` ended. The process modules end, and the bindings are
+undone. The modules see the environment's variables, but the outer values of the special projection variables.
 
-Repaired: the result tells the values that special projection variables had inside; ``own_modules.py`` says which modules are seen.
+Repaired: the result has the values that special projection variables had inside. ``own_modules.py`` says which modules are seen.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from .own_modules import ProjectedRegistry
 from .symbols import sym
 
 PROJECTION_ENVIRONMENT = inherit(sym("CRAM-PROJECTION::*PROJECTION-ENVIRONMENT*"), None)
-"""The name of the environment that the current task runs in; nil in the real world."""
+"""The name of the environment in which the current task runs; nil in the real world."""
 
 _environments = per_image({})
 _special_variables = per_image({})  # symbol → initialiser, in order of definition
 
 
 class ProjectionEnvironment:
-    """What ``define-projection-environment`` said: pairs (symbol, initialiser), modules as `with_process_modules_running` takes them,
-    two functions of no arguments or ``None``."""
+    """An environment of ``define-projection-environment``: ``variables`` are pairs (symbol, initialiser), ``modules`` are as for
+    `with_process_modules_running`, ``startup`` and ``shutdown`` are functions of no arguments or ``None``."""
 
     lisp_name = "CRAM-PROJECTION::PROJECTION-ENVIRONMENT"
 
@@ -55,7 +55,10 @@ class ProjectionEnvironment:
         ]
 
     def run(self, body):
-        """``startup``, the body in the special projection variables, ``shutdown``: the values, and the variables at the body's end."""
+        """Run ``startup``, the body with the special projection variables, and ``shutdown``.
+
+        Returns the values of the body, and pairs of the variables and their values at its end.
+        """
         try:
             if self.startup is not None:
                 self.startup()
@@ -71,16 +74,17 @@ class ProjectionEnvironment:
 
 
 def _initial_values(variables):
-    """What to bind: all initialisers are evaluated before the first variable has its value."""
+    """Symbols and values to bind. All initialisers are evaluated before the first variable is bound."""
     values = [one(initializer()) for _, initializer in variables]
     return [item for (symbol, _), value in zip(variables, values, strict=True) for item in (symbol, value)]
 
 
 def define_projection_environment(name, variables=(), modules=(), startup=None, shutdown=None):
-    """``(define-projection-environment name ...)``: define the environment ``name``, in place of an old one of that name.
+    """``(define-projection-environment name ...)``: define the environment ``name``. It replaces an old one of that name.
 
-    ``variables``: pairs (symbol, function of no arguments that gives the initial value); they become task variables. ``modules``:
-    names of process modules, or pairs (name, name of the class). Returns the list of all environments, the newest first.
+    variables: pairs (symbol, function of no arguments that returns the initial value); they become task variables. modules: names of
+    process modules, or pairs (name, name of the class). startup, shutdown: functions of no arguments. Returns the list of all
+    environments, the newest first. Source: projection-and-events.md A1.
     """
     variables = list(variables)
     for symbol, _ in variables:
@@ -91,14 +95,17 @@ def define_projection_environment(name, variables=(), modules=(), startup=None, 
 
 
 def define_special_projection_variable(symbol, initializer):
-    """``(define-special-projection-variable name initializer)``: a task variable that is bound anew in every projection. ``symbol``."""
+    """``(define-special-projection-variable name initializer)``: define a task variable that is bound anew in every projection.
+
+    Returns ``symbol``.
+    """
     define_task_variable(symbol, symbol.value)
     _special_variables[symbol] = initializer
     return symbol
 
 
 def find_environment(name):
-    """The environment ``name``, or the error that there is none."""
+    """The environment ``name``. An unknown name is an error."""
     found = _environments.get(name)
     if found is not None:
         return found
@@ -117,8 +124,9 @@ def find_environment(name):
 def with_projection_environment(name, body):
     """``(with-projection-environment name ...)``: run ``body()`` in the environment ``name``.
 
-    Returns a structure with the name, the list of the body's values, and an alist of variables and what they were at its end. A
-    failure of the body goes on when ``shutdown`` has run and the process modules are dead. Errors: an unknown name.
+    Returns a structure with the ``name``, the list of the body's values (``result``), and an alist of the variables and their values at
+    its end (``environment``). A failure of the body goes on when ``shutdown`` has run and the process modules are dead. An unknown name is
+    an error. Source: projection-and-events.md A1.
     """
     values, variables = in_environment(find_environment(name), body)
     return find_class_or_error(RESULT)(name=name, result=list_from(list(values)), environment=list_from(variables))
@@ -137,7 +145,7 @@ def in_environment(environment, body):
 
 
 class EnvironmentResult:
-    """What `with_projection_environment` returns where no language defines a structure of that name."""
+    """The result of `with_projection_environment` if no language defines a structure of that name."""
 
     def __init__(self, name, result, environment):
         self.name, self.result, self.environment = name, result, environment

@@ -1,8 +1,8 @@
-"""Which process modules a projection sees: its own, and those around it under names that it does not define.
+"""The process modules that a projection sees: its own, and those outside under names that it does not define.
 
-So the imagined navigation takes the place of the real one even while that is running, nobody outside sends anything to it, and two
-projections side by side each have their own. In the original the names are everybody's: a module that runs already under the name
-is used as it is, and the robot moves.
+So the imagined navigation takes the place of the real one even while that is running, plans outside cannot send requests to it, and two
+projections side by side each have their own. In the original the names are global: a module that already runs under the name is used as
+it is, and the robot moves.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ..process_modules.registry import Registry
 
 
 class ProjectedRegistry(Registry):
-    """The running modules as a projection sees them. ``around``: the registry outside; ``names``: those that it defines itself."""
+    """The running modules that a projection sees. ``around`` is the registry outside; ``names`` are its own names."""
 
     def __init__(self, around, names):
         super().__init__()
@@ -22,7 +22,7 @@ class ProjectedRegistry(Registry):
 
 
 class _Without(Mapping):
-    """The running modules of ``registry`` but for some names, as they are at the time of asking."""
+    """The present running modules of ``registry``, except under the names ``hidden``."""
 
     def __init__(self, registry, hidden):
         self.registry, self.hidden = registry, hidden

@@ -1,5 +1,5 @@
-"""CRAM's Prolog: terms, unification, clauses compiled to Python, built-ins, fact groups, rete; built on the lazy
-lists and patterns of the room ``utilities``. Source: reference page ``prolog.md``. Usable from Python, without any Lisp:
+"""CRAM's Prolog: terms, unification, clauses compiled to Python, built-in predicates, fact groups and rete. It uses the lazy lists
+and patterns of the room ``utilities``. Source: reference page ``prolog.md``. Python code can use it without any Lisp:
 
     from cramhy_runtime.prolog import P, V, fact_group, solve
 
@@ -10,10 +10,10 @@ lists and patterns of the room ``utilities``. Source: reference page ``prolog.md
     for answer in solve(P.grandparent(V.who, "ann")):
         print(answer.who)
 
-The page docs/reasoning-in-python.md tells the whole story: ``python/terms.py`` how terms are written, ``python/rules.py`` facts, rules
-and queries, ``python/predicates.py`` predicates written in Python, ``python/asserted_facts.py`` facts that come and go. For other
-rooms the interface is `cramhy_runtime.prolog.query` (ask) and
-`cramhy_runtime.prolog.builtins.native_predicates` (define predicates).
+The page docs/reasoning-in-python.md teaches it. ``python/terms.py`` has the notation of terms, ``python/rules.py`` facts, rules and
+queries, ``python/predicates.py`` predicates written in Python, and ``python/asserted_facts.py`` facts that come and go. Other rooms ask
+queries with `cramhy_runtime.prolog.query` and define predicates with
+`cramhy_runtime.prolog.builtins.native_predicates`.
 """
 
 from .python.asserted_facts import facts_asserted, facts_watched

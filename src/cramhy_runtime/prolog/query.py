@@ -1,14 +1,14 @@
-"""Asking: ``prolog``, and the same for Python.
+"""Queries: ``prolog``, and functions for Python.
 
-From Lisp: `prolog` takes a goal, returns ``nil`` or a lazy list with one binding list per solution (prolog.md section 5). From Python:
+For Lisp, `prolog` takes a goal and returns ``nil`` or a lazy list with one binding list per solution (prolog.md section 5). For Python:
 
 * ``solve(goal)`` iterates over dicts {variable symbol: value};
 * ``first(goal, variable)`` is the value in the first solution;
-* ``ask(functor, *arguments)`` asks one predicate with Python values as arguments and `Var` objects where values
-  are wanted, without building a goal: what designators use. It iterates over the values of the variables of each solution.
-  ``ask_all(variable, *goals)`` asks several together, and gives all values of one variable.
+* ``ask(functor, *arguments)`` asks one predicate, with Python values as arguments and `Var` objects for the values to find, without
+  building a goal; designators use it. It iterates over the values of the variables of each solution.
+  ``ask_all(variable, *goals)`` asks several together, and returns all values of one variable.
 
-Everything is computed on demand; a query that is dropped costs nothing more.
+All solutions are computed on demand, so a query that is dropped costs nothing more.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 
 
 on_prepare_prolog_prove = Hook("CUT::ON-PREPARE-PROLOG-PROVE", "(query binds)")
-"""Called before a proof; the first result goes to `on_finish_prolog_prove`."""
+"""Called before a proof. Its first result goes to `on_finish_prolog_prove`."""
 on_finish_prolog_prove = Hook("CUT::ON-FINISH-PROLOG-PROVE", "(log-id success)")
 """Called when it is known whether there is a solution."""
 
@@ -66,11 +66,11 @@ class Proof(Machine):
         return result
 
     def lazy_list(self):
-        """The binding lists of all solutions to come as a lazy list, its first element computed now."""
+        """The binding lists of all solutions that are left, as a lazy list. Its first element is computed now."""
         return Cons(self.bindings(), tail(self.lazy_list, self.remaining)) if self.next_solution() else None
 
     def remaining(self):
-        """The binding lists of all solutions to come, as a Python list."""
+        """The binding lists of all solutions that are left, as a Python list."""
         found = []
         self.drain(lambda: found.append(self.bindings()))
         return found
@@ -81,7 +81,7 @@ def _start(m, step):
 
 
 class _Names(dict):
-    """Symbol → `Var`, where a symbol that a binding list knows comes with its value."""
+    """Symbol → `Var`. A symbol of a binding list comes with its value."""
 
     def __init__(self, binds):
         super().__init__()
@@ -102,7 +102,7 @@ class _Names(dict):
 def prolog(query, binds=None):
     """``(prolog query &optional binds)``: a lazy list of the binding lists of all solutions, or ``nil``.
 
-    The search runs up to the first solution now, and further when the list is forced. A query that is no list is a type-error.
+    The search runs up to the first solution now, and goes on when the list is forced. A query that is not a list is a type-error.
     """
     if query is not None and query.__class__ is not Cons:
         return type_error(query, "LIST")
@@ -116,9 +116,9 @@ def prolog(query, binds=None):
 
 
 def solve(goal):
-    """Iterate over the solutions of a goal (Lisp data) as dicts of its variables that have values.
+    """Iterate over the solutions of a goal (Lisp data), as dicts {variable symbol: value} without variables that have no value.
 
-    When the iteration is given up, so are the generators of predicates that had more to give.
+    If the iteration stops early, the generators of its predicates are closed.
     """
     proof = Proof(goal)
     try:
@@ -129,7 +129,7 @@ def solve(goal):
 
 
 def first(goal, variable, default=None):
-    """The value of ``variable`` in the first solution of ``goal``; ``default`` without a solution."""
+    """The value of ``variable`` in the first solution of ``goal``, or ``default``."""
     proof = Proof(goal)
     if not proof.next_solution():
         return default
@@ -144,8 +144,8 @@ def holds(goal):
 def ask(functor, *arguments):
     """Iterate over the solutions of ``(functor . arguments)``.
 
-    Arguments are Lisp data without variables, taken as they are, and `Var` objects: each solution is a tuple with the values
-    of these, in order.
+    Arguments are Lisp data without variables, and `Var` objects. Each solution is a tuple with the values of the `Var` objects, in
+    order.
     """
     m = Machine()
     wanted = [argument for argument in arguments if argument.__class__ is Var]

@@ -1,6 +1,6 @@
 """The Lisp package of this room, made before anything interns a symbol in it.
 
-What it contains is declared in ``languages/commonlisp/faces/prolog/package.py``.
+``languages/commonlisp/faces/prolog/package.py`` declares its contents.
 """
 
 from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym

@@ -1,16 +1,16 @@
-"""``trace-prolog``: watching goals pass their four ports, a line for each, on ``*trace-output*``.
+"""``trace-prolog``: a line on ``*trace-output*`` for each port that a goal passes.
 
     0: CALL (GRANDPARENT ABE ?WHO)
       1: CALL (PARENT ABE ?Y)
       1: EXIT (PARENT ABE HOMER)   by clause 1 of FAMILY at family.lisp:2:3
 
-A goal is called, exits with a solution, is asked for another (redo), and fails; what left it by an error or because its task was ended is
-told as well. A line has the depth of the goal, the goal with the values of now, and the clause that the solution is of. Of several
-tasks each but the main one is named. Nothing costs anything while nothing is traced: the code of a traced predicate is another one,
-and code that calls it is made anew when the trace begins and ends.
+A goal is called, exits with a solution, is asked for another (redo), and fails. A line also shows when an error or the end of its task
+leaves a goal. A line has the depth of the goal, the goal with its present values, and the clause of the solution. It names the task,
+except the main one. Tracing costs nothing while no goal is traced: a traced predicate has other code, and the code of its callers is
+made anew when the trace begins and ends.
 
-A name that is traced may be any functor: a predicate of facts and rules, a built-in, a construct of control, or one that nobody has
-defined yet. The layout is that of ``trace``, see ``languages/commonlisp/tools/tracing.py``.
+Any functor can be traced: a predicate of facts and rules, a built-in, a construct of control, or one that is not defined yet. The layout
+is that of ``trace``, see ``languages/commonlisp/tools/tracing.py``.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .terms.terms import import_term, undo, unify
 
 
 class TracedGoal(ports.Box):
-    """A traced goal. ``parent`` is the traced goal that it is proved for; ``clause`` the one that is tried now."""
+    """A traced goal. ``parent`` is the traced goal for which it is proved; ``clause`` is the clause that is tried now."""
 
     __slots__ = ("functor", "terms", "parent", "depth", "clause", "reason", "exits")
 
@@ -47,6 +47,7 @@ class TracedGoal(ports.Box):
         self.exits = 0
 
     def called(self):
+        """The goal is called."""
         _proofs()[-1].goal = self
         self.tell("CALL")
 
@@ -67,7 +68,7 @@ class TracedGoal(ports.Box):
         _proofs()[-1].goal = self.parent
 
     def left(self, exception):
-        """The goal is left without a solution and without a failure."""
+        """``exception`` leaves the goal, which has neither a solution nor failed."""
         if isinstance(exception, HandlerExit):
             exception = exception.condition
         if isinstance(exception, kernel.Cancelled):
@@ -78,6 +79,7 @@ class TracedGoal(ports.Box):
             self.tell("LEFT", f"{type(exception).__name__}: {exception}" if isinstance(exception, Exception) else "by a non-local exit")
 
     def tell(self, port, more=None):
+        """Write the line for ``port``, with ``more`` at its end."""
         if self.functor not in traced:
             return  # it was untraced while this goal was proved
         proofs = _proofs()
@@ -99,7 +101,7 @@ class TracedGoal(ports.Box):
 
 
 class _Proof:
-    """A proof that a task is about: ``goal`` is the traced goal that it is in, ``outer`` the one that the whole proof is made for."""
+    """A proof that a task is doing: ``goal`` is the traced goal that it is in, ``outer`` the one for which the whole proof is made."""
 
     __slots__ = ("goal", "outer", "printing")
 
@@ -112,7 +114,7 @@ _proofs_of_tasks: dict = per_image({})
 
 
 def _proofs():
-    """The proofs that the current task is about, the innermost last."""
+    """The proofs that the current task is doing, the innermost last."""
     task = kernel.current()
     found = _proofs_of_tasks.get(task)
     if found is None:  # a proof that began before anything was traced
@@ -121,7 +123,7 @@ def _proofs():
 
 
 def _watched_next_solution(m, next_solution):
-    """`Machine.next_solution` while something is traced: notes what the proof is made for, and tells which goals an exception leaves."""
+    """`Machine.next_solution` while goals are traced: it notes the goal for which the proof is made, and the goals an exception leaves."""
     task = kernel.current()
     proofs = _proofs_of_tasks.setdefault(task, [])
     proof = _Proof(proofs[-1].goal if proofs else None)
@@ -145,7 +147,7 @@ def _watched_next_solution(m, next_solution):
 
 
 def _watch_predicate(predicate, entry):
-    """The call function of a traced predicate; ``entry`` is ``None`` for one that nobody has defined."""
+    """The call function of a traced predicate. ``entry`` is ``None`` for a predicate that is not defined."""
     functor = predicate.functor
     body = _watched_body(predicate, entry)
 
@@ -186,7 +188,7 @@ def _clauses_call(m, step):
 
 
 def _try_clauses(m, k, goal, clauses, i):
-    """Try the clauses from a number on whose heads match the goal; a choice point only when there is another one."""
+    """Try the clauses from number ``i`` on whose heads match the goal. A choice point is made only if there is another one."""
     matching = _next_match(m, goal, clauses, i)
     if matching is None:
         return fail(m)
@@ -205,7 +207,7 @@ def _following(m, step):
 
 
 def _next_match(m, goal, clauses, i):
-    """The number of the first clause from ``i`` on whose head matches; ``None`` without one. Nothing stays set."""
+    """The number of the first clause from ``i`` on whose head matches, or ``None``. Variables are unset again."""
     while i < len(clauses):
         height = len(m.trail)
         matches = unify(import_term(clauses[i][0].head.cdr, {}), list_from(goal.terms), m.trail)
@@ -236,9 +238,10 @@ _ALL = "ALL"
 
 
 def trace_prolog(names=None):
-    """``(trace-prolog functor...)``: show the goals of these functors; ``:all`` those of all predicates. Returns what is new.
+    """``(trace-prolog functor...)``: show the goals of these functors; ``:all`` stands for all predicates. Returns the list of names.
 
-    Without names: the list of the functors that are traced, ``(:all)`` first if all are.
+    Without names, returns the list of the functors that are traced, with ``:all`` first if all are. A name that cannot be a functor is
+    an error; a functor that is not defined is a warning.
     """
     if names is None:
         return list_from([*([sym(":ALL")] if traced.everything else []), *traced])
@@ -260,7 +263,7 @@ def trace_prolog(names=None):
 
 
 def untrace_prolog(names=None):
-    """``(untrace-prolog functor...)``: show the goals of these functors no more, without names no goals at all; ``t``."""
+    """``(untrace-prolog functor...)``: stop showing the goals of these functors, or of all without names. Returns ``t``."""
     for name in [*traced, sym(":ALL")] if names is None else names:
         if _is_all(name):
             traced.everything = False
@@ -287,9 +290,9 @@ def _changed():
 
 @contextmanager
 def tracing(*functors):
-    """Within it the goals of ``functors`` are shown, without any those of all predicates.
+    """``with tracing(...):`` shows the goals of ``functors`` within the block, or of all predicates if there are none.
 
-    functors: symbols, or names such as ``"DESIG::MOTION-GROUNDING"``.
+    functors: symbols, or names such as ``"DESIG::MOTION-GROUNDING"``. Functors that were traced before stay traced.
     """
     names = [sym(name) if isinstance(name, str) else name for name in functors] or [sym(":ALL")]
     new = [name for name in names if not (traced.everything if _is_all(name) else dict.__contains__(traced, name))]

@@ -1,4 +1,5 @@
-"""What the Tab key offers at a prompt of Lisp: symbols, operators with how they are written, and keywords of the call at hand."""
+"""What the Tab key offers at a prompt of Lisp: symbols, operators with how they are written, keywords of the call at hand, and in a string
+names of files."""
 
 from __future__ import annotations
 
@@ -115,16 +116,3 @@ def _find(name, package):
     prefix, colons, short = name.upper().rpartition(":")
     home = find_package(prefix.rstrip(":")) if colons else package
     return None if home is None else home.lookup(short)[0]
-
-
-def completer():
-    """For prompt_toolkit."""
-    from prompt_toolkit.completion import Completer, Completion
-
-    class Names(Completer):
-        def get_completions(self, document, event):
-            found, length = completions(document.text_before_cursor)
-            for name, known in found:
-                yield Completion(name, start_position=-length, display_meta=known)
-
-    return Names()

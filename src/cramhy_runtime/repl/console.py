@@ -1,7 +1,7 @@
 """``roslisp_repl``: the loop of the prompt, and how a program that fails is reported.
 
-What is done with a text is in ``listener.py``. On a terminal, prompt_toolkit edits the line if it is installed; from a pipe, lines are
-read and nothing is echoed but prompts and answers.
+What is done with a text is in ``listener.py``. On a terminal, prompt_toolkit edits the form if it is installed, else readline; from a
+pipe, lines are read and nothing is echoed but prompts and answers.
 """
 
 from __future__ import annotations
@@ -28,14 +28,18 @@ def exit_status(leaving):
 
 
 class Console(Listener):
-    """The read-eval-print loop. ``make_session`` is called once the prompt is needed."""
+    """The read-eval-print loop. ``make_session`` is called once the prompt is needed. banner: the lines to begin with, or ``""``."""
 
-    def __init__(self, make_session, lines=None):
+    def __init__(self, make_session, lines=None, banner=""):
         super().__init__(lines=lines)
         self.make_session = make_session
+        self.banner = banner
 
     def run(self):
         """Until the end of input or ``(quit)``. Returns the exit status."""
+        if self.banner:
+            streams.CONSOLE_OUTPUT.write(f"{self.banner}\n")
+            streams.CONSOLE_OUTPUT.flush()  # it is read while the session is made
         try:
             self.session = self.make_session()
         except (Exception, Condition) as problem:

@@ -5,6 +5,7 @@ In Common Lisp it is what ``roslisp_repl`` offers (`completions`). In Hy it is w
 * Hy's own macros: ``lfor``, ``defn``,
 * packages, and after a prefix the names in them: ``cp`` becomes ``cpl:``, ``cpl:pa`` ``cpl:par``,
 * keywords of the operator or function that is called: ``(make-fluent :na``,
+* names of files in a string,
 * where symbols of Lisp stand, those of the module's package: after a quote, ``'turtlesim-na``, and in designators and facts.
 
 Hy's completer makes all candidates anew for each one that is asked for. With the thousands of names of our packages that takes half a
@@ -15,6 +16,7 @@ from __future__ import annotations
 
 import builtins
 import inspect
+import os
 import re
 
 import hy
@@ -25,10 +27,9 @@ from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.operators import DESIGNATORS, PROLOG
 
 from .completion import Keywords, completions, keywords_at_hand, keywords_of_symbol
+from .readline_lines import LISP_DELIMITERS, Tab, in_string
 
-LISP_DELIMITERS = " \t\n()`,;"
 HY_DELIMITERS = " \t\n()[]{}`~"
-"""What ends a word for GNU readline. If quotes were among them, it would close them behind a word that it has completed."""
 
 _QUOTES = re.compile(r"(?:#?')*")
 
@@ -36,35 +37,28 @@ _WITH_SYMBOLS = {operator.name for table in (DESIGNATORS, PROLOG) for operator i
 """Operators in whose calls words are symbols of Lisp."""
 
 
-class Tab:
+class HyTab(Tab):
     """The completer of a REPL of Hy, for ``readline.set_completer``. in_lisp: a function that says whether the REPL reads Lisp now."""
 
     def __init__(self, repl, in_lisp):
+        super().__init__()
         self.repl = repl
         self.in_lisp = in_lisp
-        self._found = []
 
     def delimiters(self):
         return LISP_DELIMITERS if self.in_lisp() else HY_DELIMITERS
 
-    def complete(self, word, state):
-        """The candidate number ``state`` for ``word``, the text before the cursor up to a delimiter; ``None`` behind the last one."""
-        if state == 0:
-            import readline
-
-            line = readline.get_line_buffer()[: readline.get_endidx()]
-            quotes = _QUOTES.match(word)[0]
-            found = self.candidates("\n".join([*self.repl.buffer, line]), word[len(quotes) :])
-            self._found = [quotes + name for name in found]
-        return self._found[state] if state < len(self._found) else None
+    def found(self, text, word):
+        quotes = _QUOTES.match(word)[0]
+        return [quotes + name for name in self.candidates(text, word[len(quotes) :])]
 
     def candidates(self, text, word):
-        """All that ``word``, the last one of ``text``, may become, sorted. Nothing in a string."""
-        if _ends_in_string(text):
-            return []
+        """All that ``word``, the last one of ``text``, may become, sorted. In a string, names of files."""
         if self.in_lisp():
-            found, length = completions(text)
-            return [name for name, _ in found] if length == len(word) else []
+            return super().found(text, word)
+        files = in_string(text, word, hy=True, folder=os.getcwd())
+        if files is not None:
+            return files
         if word.startswith(":"):
             return [
                 f":{name.lower()}" for name in sorted(keywords_at_hand(text, self._keywords_of) or ()) if name.startswith(word[1:].upper())
@@ -108,10 +102,6 @@ class Tab:
         return _parameters(value) if callable(value) else None
 
 
-def _ends_in_string(text):
-    return any(found[1] == "" for found in re.finditer(r"""#\\.|;[^\n]*|"(?:\\.|[^"\\])*("?)""", text))
-
-
 def _heads(text):
     """The names behind the open parentheses of ``text``."""
     lines = text.split("\n")
@@ -131,4 +121,4 @@ def _parameters(function):
     return Keywords([hy.unmangle(each.name).upper() for each in given if not each.name.startswith("_")])
 
 
-__all__ = ["HY_DELIMITERS", "LISP_DELIMITERS", "Tab"]
+__all__ = ["HY_DELIMITERS", "HyTab"]

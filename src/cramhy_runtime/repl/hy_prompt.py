@@ -13,10 +13,11 @@ Time is the wall's at a prompt, and virtual in a pipe; the variable CRAMHY_TIME 
 
 from __future__ import annotations
 
+import functools
 import io
 import re
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 import hy
 from hy.models import Expression, Symbol
@@ -41,14 +42,18 @@ from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
 
 from .console import Console, exit_status
+from .history import History, place
 from .hy_lines import HyLines
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
+from .open_forms import OpenForms, of_lisp
 from .session import Interruption, Session
 
 IN_PACKAGE = sym("IN-PACKAGE")
 _IN_PACKAGE = Symbol("in-package")
 _LAST_ERROR = hy.mangle("*e")
+_PS2 = "... "
+"""Hy's own prompt for a line that goes on with a form."""
 PIPED = "<stdin>"
 """What Hy calls the text that it reads from a pipe."""
 
@@ -203,35 +208,44 @@ class HyPrompt(Listener):
         finally:
             compiler.allow_incomplete = before
 
-    def wait_for_line(self, prompt):
-        ours = isinstance(sys.stdin, standard_input.StandardInput) and sys.stdin.isatty()
-        self.input.can_be_woken = ours and (not at_the_prompt() or sys.stdin.holds_text())
-        return super().wait_for_line(prompt)
-
     def raw_input(self, prompt=""):
-        """The next line for the REPL; plans go on while it waits. Ctrl-C forgets the form that is being typed."""
+        """The next text for the REPL, in which nothing is open; plans go on while it waits. Ctrl-C forgets the form that is being typed.
+
+        The REPL reads its text anew whenever a line has come, and a form of many lines would take time in proportion to their square.
+        """
         if kernel.active() is None:  # somebody has stopped it
             return type(self.repl).raw_input(self.repl, prompt)
         kernel.interrupt_over()
         if self.in_lisp:
             self.listen()
+        lines, opened = [], None
         while True:
+            self.input.before = [*self.repl.buffer, *lines]
             line = self.read_line(prompt)
             if line is BROKEN_OFF:
                 self.repl.resetbuffer()
-                prompt = sys.ps1
+                lines, prompt = [], sys.ps1
             elif line is None:
-                unfinished = "\n".join(self.repl.buffer)
+                unfinished = "\n".join(self.input.before)
                 self.repl.resetbuffer()
                 if not unfinished.strip():
                     self.change_back()  # the program may go on after its REPL
                     raise EOFError
                 self.hear(unfinished) if self.in_lisp else self._answer_in_hy(unfinished)
-                prompt = sys.ps1
+                lines, prompt = [], sys.ps1
             else:
                 if self.in_lisp:
                     streams.CONSOLE_OUTPUT.record(f"{prompt}{line}\n")
-                return line
+                if not lines:
+                    opened = of_lisp() if self.in_lisp else OpenForms(hy=True)
+                lines.append(line)
+                if opened is not None:
+                    opened.read(f"{line}\n")
+                if opened is None or not opened.something:
+                    text = "\n".join(lines)
+                    self.remember("\n".join([*self.repl.buffer, text]))
+                    return text
+                prompt = self.continuation(opened, sys.ps2) if sys.ps2 == _PS2 else sys.ps2
 
     # ------------------------------------------------------------------------------------------------------- what is Hy's own
 
@@ -281,7 +295,7 @@ class HyPrompt(Listener):
 
     def runcode(self, code):
         """As the REPL's own, and the errors that Hy does not count among them are shown, too."""
-        with self._goes_on():
+        with self._goes_on(), self.progress.during():
             type(self.repl).runcode(self.repl, code)
 
     @contextmanager
@@ -359,8 +373,11 @@ def go_on_in_hy(repl):
     prompt_of(repl).change_back()
 
 
-def run(make_session):
-    """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status."""
+def run(make_session, banner=None):
+    """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status.
+
+    banner: the lines to begin with, or ``None`` for Hy's.
+    """
     try:
         session = make_session()
     except (Exception, Condition) as problem:
@@ -370,12 +387,21 @@ def run(make_session):
         repl = hy.REPL()
         attend(repl, session)
         repl.runsource("(require cramhy *)")
+        repl.interact = functools.partial(_interact, repl)
+        if banner is not None:
+            repl.banner = lambda: banner
         return repl.run()
     except SystemExit as leaving:
         return exit_status(leaving)
     finally:
         conditions.install_debugger(None)
         kernel.stop()
+
+
+def _interact(repl, banner):
+    """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last."""
+    with repl.lisp.input.keep(History(place("hy-history"))) if "readline" in sys.modules else nullcontext():
+        type(repl).interact(repl, banner)
 
 
 # --------------------------------------------------------------------------------------------------------------------- a pipe

@@ -29,6 +29,8 @@ from cramhy_runtime.ground.source_places import circumstance
 
 from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
+from .open_forms import of_lisp
+from .progress import Progress
 from .session import Interruption, leave, signalled_here
 
 
@@ -73,6 +75,7 @@ class Listener:
         self.session = session
         self.input = lines
         self.level = 0
+        self.progress = Progress()
 
     @contextmanager
     def listening(self):
@@ -97,24 +100,46 @@ class Listener:
         """Lines until they make whole forms; ``None`` at the end of input. Ctrl-C forgets a form that is being typed."""
         from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
 
-        lines = []
+        lines, opened = [], None
         while True:
-            line = self.read_line(prompt if not lines else "")
+            self.input.before = lines
+            line = self.read_line(prompt if not lines else self.continuation(opened))
             if line is BROKEN_OFF:
                 lines = []
                 continue
             if line is None:
                 return "\n".join(lines) if lines else None
             streams.CONSOLE_OUTPUT.record(f"{'' if lines else prompt}{line}\n")
+            if not lines:
+                opened = of_lisp()
             lines.append(line)
-            text = "\n".join(lines)
-            if not text.strip():
-                lines = []
-            elif not incomplete(text):
-                return text
-            elif self.ctrl_c_came():
+            if opened is not None:
+                opened.read(f"{line}\n")
+            if opened is None or not opened.something:
+                text = "\n".join(lines)
+                if not text.strip():
+                    lines = []
+                    continue
+                if not incomplete(text):
+                    self.remember(text)
+                    return text
+            if self.ctrl_c_came():
                 lines = []
                 streams.CONSOLE_OUTPUT.write("\n")
+
+    def continuation(self, opened, otherwise=""):
+        """The prompt of a line that goes on with a form: what is open, on a terminal that somebody looks at. Else it is ``otherwise``.
+
+        opened: the `OpenForms` of the lines before, or ``None`` where nobody knows.
+        """
+        if not getattr(self.input, "shows_open", False):
+            return otherwise
+        return "... " if opened is None else opened.prompt()
+
+    def remember(self, text):
+        """Keep ``text``, whole forms, in the history of what was typed. The number of a restart means nothing later."""
+        if isinstance(self.input, Lines) and not (self.level and text.strip().isdigit()):
+            self.input.remember(text)
 
     def read_line(self, prompt):
         """The next line; ``None`` at the end of input, `BROKEN_OFF` after Ctrl-C, which is dealt with."""
@@ -139,6 +164,8 @@ class Listener:
         are connected (a server listens) are heard and answered meanwhile. In the debugger of a plan's task, which keeps the baton, all
         others wait for the user; there Ctrl-C ends the whole form.
         """
+        if isinstance(self.input, Lines):
+            self.input.prepare(at_the_prompt())
         wake = self.input.wake if getattr(self.input, "can_be_woken", False) else None
         with kernel.woken_by(wake) if wake else nullcontext():
             if not self.keeps_baton():
@@ -209,7 +236,9 @@ class Listener:
                 if prompt_words.call(form, prompt_words.HELP):
                     self.help(form)
                 else:
-                    self.show(self.session.evaluate(prompt_words.leaving_form(form), reader))
+                    with self.progress.during():
+                        values = self.session.evaluate(prompt_words.leaving_form(form), reader)
+                    self.show(values)
                 begun = reader.offset
             reader = None
         except SystemExit:

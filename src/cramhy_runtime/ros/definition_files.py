@@ -1,8 +1,8 @@
-"""Where definitions of messages lie: in the folders ``msg``, ``srv`` and ``action`` of ROS packages.
+"""Find and read definitions of messages, in the folders ``msg``, ``srv`` and ``action`` of ROS packages.
 
-Our own copies of the common packages, in ``definitions/``, come first. Then folders that were named with
-`add_package_directory`, and the places where all packages are looked for: ``ROS_PACKAGE_PATH``, the workspace's ``src``, the
-current folder and ``tutorials/``. Nothing is looked for before somebody asks. Source: roslisp.md 12.
+The search begins with our own copies of the common packages, in ``definitions/``. Folders added with `add_package_directory`
+come next, then the places where all packages are searched: ``ROS_PACKAGE_PATH``, the workspace's ``src``, the current
+folder and ``tutorials/``. No search begins before the first question. Source: roslisp.md 12.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _TYPE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_-]*$")
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _DEPTH = 3
-"""How deep below a folder of the search packages are looked for: ``src/a_stack/a_package``."""
+"""How many folders deep the search for packages goes: ``src/a_stack/a_package``."""
 
 
 def add_package_directory(directory: str | Path) -> None:
@@ -40,12 +40,12 @@ def add_package_directory(directory: str | Path) -> None:
 
 
 def forget_package_directory(directory: str | Path) -> None:
-    """Look there no more."""
+    """Stop looking for ROS packages in the sub-folders of ``directory``, which `add_package_directory` has added."""
     _directories.remove(Path(directory))
 
 
 def package_folder(package: str) -> Path | None:
-    """The folder of the ROS package that has definitions and is called ``package``, or ``None``."""
+    """The folder of the ROS package ``package`` if the package is found and has definitions, else ``None``."""
     if not _LEGAL.match(package):
         return None
     for folder in [OURS, *_directories]:
@@ -61,7 +61,7 @@ def known_packages() -> list[str]:
 
 
 def definition_files(folder: Path, kind: str) -> dict[str, Path]:
-    """The files of the package in ``folder``, of kind ``"msg"``, ``"srv"`` or ``"action"``, by the name of what they define."""
+    """The definition files of the package in ``folder``, by type name. ``kind``: ``"msg"``, ``"srv"`` or ``"action"``."""
     return {path.stem: path for path in sorted((folder / kind).glob("*." + kind))}
 
 
@@ -74,8 +74,10 @@ def message_names(folder: Path) -> list[str]:
 
 
 def has_kind(folder: Path | None, kind: str) -> bool:
-    """Whether the package in ``folder`` has messages (``"msg"``) or services (``"srv"``); an action is messages. A package that was there
-    a moment ago may have no ``folder``, ``None``."""
+    """Whether the package in ``folder`` has definitions of ``kind``: messages (``"msg"``, actions included) or services (``"srv"``).
+
+    ``folder`` is ``None`` for a package that has just been removed; the answer is then false.
+    """
     return folder is not None and (os.path.isdir(folder / kind) or kind == "msg" and os.path.isdir(folder / "action"))
 
 
@@ -101,7 +103,7 @@ def _packages_below(folder, depth):
 
 
 def packages() -> Iterator[tuple[str, Path]]:
-    """Name and folder of each package that a ``package.xml`` in a folder of the search describes, with definitions or without."""
+    """Yield name and folder of each package with a ``package.xml`` in the folders of the search, with definitions or without."""
     for root in search_folders():
         yield from _manifests_below(root, _DEPTH)
 
@@ -128,8 +130,10 @@ def _name_of(folder, manifest):
 
 
 class PackageDefinitions:
-    """What a package defines: messages by name, those of its actions included, services by name as (request, response), and the
-    names of its actions."""
+    """The definitions of a package.
+
+    ``messages``: by name, those of its actions included. ``services``: (request, response) by name. ``actions``: their names.
+    """
 
     __slots__ = ("messages", "services", "actions")
 
@@ -140,13 +144,16 @@ class PackageDefinitions:
 
 
 def read(package: str) -> PackageDefinitions | None:
-    """The `PackageDefinitions` of the package of that name, or ``None``; a `DefinitionError` when something is wrong with them."""
+    """The `PackageDefinitions` of the package ``package``, or ``None`` if it is not found.
+
+    An error in the definitions raises `DefinitionError`.
+    """
     folder = package_folder(package)
     return read_package(package, folder) if folder is not None else None
 
 
 def read_package(package: str, folder: Path) -> PackageDefinitions:
-    """The `PackageDefinitions` of the package in ``folder``. Anything wrong with them is a `DefinitionError`."""
+    """The `PackageDefinitions` of the package in ``folder``. An error in the definitions raises `DefinitionError`."""
     found = PackageDefinitions()
     for name, path in definition_files(folder, "msg").items():
         found.messages[name] = definition_text.parse_message(_text_of(path), package, str(path))

@@ -1,8 +1,8 @@
 """The language of ``.msg``, ``.srv`` and ``.action`` files: lines ``TYPE NAME``, constants ``TYPE NAME=VALUE``, comments, ``---``.
 
-What is no such line is a `DefinitionError` that names file, line and column and tells how it is written. Where the files lie
-is the business of ``definition_files.py``. Source: wiki.ros.org/msg, /srv, and /actionlib for the messages of an action;
-`Header` alone means ``std_msgs/Header``.
+Any other line raises a `DefinitionError`, which names file, line and column and tells the right form. ``definition_files.py``
+finds the files. Source: wiki.ros.org/msg, /srv, and /actionlib for the messages of an action. `Header` alone means
+``std_msgs/Header``.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ INTEGERS = {
 PRIMITIVES = {*INTEGERS, "float32", "float64", "bool", "string", "time", "duration"}
 OTHER_NAMES = {"int": "int32", "uint": "uint32", "long": "int64", "float": "float32", "double": "float64", "boolean": "bool",
                "str": "string", "octet": "byte"}  # fmt: skip
-"""What people call some types that have another name here."""
+"""Names that other languages use for these types, each with the name in ROS; hints suggest it."""
 RESERVED = {"attributes", "constants", "copy", "definition", "field_names", "fields", "initargs", "keywords", "lisp_name", "lisp_symbol",
             "python_attributes", "ros_type", "values"}  # fmt: skip
-"""Names that mean something in every message class; a field of that name has an underscore after it in Python."""
+"""Attributes of every message class; a field with one of these names gets an underscore after it in Python."""
 
 _LINE = re.compile(r"(?P<type>[^\s=]+)(?:\s+(?P<name>[^=]*?))?\s*(?P<constant>=\s*(?P<value>.*))?$")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
@@ -44,7 +44,7 @@ _TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)?)(
 
 
 class DefinitionError(ValueError):
-    """Something in a definition that cannot be. Its ``problem`` names file, line and column, its ``hint`` what to try."""
+    """An error in a definition. ``problem`` names file, line and column; ``hint`` says what to try, or is ``None``."""
 
     def __init__(self, problem: str, hint: str | None = None):
         super().__init__(problem if hint is None else f"{problem} {hint}")
@@ -52,8 +52,11 @@ class DefinitionError(ValueError):
 
 
 class Field:
-    """One field: ``base`` is its type without brackets; ``length`` is ``None``, ``0`` for ``T[]``, or the n of ``T[n]``.
-    ``attribute`` is the slot's name in Python, ``place`` the line and the column of its type in the file."""
+    """One field of a message.
+
+    ``base``: its type without brackets. ``length``: ``None``, ``0`` for ``T[]``, or the n of ``T[n]``. ``attribute``: its name in
+    Python. ``place``: line and column of its type in the file.
+    """
 
     __slots__ = ("name", "base", "length", "attribute", "place")
 
@@ -63,15 +66,17 @@ class Field:
 
     @property
     def is_array(self) -> bool:
+        """Whether the type is ``T[]`` or ``T[n]``."""
         return self.length is not None
 
     @property
     def primitive(self) -> bool:
+        """Whether ``base`` is a type of the language itself, no other message."""
         return self.base in PRIMITIVES
 
     @property
     def type(self) -> str:
-        """As in the file, with the package of another message: ``float64[36]``, ``geometry_msgs/Point[]``."""
+        """The type as the file writes it, with the package of another message: ``float64[36]``, ``geometry_msgs/Point[]``."""
         return self.base + ("" if self.length is None else "[]" if self.length == 0 else f"[{self.length}]")
 
     def __repr__(self) -> str:
@@ -79,8 +84,11 @@ class Field:
 
 
 class Definition:
-    """One message. fields: `Field` objects. constants: name → value. constant_lines: as written, without spaces around the
-    equals sign. text: the lines of the file without comments. where: its file."""
+    """One message.
+
+    ``fields``: `Field` objects. ``constants``: name → value. ``constant_lines``: as written, without spaces around the equals
+    sign. ``text``: the lines of the file without comments. ``where``: its file.
+    """
 
     __slots__ = ("fields", "constants", "constant_lines", "text", "where")
 
@@ -92,12 +100,16 @@ class Definition:
 
     @property
     def lines(self) -> list[str]:
-        """What ``rosmsg show`` prints of it: the constants, then the fields."""
+        """The lines that ``rosmsg show`` prints: the constants, then the fields."""
         return [*self.constant_lines, *map(repr, self.fields)]
 
 
 def parse_message(text: str, package: str, where: str = "message definition", first: int = 1) -> Definition:
-    """The `Definition` in ``text``; names of other messages are completed with ``package``. first: the number of its first line."""
+    """Read a message definition; returns a `Definition`. An error in it raises `DefinitionError`.
+
+    ``text``: the lines. ``package``: the ROS package, which completes the names of other messages. ``where``: the name of the
+    file in errors. ``first``: the number of the first line, in errors.
+    """
     definition, kept = Definition(where), []
     for number, line in enumerate(text.splitlines(), first):
         bare = line.split("#", 1)[0].rstrip()
@@ -149,12 +161,12 @@ def parse_message(text: str, package: str, where: str = "message definition", fi
 
 
 def parse_service(text: str, package: str, where: str = "service definition") -> tuple[Definition, ...]:
-    """The two `Definition` objects, of the request and of the response."""
+    """Read a service definition, as `parse_message`; returns the `Definition` objects of the request and of the response."""
     return _parts(text, package, where, ("request", "response"))
 
 
 def parse_action(text: str, package: str, where: str = "action definition") -> tuple[Definition, ...]:
-    """The three `Definition` objects: goal, result and feedback."""
+    """Read an action definition, as `parse_message`; returns the `Definition` objects of goal, result and feedback."""
     return _parts(text, package, where, ("goal", "result", "feedback"))
 
 
@@ -162,7 +174,7 @@ ACTION_PARTS = ("Goal", "Result", "Feedback")
 
 
 def action_messages(name: str) -> dict[str, str]:
-    """The texts of the four messages that carry the parts of the action ``name``, by their names."""
+    """The definition texts, by message name, of the four messages that carry the parts of the action ``name``."""
     return {
         f"{name}ActionGoal": f"Header header\nactionlib_msgs/GoalID goal_id\n{name}Goal goal",
         f"{name}ActionResult": f"Header header\nactionlib_msgs/GoalStatus status\n{name}Result result",
@@ -232,7 +244,10 @@ def _constant(type_name: str, value: str, where: str, number: int, column: int) 
 
 
 def unknown_type(field: Field, package: str, where: str, candidates: Iterable[str]) -> NoReturn:
-    """Signal that the type of ``field`` in the file ``where`` of ``package`` does not exist; ``candidates``: names of those that do."""
+    """Raise a `DefinitionError`: the type of ``field`` in the file ``where`` of ``package`` does not exist.
+
+    ``candidates``: the names of types that exist, for the hint.
+    """
     name = field.base.rpartition("/")[2]
     written = name if name in OTHER_NAMES or field.base.startswith(package + "/") else field.base
     near = [OTHER_NAMES[name]] if name in OTHER_NAMES else near_names(name, [*PRIMITIVES, *candidates], 2)

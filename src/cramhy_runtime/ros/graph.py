@@ -1,24 +1,24 @@
-"""The graph: the nodes of this process and what connects them. It does the work of ``roscore`` and of the sockets.
+"""The graph: the nodes of this process and their connections. It does the work of ``roscore`` and of the sockets.
 
-Nodes live in one process and messages are objects, so a connection is a list entry. Two kinds of nodes are told apart by when
-they look at what arrives. A *spinning* node, like turtlesim, looks once per tick of its own timer: requests, commands and new
-connections wait for `Node.spin_once`. Every other node is served at once: the node of the Lisp program, whose callbacks run
-in tasks of its own, and small tools.
+All nodes live in one process and messages are objects, so a connection is a list entry. There are two kinds of nodes. A
+*spinning* node, like turtlesim, looks at its input once per tick of its own timer: requests, commands and new connections
+wait for `Node.spin_once`. Every other node receives its input at once: the node of the Lisp program, whose callbacks run in
+tasks of their own, and small tools.
 
-A *hidden* node (``Graph.node("cramhy_view", hidden=True)``) is an observer of ours: a page, a recorder. What it does must not
-change what a program or a command line shows. So it does not count as a subscriber, it makes no log lines that others see, and
-`Graph.visible_nodes`, `visible_topics` and `visible_services`, which every list shown to users is made of, leave it out together
-with the topics and services that nobody else has.
+A *hidden* node (``Graph.node("cramhy_view", hidden=True)``) is an observer of ours: a page, a recorder. It must not change
+what a program or a command line shows. So it does not count as a subscriber, and it makes no log lines that others see. All
+lists shown to users come from `Graph.visible_nodes`, `visible_topics` and `visible_services`, which leave out hidden nodes
+and the topics and services of hidden nodes alone.
 
-Who wants to know of what comes and goes appends a function to `Graph.on_change`; it is called as ``function(kind, name, there)``
-with the kind ``"node"``, ``"topic"`` or ``"service"``, for visible ones only, by whoever made the change, and must not wait.
+Observers of changes append a function to `Graph.on_change`. The task that makes the change calls it as ``function(kind, name,
+there)`` with the kind ``"node"``, ``"topic"`` or ``"service"``, for visible ones only. The function must not wait.
 
-A session that is joined to a robot (room ``rosbridge``) sets two more: `Graph.type_elsewhere`, a function of a topic's name and a message
-class that gives the type that the topic has there and where that is, if it is another one, and waits for it; and `Graph.cut_off`, the
-text why nothing of the robot is there at the moment, or ``None``.
+A session that is joined to a robot (room ``rosbridge``) sets two more attributes. `Graph.type_elsewhere` is a function of a
+topic's name and a message class. If the topic has another type on the robot, it returns that type and where it is; it waits for
+the answer. `Graph.cut_off` is a text that says why the robot cannot be reached at the moment, or ``None``.
 
-There is one active graph per kernel, as there is one roscore per user. Laws: what a tick does is one step for all tasks (law
-4); all waiting goes through the kernel (law 5); a node that ends takes its topics, services and waiting callers along (law 1).
+There is one active graph per kernel, as there is one roscore per user. Laws: a tick is one step for all tasks (law 4); all
+waiting goes through the kernel (law 5); a node that ends takes its topics, services and waiting callers along (law 1).
 """
 
 from __future__ import annotations
@@ -62,16 +62,19 @@ class Graph:
         self._ports = 0
 
     def now(self) -> float:
-        """Seconds since 1970, by the kernel's clock."""
+        """The time of the kernel's clock, in seconds since 1970."""
         clock = self.kernel.clock
         return clock.epoch + clock.now()
 
     def node(self, name: str, namespace: str = "/", spins: bool = False, hidden: bool = False) -> Node:
-        """A new node called ``name``, relative to ``namespace``; one of the same name is shut down first, as ROS does."""
+        """Make a node called ``name``, relative to ``namespace``. As in ROS, a node of the same name is shut down first.
+
+        ``spins``: whether the node handles its input only in `Node.spin_once`. ``hidden``: whether users do not see it.
+        """
         return self.add_node(Naming(name, namespace), spins, hidden)
 
     def add_node(self, naming: Naming, spins: bool = False, hidden: bool = False) -> Node:
-        """As `node`, with a `Naming` that is made already."""
+        """Make a node as `node` does, with ``naming``, a `Naming`."""
         old = self.nodes.get(naming.node_name)
         if old is not None:
             old.shutdown()
@@ -81,13 +84,14 @@ class Graph:
         return node
 
     def topic(self, name: str, message_type: MessageType) -> Topic:
-        """The topic ``name``; made with that type when nobody has used it yet."""
+        """The topic with the global name ``name``; if there is none, it is made with the type ``message_type``."""
         topic = self.topics.get(name)
         if topic is None:
             topic = self.topics[name] = Topic(name, message_type)
         return topic
 
     def next_address(self) -> str:
+        """A new address for a node, as ``"127.0.0.1:40001"``; there is no socket behind it."""
         self._ports += 1
         return f"127.0.0.1:{40000 + self._ports}"
 
@@ -98,15 +102,15 @@ class Graph:
         return {name: node for name, node in sorted(self.nodes.items()) if not node.hidden}
 
     def visible_topics(self) -> dict[str, Topic]:
-        """The topics on which some node that is not hidden publishes or listens, by name, sorted."""
+        """The topics that a visible node publishes on or listens to, by name, sorted."""
         return {name: topic for name, topic in sorted(self.topics.items()) if topic.visible}
 
     def visible_services(self) -> dict[str, Service]:
-        """The services of nodes that are not hidden, by name, sorted."""
+        """The services of visible nodes, by name, sorted."""
         return {name: service for name, service in sorted(self.services.items()) if not service.node.hidden}
 
     def changed(self, kind: str, name: str, there: bool) -> None:
-        """Tell the observers that something visible has come (``there``) or gone."""
+        """Tell the observers that a visible ``kind`` of thing called ``name`` has come (``there`` is true) or gone."""
         for function in list(self.on_change):
             try:
                 function(kind, name, there)
@@ -126,23 +130,25 @@ class Topic:
 
     @property
     def visible(self) -> bool:
-        """Whether a node that is not hidden publishes on it or listens to it."""
+        """Whether a visible node publishes on the topic or listens to it."""
         return bool(self.visible_publications or self.visible_subscriptions)
 
     @property
     def visible_publications(self) -> list[Publication]:
+        """The publications of visible nodes."""
         return [publication for publication in self.publications if not publication.node.hidden]
 
     @property
     def visible_subscriptions(self) -> list[Connection]:
+        """The subscriptions of visible nodes."""
         return [subscription for subscription in self.subscriptions if not subscription.node.hidden]
 
 
 class Node:
-    """A participant of the graph. ``spins``: it looks at what arrives only in `spin_once`. ``hidden``: users do not see it.
+    """A participant of the graph. ``spins``: it handles its input only in `spin_once`. ``hidden``: users do not see it.
 
-    ``publications`` and ``services`` by global name; ``subscriptions`` by global name too, each a list, since a node may listen
-    to a topic with several callbacks.
+    ``publications`` and ``services`` are dictionaries by global name. ``subscriptions`` has a list for each global name, since
+    a node may listen to a topic with several callbacks.
     """
 
     def __init__(self, graph: Graph, naming: Naming, spins: bool = False, hidden: bool = False):
@@ -165,13 +171,16 @@ class Node:
         return self.naming.resolve(name)
 
     def complain(self, text: str) -> None:
-        """An error between this node and another one: it logs it."""
+        """Log ``text``, an error between this node and another one."""
         rosout.report(self, rosout.ERROR, text)
 
     # ---------------------------------------------------------------------------------------------------- topics
 
     def advertise(self, name: str, message_type: MessageType, latch: bool = False) -> Publication:
-        """Publish on ``name`` from now on; returns the `Publication`. Subscribers that are there are connected at once."""
+        """Publish messages of ``message_type`` on ``name`` from now on; returns the `Publication`.
+
+        Present subscribers are connected at once. ``latch``: whether new subscribers get the last message.
+        """
         name = self.resolve(name)
         publication = self.publications.get(name)
         if publication is None:
@@ -183,7 +192,7 @@ class Node:
         return publication
 
     def unadvertise(self, name: str) -> bool:
-        """Stop publishing on the global name ``name``; true when it was advertised."""
+        """Stop publishing on the global name ``name``; returns whether the node published on it."""
         publication = self.publications.pop(name, None)
         if publication is None:
             return False
@@ -194,9 +203,10 @@ class Node:
         return True
 
     def subscribe(self, name: str, message_type: type[M], callback: Callable[[M], object], queue: int | None = None) -> NativeSubscription:
-        """Have ``callback(message)`` called for every message on ``name``: in `spin_once` of a spinning node, else at once.
+        """Call ``callback(message)`` for every message on ``name``: in `spin_once` of a spinning node, else at once.
 
-        It must not wait. ``queue``: how many messages may wait for the spin; older ones are dropped. Returns the subscription.
+        ``callback`` must not wait. ``queue``: how many messages may wait for the spin; older ones are dropped. Returns the
+        subscription.
         """
         subscription = NativeSubscription(self, self.resolve(name), message_type, callback, queue)
         self.add_subscription(subscription)
@@ -217,7 +227,7 @@ class Node:
         return waiting
 
     def unsubscribe(self, name: str | Connection) -> None:
-        """Drop the subscriptions to the global name ``name``, or one of them: a subscription instead of its name."""
+        """End all subscriptions to the global name ``name``, or a single one if ``name`` is a subscription."""
         if isinstance(name, str):
             gone = self.subscriptions.pop(name, ())
         else:
@@ -251,11 +261,14 @@ class Node:
     # -------------------------------------------------------------------------------------------------- services
 
     def serve(self, name: str, service_type: ServiceType, handler: Handler) -> Service:
-        """Offer the service ``name``; ``handler(request)`` returns the response or raises `services.Refusal`."""
+        """Offer the service ``name`` of type ``service_type``; returns the `Service`.
+
+        ``handler(request)`` returns the response or raises `services.Refusal`.
+        """
         return self.add_service(Service(self, self.resolve(name), service_type, handler))
 
     def add_service(self, service: Service) -> Service:
-        """Offer ``service``, in the place of one that has the same name; returns it."""
+        """Offer ``service`` and return it. It replaces a service of the same name."""
         self.withdraw(service.name)
         self.services[service.name] = self.graph.services[service.name] = service
         if not self.hidden:
@@ -263,7 +276,7 @@ class Node:
         return service
 
     def withdraw(self, name: str) -> None:
-        """Stop offering the service with the global name ``name``. Callers that wait are told."""
+        """Stop offering the service with the global name ``name``. Waiting callers are told."""
         service = self.services.pop(name, None)
         if service is not None:
             if self.graph.services.get(name) is service:
@@ -275,7 +288,7 @@ class Node:
     # -------------------------------------------------------------------------------------------- spinning, ending
 
     def spin_once(self) -> None:
-        """Handle everything that arrived since the last time, in order of arrival; what arrives meanwhile waits for the next."""
+        """Handle all input since the last call, in order of arrival. Input that arrives meanwhile waits for the next call."""
         inbox = self.inbox
         for _ in range(len(inbox)):
             if not inbox:  # the node was shut down
@@ -283,7 +296,7 @@ class Node:
             inbox.popleft()()
 
     def wait_for_spin(self, why: str) -> None:
-        """Park the current task until this spinning node has finished its next tick."""
+        """Park the current task until this spinning node has finished its next tick. ``why``: the reason that reports show."""
         task = kernel.current()
         entry = [task, False]
         self._accepted.append(entry)
@@ -291,7 +304,7 @@ class Node:
             kernel.park(why)
 
     def tick_done(self) -> None:
-        """A spinning node calls this at the end of each tick: who waited for a connection goes on."""
+        """Resume the tasks in `wait_for_spin`. A spinning node calls this at the end of each tick."""
         if self._accepted:
             waiting, self._accepted = self._accepted, []
             for entry in waiting:
@@ -299,7 +312,7 @@ class Node:
                 kernel.unpark(entry[0])
 
     def shutdown(self) -> None:
-        """Leave the graph: topics, services and subscriptions go, and nobody is left waiting."""
+        """Leave the graph: end all topics, services and subscriptions, and release all waiting callers."""
         if not self.alive:
             return
         for name in list(self.services):
@@ -322,7 +335,7 @@ class Node:
 
 
 def active() -> Graph:
-    """The graph of the active kernel; a fresh one when the kernel is new."""
+    """The graph of the active kernel; the first call makes it. Without a kernel: a `kernel.KernelError`."""
     owner = kernel.active()
     if _active.value is None or _active.value.kernel is not owner:
         if owner is None:

@@ -1,7 +1,7 @@
-"""The levels of logging, and the loggers of a roscpp node: how much it says, and the two services that ask and change that.
+"""The levels of logging, and the loggers of a roscpp node with the two services that read and set their levels.
 
-Every node in C++ offers ``~get_loggers`` and ``~set_logger_level``. Loggers are named by dots, ``ros`` is the root of all; a
-level that is set for one counts for it alone. Source: wiki.ros.org/rosconsole, roscpp's services of these names.
+Every node in C++ offers ``~get_loggers`` and ``~set_logger_level``. Names of loggers have parts with dots between; ``ros`` is
+the root. Setting the level of one logger changes no other. Source: wiki.ros.org/rosconsole, roscpp's services of these names.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ LEVEL_CODES = {name: code for code, name in LEVEL_NAMES.items()}
 
 
 class Loggers:
-    """The loggers of ``node``, an executable of the ROS package ``package``; its services are offered from now on.
+    """The loggers of ``node``, an executable of the ROS package ``package``. Making the object offers the two services.
 
-    ``talkative``: whether it prints what is for debugging, asked for in every tick.
+    ``talkative``: whether the node prints debug messages; the node reads it in every tick.
     """
 
     def __init__(self, node: Node, package: str):
@@ -48,5 +48,5 @@ class Loggers:
         node.serve("~set_logger_level", change, set_level)
 
     def enabled(self, level: int) -> bool:
-        """Whether the node prints what it logs at ``level``, a code of ``rosgraph_msgs/Log``."""
+        """Whether the node prints log messages of ``level``, a code of ``rosgraph_msgs/Log``."""
         return level >= self.levels[self.own]

@@ -1,8 +1,8 @@
-"""Making, changing and taking apart messages, as roslisp's macros do it.
+"""Make, change and take apart messages, as roslisp's macros do.
 
 A *field path* is a tuple of names read inside-out: ``("X", "LINEAR")`` is the field x of the field linear. The macros of
-``hy_src/cramhy/roslisp.hy`` turn their unevaluated field specs into such tuples and call the functions here. Specs are applied from the
-last to the first, so of two values for one field the first one counts (roslisp.md 5.3).
+``hy_src/cramhy/roslisp.hy`` turn their unevaluated field specs into such tuples and call the functions here. These apply the
+specs from the last to the first, so of two values for one field the first one counts (roslisp.md 5.3).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Error, SimpleError, TypeError_
 from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
 from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.condition_types import MissingSlot
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name
 from cramhy_runtime.ground.printing import princ_to_string
@@ -31,23 +31,27 @@ NO_MESSAGE_YET = (
 
 
 def make_message(designator: TypeName, specs: FieldSpecs = ()) -> RosMessage:
-    """A new message (``make-message``, ``make-msg``). ``specs``: a sequence of (field path, value)."""
+    """A new message (``make-message``, ``make-msg``).
+
+    ``designator``: a class, symbol or string that names the type. ``specs``: a sequence of (field path, value). An unknown field
+    is an error. Source: roslisp.md 5.3.
+    """
     message = messages.message_class(designator)()
     return set_fields(message, specs, fresh=True) if specs else message
 
 
 def make_request(designator: ServiceName, specs: FieldSpecs = ()) -> RosMessage:
-    """The request of the service ``designator`` (symbol, string, or `ServiceType`) with ``specs`` as for `make_message`."""
+    """A new request of the service ``designator`` (symbol, string, or `ServiceType`), with ``specs`` as for `make_message`."""
     return set_fields(messages.service_type(designator).request(), specs, fresh=True)
 
 
 def make_response(service: ServiceName, *initargs: object) -> RosMessage:
-    """``roslisp:make-response``: a response object of the service, from keyword objects and values."""
+    """A new response of ``service``; ``initargs``: keyword, value, keyword … (``roslisp:make-response``)."""
     return instance(messages.service_type(service).response, initargs)
 
 
 def instance(cls: MessageType, initargs: Sequence[Any]) -> RosMessage:
-    """``make-instance`` of a message class: keywords only, no paths."""
+    """A new message of class ``cls`` from ``initargs``: keyword, value, keyword … (``make-instance``). Paths are not allowed."""
     keywords = {}
     for index in range(0, len(initargs) - 1, 2):
         attribute = cls.attributes.get(symbol_name(initargs[index])) if isinstance(initargs[index], Symbol) else None
@@ -68,16 +72,20 @@ def _bad_initargs(cls: MessageType, initargs: Sequence[Any]) -> Any:
 
 
 def modify_message_copy(message: RosMessage, specs: FieldSpecs) -> RosMessage:
-    """A new message that differs in ``specs``; parts that are not touched are the same objects."""
+    """A copy of ``message`` with the fields in ``specs`` changed (``modify-message-copy``). Other parts are the same objects.
+
+    If ``message`` is not a message, it is a type error.
+    """
     if not isinstance(message, RosMessage):
         return conditions.error(TypeError_(message, "ROSLISP:ROS-MESSAGE"), hint=NO_MESSAGE_YET if message is None else None)
     return set_fields(message.copy(), specs)
 
 
 def set_fields(message: RosMessage, specs: FieldSpecs, fresh: bool = False) -> RosMessage:
-    """Set the fields of ``message``, which belongs to the caller, and return it.
+    """Set the fields in ``specs`` of ``message``, which belongs to the caller, and return it.
 
-    Parts on the way of a path are copied first unless this call made them; with ``fresh`` all present ones are its own.
+    Messages on the way of a path are copied first, unless this call made them. With ``fresh``, all parts of ``message`` are new and
+    need no copy. An unknown field is an error.
     """
     own = {id(message)}
     if fresh:
@@ -115,7 +123,7 @@ def _no_field(name: object, target: object) -> NoReturn:
 
 
 def _fields_hint(cls: MessageType) -> str:
-    """What to try when a field is not there: those that there are. A request is called by the name of its service, as the user does."""
+    """The hint for an unknown field: the fields of ``cls``. A request is called by the name of its service, as users call it."""
     name = cls.ros_type
     for part, called in (("Request", "{}"), ("Response", "The response of {}")):
         service = name.removesuffix(part)
@@ -132,7 +140,7 @@ def _as_deep_list(value: Any) -> Any:
 
 
 def get_field(message: Any, path: FieldPath) -> Any:
-    """The value at ``path`` (``with-fields``). A field that is not there is SBCL's missing-slot error."""
+    """The value at ``path`` in ``message`` (``with-fields``). An unknown field is SBCL's missing-slot error."""
     for name in reversed(path):
         attribute = message.attributes.get(name) if isinstance(message, RosMessage) else None
         if attribute is None:
@@ -143,7 +151,10 @@ def get_field(message: Any, path: FieldPath) -> Any:
 
 
 def msg_slot_value(message: RosMessage, slot: str | Symbol) -> Any:
-    """``roslisp:msg-slot-value``: ``slot`` is a string in any case, a keyword or a symbol."""
+    """The value of a field of ``message`` (``roslisp:msg-slot-value``). ``slot``: a string in any case, a keyword or a symbol.
+
+    An unknown field is SBCL's missing-slot error.
+    """
     attribute = lisp_attribute(type(message), slot) if isinstance(message, RosMessage) else None
     if attribute is not None:
         return getattr(message, attribute)
@@ -156,12 +167,15 @@ def msg_slot_value(message: RosMessage, slot: str | Symbol) -> Any:
 
 
 def ros_message_to_list(message: RosMessage) -> Cons:
-    """``(TURTLESIM-MSG:POSE (:X . 0.0) …)``; parts stay objects."""
+    """The list form of ``message``, as ``(TURTLESIM-MSG:POSE (:X . 0.0) …)``; messages inside stay objects."""
     return Cons(message.lisp_symbol, list_from([Cons(key, value) for key, value in zip(message.keywords, message.values())]))
 
 
 def list_to_ros_message(form: object) -> Any:
-    """The message that `ros_message_to_list` gives ``form`` for; parts may be lists themselves."""
+    """The message with the list form ``form``, as from `ros_message_to_list`; messages inside may be lists too.
+
+    Anything but a list is returned as it is. A list in another form is an error.
+    """
     if not isinstance(form, Cons):
         return form
     return set_fields(messages.message_class(form.car)(), [_field_of(entry, form) for entry in python_list(form.cdr)])
@@ -184,13 +198,13 @@ def _constants_class(designator: Any) -> MessageType:
 
 
 def symbol_codes(designator: TypeName | RosMessage) -> Cons | None:
-    """The constants of a message type as an association list."""
+    """The constants of a message type, as an association list of keyword and value."""
     cls = _constants_class(designator)
     return list_from([Cons(sym(":" + name.upper()), value) for name, value in cls.constants.items()])
 
 
 def symbol_code(designator: TypeName | RosMessage, key: Symbol) -> str | int | float | bool | None:
-    """The value of the constant ``key``."""
+    """The value of the constant ``key``, a symbol, of a message type. An unknown constant is an error."""
     cls = _constants_class(designator)
     if not is_symbol(key):
         conditions.type_error(key, "SYMBOL")
@@ -203,12 +217,12 @@ def symbol_code(designator: TypeName | RosMessage, key: Symbol) -> str | int | f
 
 
 def code_symbols(designator: TypeName | RosMessage, code: object) -> Cons | None:
-    """The constants with the value ``code``, as (keyword . value) pairs."""
+    """The constants of a message type with the value ``code``, as (keyword . value) pairs."""
     return list_from([pair for pair in symbol_codes(designator) or () if pair.cdr == code])
 
 
 def code_symbol(designator: TypeName | RosMessage, code: object) -> Symbol:
-    """The first constant with the value ``code``, as a keyword."""
+    """The first constant of a message type with the value ``code``, as a keyword. If there is none, it is an error."""
     found = code_symbols(designator, code)
     if found is not None:
         return found.car.car
@@ -220,7 +234,7 @@ def _shown_type(designator: Any) -> str:
 
 
 def ros_datatype(designator: TypeName | RosMessage) -> str:
-    """``"turtlesim/Pose"`` for a class symbol, instance, or service symbol."""
+    """The type name, as ``"turtlesim/Pose"``, of a class symbol, message, or service symbol."""
     found = _type_of(designator, "ROS-DATATYPE")
     return found.ros_type if isinstance(found, type) else found.name
 
@@ -233,10 +247,10 @@ def _type_of(designator: Any, function: str) -> Any:
 
 
 def md5sum(designator: TypeName | RosMessage) -> str:
-    """The md5 sum of a class symbol, instance, or service symbol, as ROS has it."""
+    """The md5 sum, the same as in ROS, of a class symbol, message, or service symbol."""
     return type_texts.md5_of(_type_of(designator, "MD5SUM"))
 
 
 def message_definition(designator: TypeName | RosMessage) -> str:
-    """The text of the definition without its comments, followed by those of all messages that it is made of."""
+    """The definition of a type without comments, followed by the definitions of all messages inside."""
     return type_texts.definition_text(_type_of(designator, "MESSAGE-DEFINITION"))

@@ -1,16 +1,16 @@
-"""Messages as JSON, in the spelling of rosbridge v2: what the bridge, the recorder and the page send and understand.
+"""Messages as JSON, in the form of rosbridge v2. The bridge, the recorder and the page send and read it.
 
-`to_json` gives plain dicts, lists, numbers and texts; `from_json` makes of such data the message that a subscriber would get,
-or raises `MessageJsonError`, whatever the data are: they come from outside. For each type both directions are written out
-once as a Python function, for a page with many turtles asks for thousands of messages per second.
+`to_json` returns plain dicts, lists, numbers and texts. `from_json` reads such data and returns the message that a subscriber
+would get. The data come from outside, so anything wrong in them raises `MessageJsonError`. A page with many turtles needs
+thousands of messages per second, so each type has one generated Python function per direction.
 
-* A number that is not finite leaves as null, and null comes in as not-a-number.
-* ``uint8[]`` and ``char[]`` leave as base64 texts and come in as such or as lists.
-* A time is ``{"secs", "nsecs"}``; ROS 2's ``{"sec", "nanosec"}`` comes in too, and ``"now"``.
+* A number that is not finite is written as null, and null is read as not-a-number.
+* ``uint8[]`` and ``char[]`` are written as base64 texts, and read from base64 texts or lists.
+* A time is written as ``{"secs", "nsecs"}``; ROS 2's ``{"sec", "nanosec"}`` and ``"now"`` are read too.
 * Texts are Unicode outside and bytes inside, one character each (roslisp.md 5.2). Characters below 256 stay as they are, so
-  that *ä* is *ä* on both sides; a text with others crosses as its bytes in UTF-8, and these as the text that they were.
+  that *ä* is *ä* on both sides. A text with other characters becomes its bytes in UTF-8 inside, and the same text again outside.
 
-Sources: rosbridge protocol 2.0, sections 3.1 and 4; its conversions as rosbridge_library does them.
+Sources: rosbridge protocol 2.0, sections 3.1 and 4; conversions as in rosbridge_library.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ T = TypeVar("T")
 
 
 class MessageJsonError(ValueError):
-    """Data that are no message of the type, or a message that has no JSON. The text names type, field, value and a remedy.
+    """Data that do not fit the message type, or a message that has no JSON. The text names type, field, value and a remedy.
 
-    problem: the text, or a function that makes it of the type of the whole message and the field's full name. path: the names of
-    the fields from the outermost inwards, elements of arrays by their index: ``["poses", "[2]", "position", "x"]``.
+    ``problem``: the text, or a function that makes it from the type of the whole message and the field's full name. ``path``: the
+    names of the fields from the outermost inwards, elements of arrays by their index: ``["poses", "[2]", "position", "x"]``.
     """
 
     def __init__(self, problem: str | Callable[[str, str], str], path: Sequence[str] = ()):
@@ -51,12 +51,12 @@ class MessageJsonError(ValueError):
         self.problem, self.path, self.type = problem, list(path), ""
 
     def below(self, field: str) -> Self:
-        """This error, seen from the message that has it in its ``field``."""
+        """Put ``field``, the field of the message around this one, before the path; returns this error."""
         self.path.insert(0, field)
         return self
 
     def of(self, ros_type: str) -> Self:
-        """This error, about a message of the type as a whole."""
+        """Set the type of the whole message, a text as ``"turtlesim/Pose"``; returns this error."""
         self.type = ros_type
         return self
 
@@ -65,7 +65,7 @@ class MessageJsonError(ValueError):
 
 
 def to_json(message: RosMessage) -> dict[str, Any]:
-    """``message``, as the graph delivers it or as it was made, as plain data for ``json.dumps``. Raises `MessageJsonError`."""
+    """``message`` as plain data for ``json.dumps``: a dict by field name. A value without JSON raises `MessageJsonError`."""
     encode = _encoders.get(message.__class__) or _encoder(message.__class__)
     try:
         return encode(message)
@@ -77,10 +77,11 @@ def to_json(message: RosMessage) -> dict[str, Any]:
 
 
 def from_json(cls: type[M], data: object, now: float | None = None) -> M:
-    """The message of class ``cls`` (or `MessageJsonError`) that ``data``, a dict as ``json.loads`` gives it, describes.
+    """The message of class ``cls`` that ``data``, a dict as from ``json.loads``, describes.
 
-    Fields that are not given have their defaults. now: seconds since 1970, which the text ``"now"`` stands for; when it is
-    given, a header without a stamp gets it too, as in rosbridge. The values are those that a subscriber sees.
+    Missing fields get their defaults. ``now``: the time that the text ``"now"`` means, in seconds since 1970; if given, a header
+    without a stamp gets it too, as in rosbridge. The values are the ones that a subscriber sees. Data that do not fit ``cls``
+    raise `MessageJsonError`.
     """
     decode = _decoders.get(cls) or _decoder(cls)
     try:
@@ -90,7 +91,10 @@ def from_json(cls: type[M], data: object, now: float | None = None) -> M:
 
 
 def request_from_json(cls: type[M], data: object, now: float | None = None) -> M:
-    """The request that the arguments of a service call describe: as `from_json`, or a list in the order of the fields, or None."""
+    """The request that the arguments of a service call describe, as `from_json` does.
+
+    ``data`` may also be a list of values in the order of the fields, or ``None`` for no arguments.
+    """
     if data is None:
         data = {}
     elif data.__class__ is list:
@@ -102,9 +106,10 @@ def request_from_json(cls: type[M], data: object, now: float | None = None) -> M
 
 
 def type_named(name: object, find: Callable[[str], Any] = messages.message_class_exact) -> MessageType:
-    """The message class called ``"turtlesim/Pose"``, or in ROS 2's way ``"turtlesim/msg/Pose"``; with ``find`` a service.
+    """The message class with the name ``"turtlesim/Pose"``, or in ROS 2's form ``"turtlesim/msg/Pose"``.
 
-    Raises `MessageJsonError` when there is none. To be called in the kernel: it may read a package's definitions.
+    ``find``: the function that finds it by the first form. Raises `MessageJsonError` if there is none. Call it in the kernel,
+    since it may read a package's definitions.
     """
     if isinstance(name, str):
         parts = name.split("/")
@@ -118,7 +123,7 @@ def type_named(name: object, find: Callable[[str], Any] = messages.message_class
 
 
 def service_named(name: object) -> ServiceType:
-    """The `ServiceType` called ``"turtlesim/Spawn"`` or ``"turtlesim/srv/Spawn"``; errors as of `type_named`."""
+    """The `ServiceType` with the name ``"turtlesim/Spawn"`` or ``"turtlesim/srv/Spawn"``; errors as in `type_named`."""
     return type_named(name, messages.service_type_exact)
 
 
@@ -287,11 +292,11 @@ _ENCODED = {
     "time": "moment({0})",
     "duration": "moment({0})",
 }
-"""What is written out for a field that ``{0}`` reads; integers are themselves."""
+"""The generated expression for a field that ``{0}`` reads; integers need none."""
 
 
 def _encoder(cls):
-    """Write out, compile and keep the function that makes plain data of a message of class ``cls``."""
+    """Generate, compile and keep the function that turns a message of class ``cls`` into plain data."""
     if not (isinstance(cls, type) and issubclass(cls, RosMessage)):
         raise MessageJsonError(f"Only a message can be sent, not an object of class {getattr(cls, '__name__', cls)}.")
     scope = {"isfinite": math.isfinite, "moment": _write_moment, "octets": _write_bytes, "string": _write_string, "floats": _write_floats}
@@ -336,7 +341,7 @@ def _part_class(field):
 
 
 def _encode_with_care(message):
-    """As the written-out functions do, for values that these do not expect."""
+    """Encode as the generated functions do, for values that these do not expect."""
     result = {}
     for field in message.fields:
         value = getattr(message, field.attribute)
@@ -389,7 +394,7 @@ _MISSING = object()
 
 
 def _decoder(cls):
-    """Write out, compile and keep the function that reads a message of class ``cls``."""
+    """Generate, compile and keep the function that reads a message of class ``cls``."""
     scope = {
         "cls": cls,
         "new": cls.__new__,
@@ -420,7 +425,7 @@ def _decoder(cls):
 
 
 def _reading(field, scope, cls):
-    """The expressions for the value of a field: of what is given in ``value``, and when nothing is given."""
+    """Two expressions for the value of a field: with the data in ``value``, and without data."""
     reader = f"read_{field.attribute}"
     if not field.primitive:
         part = _part_class(field)

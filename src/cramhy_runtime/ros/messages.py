@@ -1,8 +1,8 @@
 """Messages: one Python class per ROS type, with the slots of its ``.msg`` file.
 
 ``message_class("turtlesim/Pose")`` is a class with slots ``x y theta linear_velocity angular_velocity``; the Lisp class
-``turtlesim-msg:Pose`` is the same object. Nothing is checked when a message is made: like roslisp, types are looked at when
-a message crosses the graph (``wire.py``). Messages are meant to be immutable; what arrives is always a fresh object.
+``turtlesim-msg:Pose`` is the same object. Making a message checks nothing: as in roslisp, types are checked when a message
+crosses the graph (``wire.py``). Do not change a message after sending it; subscribers always receive a fresh object.
 Source: roslisp.md 5.
 """
 
@@ -14,7 +14,7 @@ from cramhy_runtime.ground import conditions, packages
 from cramhy_runtime.ground.condition_types import CaseFailure, SimpleError
 from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import definition_files
@@ -34,7 +34,7 @@ M = TypeVar("M", bound="RosMessage")
 
 
 class _SignatureOfFields:
-    """The signature of a message class: its fields. It is made when somebody asks; `inspect` takes 5 ms."""
+    """The signature of a message class: its fields. It is made on demand; `inspect` takes 5 ms."""
 
     def __get__(self, message, cls):
         from inspect import Parameter, Signature
@@ -43,10 +43,10 @@ class _SignatureOfFields:
 
 
 class RosMessage:
-    """The root of all messages (``roslisp:ros-message``). Class attributes describe the type.
+    """The root class of all messages (``roslisp:ros-message``). Class attributes describe the type.
 
-    ros_type: ``"turtlesim/Pose"``. fields: `Field` objects in order. constants: name → value. attributes: upper-case Lisp
-    name → Python attribute. lisp_symbol: the symbol that names the class.
+    ``ros_type``: ``"turtlesim/Pose"``. ``fields``: `Field` objects in order. ``constants``: name → value. ``attributes``: upper-case
+    Lisp name → Python attribute. ``lisp_symbol``: the symbol that names the class.
     """
 
     __slots__ = ()
@@ -73,7 +73,7 @@ class RosMessage:
         return f"{type(self).__name__}({inside})"
 
     def copy(self) -> Self:
-        """A shallow copy: the parts are shared."""
+        """A shallow copy: both messages share the messages and lists inside."""
         return type(self)(*[getattr(self, name) for name in self.field_names])
 
     def values(self) -> list[Any]:
@@ -82,7 +82,7 @@ class RosMessage:
 
 
 class ServiceType:
-    """A service: its request and response classes, and the Lisp symbol that names it (``turtlesim-srv:Spawn``)."""
+    """A type of service: its request and response classes, and the Lisp symbol that names it (``turtlesim-srv:Spawn``)."""
 
     __slots__ = ("name", "request", "response", "lisp_symbol")
 
@@ -105,8 +105,11 @@ DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", 
 
 
 def load_package(package: str) -> Loaded | None:
-    """Define all messages and services of the ROS package; returns their Python classes and `ServiceType` objects, or
-    ``None`` when there is no such package. A broken definition is an error, after which nothing is defined."""
+    """Define all messages and services of the ROS package ``package``.
+
+    Returns the lists of their Python classes and `ServiceType` objects, or ``None`` if there is no such package. An error in a
+    definition is a Lisp error, `BrokenDefinition`, and nothing is defined then.
+    """
     found = _loaded.get(package)
     if found is None:
         folder = definition_files.package_folder(package)
@@ -131,7 +134,7 @@ def _read(package: str, folder: Path) -> PackageDefinitions:
 
 
 class BrokenDefinition(SimpleError):
-    """The `DefinitionError` of a package's file as Lisp sees it."""
+    """The Lisp condition for a `DefinitionError` in a package's file."""
 
     lisp_name = "ROSLISP::DEFINITION-ERROR"
 
@@ -156,14 +159,14 @@ def _define_package(package: str, definitions: PackageDefinitions, classes: list
 
 
 def on_load(listener: Callable[[str, list[MessageType], list[ServiceType]], object]) -> None:
-    """Call ``listener(package, message classes, services)`` for every package loaded from now on, and those before."""
+    """Call ``listener(package, message classes, services)`` for every package, loaded already or later."""
     _listeners.append(listener)
     for package, classes in list(_loaded.items()):
         listener(package, *classes)
 
 
 class MessagePackage(Package):
-    """The Lisp package of a ROS package's messages or services. Its definitions are read when somebody looks into it."""
+    """The Lisp package of a ROS package's messages or services. The first look at its symbols reads the definitions."""
 
     def __init__(self, ros_package: str, kind: str):
         self.ros_package = ros_package
@@ -171,6 +174,7 @@ class MessagePackage(Package):
 
     @property
     def external(self) -> Any:
+        """The table of external symbols. The first access loads the ROS package."""
         if self.ros_package not in _loaded and self.ros_package not in _reading:
             try:
                 load_package(self.ros_package)
@@ -186,7 +190,7 @@ class MessagePackage(Package):
 
 
 def lisp_package(package: str, kind: str) -> Package:
-    """The Lisp package ``TURTLESIM-MSG`` or ``TURTLESIM-SRV`` of a ROS package; made when it is not there."""
+    """The Lisp package of the ROS package ``package``, as ``TURTLESIM-MSG``; made if missing. ``kind``: ``"MSG"`` or ``"SRV"``."""
     return registered(f"{package.upper()}-{kind}") or ours(f"{package.upper()}-{kind}", lambda: MessagePackage(package, kind))
 
 
@@ -202,7 +206,7 @@ def _forget_lisp_packages(package: str) -> None:
 
 
 def find_lisp_package(name: str) -> Package | None:
-    """The Lisp package ``MY_MSGS-MSG`` when there is a ROS package that has such definitions, made now; else ``None``."""
+    """The Lisp package ``name``, as ``MY_MSGS-MSG``, made if missing; ``None`` if no ROS package has such definitions."""
     package, _, kind = name.rpartition("-")
     package = package.lower()
     folder = definition_files.package_folder(package) if kind in ("MSG", "SRV") else None
@@ -212,7 +216,10 @@ def find_lisp_package(name: str) -> Package | None:
 
 
 def find_message_system(name: str) -> bool:
-    """Whether ``name`` is ``my_msgs-msg`` or ``my_msgs-srv``, of a ROS package that has such definitions; they are read now."""
+    """Load the ROS package of the system ``name``, ``my_msgs-msg`` or ``my_msgs-srv``.
+
+    Returns false if no ROS package has such definitions.
+    """
     package, _, kind = name.rpartition("-")
     if kind not in ("msg", "srv") or not package:
         return False
@@ -224,7 +231,7 @@ def find_message_system(name: str) -> bool:
 
 
 def message_systems() -> Iterator[str]:
-    """The names of all systems of messages and services, as one would load them."""
+    """Yield the names of all systems of messages and services, as ``turtlesim-msg``."""
     for package in definition_files.known_packages():
         folder = definition_files.package_folder(package)
         yield from (f"{package}-{kind}" for kind in ("msg", "srv") if definition_files.has_kind(folder, kind))
@@ -232,7 +239,7 @@ def message_systems() -> Iterator[str]:
 
 @functools.cache
 def our_lisp_packages() -> list[str]:
-    """The names of the Lisp packages of all messages and services that come with cramhy."""
+    """The names of the Lisp packages for the messages and services that come with cramhy."""
     return [f"{folder.name.upper()}-{kind}" for folder in sorted(definition_files.OURS.iterdir()) for kind in ("MSG", "SRV")
             if definition_files.has_kind(folder, kind.lower())]  # fmt: skip
 
@@ -281,7 +288,7 @@ def _deferred_initializer(cls: Any, fields: Sequence[Field]) -> Callable[..., No
 
 
 def _initializer(cls: MessageType, fields: Sequence[Field]) -> Callable[..., None]:
-    """An ``__init__`` with one parameter per field, in the order of the definition; parts are made when they are needed."""
+    """An ``__init__`` with one parameter per field, in the order of the definition. It makes messages inside only when needed."""
     scope = {"_unsupplied": UNSUPPLIED, "_part": part_class}
     parameters, body = ["self"], []  # written out once per type, as dataclasses do: making messages is on the path of every command
     for field in fields:
@@ -299,14 +306,14 @@ def _initializer(cls: MessageType, fields: Sequence[Field]) -> Callable[..., Non
 
 
 def part_class(ros_type: str) -> MessageType:
-    """The class of the type of a field; an error when there is none."""
+    """The class of the type ``ros_type`` of a field. If there is none, it is an error."""
     return message_class_exact(ros_type) or conditions.error(
         SimpleError("~a", f"The message type {ros_type} is not known, but it is the type of a field. Is its package on ROS_PACKAGE_PATH?")
     )
 
 
 def _default(field: Field) -> str | None:
-    """The text of an expression for a default that must be fresh in each message; ``None`` for a constant one."""
+    """An expression, as text, for a default that each message needs anew; ``None`` for a constant default."""
     if field.is_array:
         if field.length == 0:
             return "[]"
@@ -319,7 +326,7 @@ def _default(field: Field) -> str | None:
 
 
 def message_class_exact(ros_type: str) -> MessageType | None:
-    """The class of ``"package/Name"``, or ``None``. No error, no folding of case."""
+    """The class of ``"package/Name"``, with upper and lower case as in the definition, or ``None``."""
     found = _messages.get(ros_type)
     if found is None and "/" in ros_type:
         load_package(ros_type.partition("/")[0])
@@ -328,7 +335,7 @@ def message_class_exact(ros_type: str) -> MessageType | None:
 
 
 def service_type_exact(ros_type: str) -> ServiceType | None:
-    """The `ServiceType` ``"package/Name"``, or ``None``."""
+    """The `ServiceType` ``"package/Name"``, with upper and lower case as in the definition, or ``None``."""
     found = _services.get(ros_type)
     if found is None and "/" in ros_type:
         load_package(ros_type.partition("/")[0])
@@ -358,7 +365,10 @@ def named(symbol: object) -> MessageType | ServiceType | None:
 
 
 def message_class(designator: TypeName) -> MessageType:
-    """The class for ``make-message``: a string ``"pkg/Name"`` in any case, a symbol, or the class itself."""
+    """The message class for ``make-message``. ``designator``: a string ``"pkg/Name"`` in any case, a symbol, or the class itself.
+
+    An unknown type is an error. Source: roslisp.md 5.3.
+    """
     if isinstance(designator, type):
         return designator
     if isinstance(designator, (str, LispString)):
@@ -400,7 +410,7 @@ def _unknown(text: str, hint: str | None) -> NoReturn:
 
 
 def _packages_hint(package: str) -> str:
-    """What to try when there is no ROS package ``package`` with definitions."""
+    """The hint for a ``package`` that is not a ROS package with definitions."""
     near = near_names(package.lower(), definition_files.known_packages(), 1)
     if near:
         return f"Did you mean {near[0]}?"
@@ -408,7 +418,10 @@ def _packages_hint(package: str) -> str:
 
 
 def topic_class(designator: TypeName) -> MessageType:
-    """The class for ``advertise`` and ``subscribe``: here the case of a string counts (roslisp.md 6.1)."""
+    """The message class for ``advertise`` and ``subscribe``. In a string, upper and lower case must match (roslisp.md 6.1).
+
+    ``designator``: a string ``"pkg/Name"``, a symbol, or the class itself. An unknown type is an error.
+    """
     if isinstance(designator, type):
         return designator
     if not isinstance(designator, (str, LispString)):
@@ -432,7 +445,7 @@ def topic_class(designator: TypeName) -> MessageType:
 
 
 def _types_hint(tool: str, table: dict[str, Any], text: str) -> str:
-    """What to try when ``table`` has no type ``text``, though it has others of that package, which ``tool`` lists."""
+    """The hint if ``table`` has types of the package, but not the type ``text``. ``tool``: the command that lists them."""
     package, _, wanted = text.lower().partition("/")
     names = {name.lower().partition("/")[2]: name for name in table if name.startswith(package + "/")}
     near = near_names(wanted, names, 1)
@@ -442,7 +455,10 @@ def _types_hint(tool: str, table: dict[str, Any], text: str) -> str:
 
 
 def service_type(designator: ServiceName) -> ServiceType:
-    """The `ServiceType` of a symbol ``turtlesim-srv:Spawn``, a string in any case, or one itself."""
+    """The `ServiceType` of ``designator``: a symbol ``turtlesim-srv:Spawn``, a string in any case, or a `ServiceType`.
+
+    An unknown type is an error.
+    """
     if isinstance(designator, ServiceType):
         return designator
     advice = None
@@ -469,7 +485,7 @@ def service_type(designator: ServiceName) -> ServiceType:
 
 
 def lisp_attribute(cls: MessageType, name: object) -> str | None:
-    """The Python attribute of ``cls`` that the Lisp field name stands for (any case, ``-val`` dropped), or ``None``."""
+    """The Python attribute of ``cls`` for the Lisp field ``name``, or ``None``. Case does not count; an ending ``-val`` is dropped."""
     name = string_designator(name) if not isinstance(name, LispString) else str(name)
     found = cls.attributes.get(name)
     if found is None:

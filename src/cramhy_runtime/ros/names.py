@@ -1,8 +1,8 @@
-"""Names: what ``foo``, ``/foo`` and ``~foo`` mean to a node, and what its command line changes about that.
+"""Names: the meaning of ``foo``, ``/foo`` and ``~foo`` to a node, and how its command line changes it.
 
-A *global* name begins with ``/``, a *private* one with ``~`` and lies below the node's own name, every other one is relative
-to the namespace. As in roslisp nothing is validated or cleaned here; `check_graph_name` is the validation that roscpp nodes
-such as turtlesim make. Source: roslisp.md 3, wiki.ros.org/Names.
+A *global* name begins with ``/``. A *private* name begins with ``~`` and is below the node's own name. Every other name is
+relative to the namespace. As in roslisp, this module does not validate or clean names; `check_graph_name` validates as roscpp
+nodes such as turtlesim do. Source: roslisp.md 3, wiki.ros.org/Names.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
 
 
 class Naming:
-    """The names of one node: its namespace (with both slashes), its own global name, remappings, private parameters."""
+    """The names of one node: its namespace (with slashes at both ends), its own global name, remappings, private parameters."""
 
     def __init__(self, base_name: str, namespace: str = "/"):
         self.base_name = base_name.strip("/")
@@ -34,14 +34,14 @@ class Naming:
         self.log_file: str | None = None
 
     def resolve(self, name: str) -> str:
-        """The global name that ``name`` means, after remapping."""
+        """The global name of ``name``, after remapping."""
         full = qualify(name, self.namespace, self.node_name)
         return self.remappings.get(full, full) if self.remappings else full
 
     def apply_arguments(self, arguments: Iterable[str], read_value: Callable[[str], object]) -> None:
-        """Process command-line arguments in order; ``read_value`` reads the text of a private parameter.
+        """Process command-line arguments such as ``a:=b`` in order. ``read_value(text)`` reads a private parameter.
 
-        A remapping is qualified with the names known when its turn comes (roslisp.md 3.3).
+        A remapping is qualified with the names known at its turn (roslisp.md 3.3).
         """
         for argument in arguments:
             left, assignment, right = argument.partition(":=")
@@ -87,7 +87,7 @@ def is_base_name(name: str) -> bool:
 
 
 def check_graph_name(name: str) -> str | None:
-    """The text of roscpp's complaint about an illegal name, or ``None`` when it is legal."""
+    """The text of roscpp's error about an illegal ``name``, or ``None`` if it is legal."""
     if not name:
         return None
     if name[0] not in _LETTERS and name[0] not in "/~":
@@ -105,7 +105,7 @@ def check_graph_name(name: str) -> str | None:
 
 
 def split_arguments(arguments: str | Iterable[object] | None) -> list[str]:
-    """Command-line arguments as a list: a list of strings is taken as it is, one string is split at white space."""
+    """Command-line arguments as a list of strings. A single string is split at white space; ``None`` is the empty list."""
     if arguments is None:
         return []
     if isinstance(arguments, str):
@@ -114,7 +114,7 @@ def split_arguments(arguments: str | Iterable[object] | None) -> list[str]:
 
 
 def plain_value(text: str) -> str | int | float | bool:
-    """What the tools of ROS and roscpp take ``text`` for when nobody says its type: an integer, a number, true or false, else a text."""
+    """The value of ``text`` without a given type, as the tools of ROS and roscpp read it: integer, number, true or false, else text."""
     for kind in (int, float):
         try:
             return kind(text.replace("_", "?"))  # Python would read 1_000 as a number
@@ -124,9 +124,9 @@ def plain_value(text: str) -> str | int | float | bool:
 
 
 def read_private_value(text: str) -> object:
-    """The value of ``_p:=text``, read by the Lisp reader: a number or another object as it is, a symbol and what cannot be read as text.
+    """The value of ``_p:=text``, from the Lisp reader: a number or another object. A symbol or an unreadable text stays text.
 
-    Nothing is evaluated, and no symbol is made that a program would see. Source: roslisp.md 3.3.
+    Nothing is evaluated, and programs see no new symbols. Source: roslisp.md 3.3.
     """
     try:
         value = PORTS.user.read(text)

@@ -1,8 +1,8 @@
-"""Parameters: the tree of values that the master keeps: text, numbers, booleans, lists, and dictionaries for the names below.
+"""Parameters: the master's tree of values, which are text, numbers, booleans, lists, and dictionaries for the names below.
 
-Three are there from the start, as ``roscore`` sets them: which ROS this is, and an id of the run.
+As with ``roscore``, three are set from the start: the distribution and the version of ROS, and an id of the run.
 
-How Lisp's values get in and out stands in ``roslisp/parameter_values.py``. Source: wiki.ros.org/ROS/Parameter_Server_API.
+``roslisp/parameter_values.py`` converts Lisp values. Source: wiki.ros.org/ROS/Parameter_Server_API.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ DISTRIBUTION, VERSION = "noetic", "1.15.15"
 
 
 class ParameterTree:
-    """Values by global name; a dictionary stands for the names below it."""
+    """Values by global name. A dictionary holds the names below its own."""
 
     def __init__(self, run: float | None = None):
-        """run: when the run began, in seconds since 1970, which its id is made of; without it the tree is empty."""
+        """``run``: when the run began, in seconds since 1970, for its id. Without it, the tree is empty."""
         self.root: dict[str, Any] = (
             {} if run is None else {"rosdistro": f"{DISTRIBUTION}\n", "rosversion": f"{VERSION}\n", "run_id": _run_id(run)}
         )
 
     def get(self, name: str) -> Parameter:
-        """The value, or `KeyError`."""
+        """The value of the parameter ``name``. Raises `KeyError` if it is not set."""
         value: Any = self.root
         for part in _parts(name):
             if not isinstance(value, dict):
@@ -35,6 +35,7 @@ class ParameterTree:
         return value
 
     def has(self, name: str) -> bool:
+        """Whether the parameter ``name`` is set."""
         try:
             self.get(name)
         except KeyError:
@@ -42,6 +43,7 @@ class ParameterTree:
         return True
 
     def set(self, name: str, value: ParameterValue) -> None:
+        """Set the parameter ``name``; dictionaries on the way are made. The root must be a dictionary, else `TypeError`."""
         parts = _parts(name)
         if not parts:
             if not isinstance(value, dict):
@@ -57,7 +59,7 @@ class ParameterTree:
         space[parts[-1]] = value
 
     def delete(self, name: str) -> None:
-        """Remove the value, or `KeyError`. The root cannot go, but it can be emptied."""
+        """Remove the parameter ``name``. Raises `KeyError` if it is not set. Removing the root empties it."""
         parts = _parts(name)
         if not parts:
             self.root = {}
@@ -68,12 +70,12 @@ class ParameterTree:
         del space[parts[-1]]
 
     def names(self) -> list[str]:
-        """The names of all values that are no dictionaries, sorted."""
+        """The names of all values that are not dictionaries, sorted."""
         return sorted(_leaves(self.root, ""))
 
 
 def _run_id(run: float) -> str:
-    """A UUID of the time ``run`` (RFC 4122, version 1): the same for the same start, so that runs in virtual time do not differ."""
+    """A UUID of the time ``run`` (RFC 4122, version 1). The same start gives the same id, so runs in virtual time do not differ."""
     ticks = int(run * 10**7) + 0x01B2_1DD2_1381_4000  # tenths of microseconds, counted from 1582
     return f"{ticks & 0xFFFFFFFF:08x}-{ticks >> 32 & 0xFFFF:04x}-{ticks >> 48 | 0x1000:04x}-8000-010000000000"
 

@@ -1,8 +1,8 @@
-"""The log that all nodes share: levels, the topic ``/rosout``, and the node of the same name that collects it.
+"""The common log of all nodes: levels, the topic ``/rosout``, and the node of the same name that collects it.
 
-A node that logs publishes a ``rosgraph_msgs/Log`` on ``/rosout``; the collector sends them on as ``/rosout_agg``. What was logged
-last also stands in `Graph.log`, as tuples (level, node name, text). How roslisp prints a line is in ``roslisp/logging.py``.
-Source: roslisp.md 4.2, 4.3, wiki.ros.org/rosout.
+To log, a node publishes a ``rosgraph_msgs/Log`` on ``/rosout``; the collector sends it on as ``/rosout_agg``. `Graph.log` keeps the
+last entries, as tuples (level, node name, text). ``roslisp/logging.py`` prints the lines of roslisp. Source: roslisp.md 4.2, 4.3,
+wiki.ros.org/rosout.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["DEBUG", "ERROR", "FATAL", "INFO", "LEVEL_CODES", "LEVEL_NAMES", "WAR
 
 
 def report(node: Node, level: int, text: str) -> int:
-    """Publish a log entry of ``node`` on ``/rosout``, and keep it in the graph's log; the number of subscribers."""
+    """Publish a log entry of ``node`` on ``/rosout``, and keep it in the graph's log; returns the number of subscribers."""
     node.graph.log.append((level, node.name, text))
     publication = node.publications.get("/rosout")
     if publication is None or not publication.connections:
@@ -29,7 +29,7 @@ def report(node: Node, level: int, text: str) -> int:
 
 
 def join(node: Node, delay: float = 0.0) -> None:
-    """Let ``node`` publish its log. The node ``/rosout`` collects it, after ``delay`` seconds, for ``/rosout_agg``."""
+    """Let ``node`` publish its log. After ``delay`` seconds, the node ``/rosout`` begins to collect it for ``/rosout_agg``."""
     graph, log_type = node.graph, message_class_exact("rosgraph_msgs/Log")
     if "/rosout" not in graph.nodes:
         collector = graph.node("rosout")

@@ -1,8 +1,8 @@
-"""Where packages and systems are looked for; with no Lisp, so that the ROS tools start quickly.
+"""The folders to search for packages and systems. The module needs no Lisp, so the ROS tools start quickly.
 
-A search walks through folders that need not be the user's: a shared ``/opt``, another user's home, a link into either. What the user may
-not look at holds nothing for the search, so `entries`, `is_folder` and `is_file` answer as if it were not there. `pathlib` and
-`os.DirEntry` raise the error of the system instead.
+A search may reach folders of others: a shared ``/opt``, another user's home, a link into either. The search leaves out all that
+the user may not read: for `entries`, `is_folder` and `is_file`, it does not exist. `pathlib` and `os.DirEntry` raise the
+system's error instead.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 extra_folders: list[str | Path] = per_image([])
-"""Folders to look in besides the standard ones."""
+"""Folders to search besides the standard ones."""
 SKIPPED = {"node_modules", "build", "devel", "venv", "site-packages", "tests"}
-"""Names of folders that hold no sources of the user's."""
+"""Names of folders without the user's own sources."""
 
 
 def search_folders() -> list[Path]:
-    """The folders below which packages and systems are looked for, in order."""
+    """The folders to search for packages and systems, with their sub-folders, in order."""
     folders = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
     folders += [Path(entry) for entry in extra_folders]
     here = Path.cwd()
@@ -36,7 +36,7 @@ def search_folders() -> list[Path]:
 
 
 def entries(folder: str | Path) -> list[os.DirEntry[str]]:
-    """What stands in ``folder``, as `os.DirEntry`, sorted by name; nothing where it cannot be listed."""
+    """The entries of ``folder``, as `os.DirEntry`, sorted by name; an empty list if it cannot be read."""
     try:
         return sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError:
@@ -44,7 +44,7 @@ def entries(folder: str | Path) -> list[os.DirEntry[str]]:
 
 
 def is_folder(entry: os.DirEntry[str]) -> bool:
-    """Whether an `os.DirEntry` is a folder, or a link to one, that the user may look at."""
+    """Whether an `os.DirEntry` is a folder, or a link to one, that the user may read."""
     try:
         return entry.is_dir()
     except OSError:  # a link into a folder that one may not enter, a circle of links, a file system that is gone
@@ -52,7 +52,7 @@ def is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def is_file(entry: os.DirEntry[str]) -> bool:
-    """Whether an `os.DirEntry` is a file, or a link to one, that the user may look at."""
+    """Whether an `os.DirEntry` is a file, or a link to one, that the user may read."""
     try:
         return entry.is_file()
     except OSError:

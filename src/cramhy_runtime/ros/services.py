@@ -1,15 +1,15 @@
-"""The ground of services: a request, a response, and somebody who is told the answer.
+"""Services and their calls, the common part of all nodes.
 
-A `Service` belongs to a node. That of a spinning node, such as turtlesim, serves a request in its next tick; any other serves it
-at once; the services of the Lisp program (``roslisp/services.py``) queue for a task of their own. There are two ways to call:
+A `Service` belongs to a node. A spinning node, such as turtlesim, handles a request in its next tick; any other node handles it at
+once. The services of the Lisp program (``roslisp/services.py``) queue for a task of their own. There are two ways to call:
 
-* `exchange` is for tasks: it parks until there is an answer.
-* `start_call` is for code that must not wait: callbacks, timers, and what outside threads `kernel.post` (the bridge to other
-  processes calls this way). It returns the `Call` at once, and ``when_done(call)`` is called when the call is over.
+* `exchange` is for tasks: it parks until the answer comes.
+* `start_call` is for code that must not wait: callbacks, timers, and functions that outside threads `kernel.post`, as the bridge
+  to other processes does. It returns the `Call` at once, and calls ``when_done(call)`` at the end of the call.
 
-Every call ends, exactly once, in one of three ways: with a ``response``, with the ``failure`` text of a server that refused, or
-``lost``, because the server went away. What a handler raises besides `Refusal` is told to the caller and reported (law 3).
-Source: roslisp.md 7, wiki.ros.org/Services.
+Every call ends exactly once, in one of three ways: with a ``response``; with ``failure``, the text of a server that refused; or
+``lost``, because the server went away. If a handler raises anything but `Refusal`, the caller gets it as a failure, and it is
+reported (law 3). Source: roslisp.md 7, wiki.ros.org/Services.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 
 class Refusal(Exception):
-    """Raised by a handler in Python: the service answers "not ok" with this text."""
+    """A handler in Python raises this to refuse a request: the service answers "not ok" with this text."""
 
 
 class Service:
-    """An offered service: the node, the `ServiceType`, and the handler of requests."""
+    """An offered service: its node, its global name, its `ServiceType`, and the handler of requests."""
 
     lisp_name = "ROSLISP::SERVICE"
 
@@ -42,17 +42,17 @@ class Service:
         self.closed = False
 
     def respond(self, call: Call) -> RosMessage:
-        """The response to ``call``; what is raised is the failure."""
+        """Run the handler; returns the response to ``call``. An exception is the call's failure."""
         return self.handler(call.request)
 
     def close(self) -> None:
-        """The server goes away: whoever waits for an answer gets none."""
+        """End the service. All waiting calls are lost."""
         self.closed = True
         for call in list(self.pending):
             call.finish(lost=True)
 
     def submit(self, call: Call) -> None:
-        """Take ``call``; it is answered now, or later in a spin of the node."""
+        """Accept ``call``, and answer it now or in the node's next spin."""
         if self.closed:
             call.finish(lost=True)
             return
@@ -67,12 +67,16 @@ class OfCaller(Service):
     """A service whose handler gets the ``caller`` of `start_call` as its second argument."""
 
     def respond(self, call: Call) -> RosMessage:
+        """Run the handler with request and caller; returns the response to ``call``."""
         return self.handler(call.request, call.caller)
 
 
 class Call:
-    """One request on its way. When ``done``: ``failure`` is the server's text if it refused, ``lost`` that it gave no answer,
-    else ``response`` is the answer. ``when_done`` is called with the call. ``caller``: see `start_call`."""
+    """One call of a service.
+
+    When it is ``done``, ``failure`` is the server's text if it refused, ``lost`` is true if no answer came, else ``response`` is the
+    answer. At the end, ``when_done`` is called with the call. ``caller``: see `start_call`.
+    """
 
     __slots__ = ("service", "request", "when_done", "caller", "done", "response", "failure", "lost")
 
@@ -83,7 +87,7 @@ class Call:
         self.failure: str | None = None
 
     def serve(self) -> None:
-        """Have the handler answer."""
+        """Run the handler and finish the call."""
         if self.done:
             return
         try:
@@ -97,7 +101,7 @@ class Call:
             self.finish(response)
 
     def finish(self, response: RosMessage | None = None, failure: str | None = None, lost: bool = False) -> None:
-        """End the call; the first end counts."""
+        """End the call with ``response``, ``failure`` or ``lost``. Only the first end counts."""
         if not self.done:
             self.service.pending.discard(self)
             self.response, self.failure, self.lost, self.done = response, failure, lost, True
@@ -105,7 +109,7 @@ class Call:
 
 
 def exchange(service: Service, request: RosMessage) -> Call:
-    """Send ``request`` to the `Service` and park until it is answered; the finished `Call`."""
+    """Send ``request`` to ``service``, park until the answer comes, and return the finished `Call`."""
     task = kernel.current()
     call = Call(service, wire.transmit(request), lambda _: kernel.unpark(task))
     service.submit(call)
@@ -115,12 +119,12 @@ def exchange(service: Service, request: RosMessage) -> Call:
 
 
 def start_call(service: Service, request: RosMessage, when_done: Callable[[Call], object], caller: object = None) -> Call:
-    """Send ``request`` to the `Service` and return the `Call`, without waiting. To be called with the baton, in a task or not.
+    """Send ``request`` to ``service`` and return the `Call`, without waiting. Call it with the baton, in a task or not.
 
-    when_done: a function of the finished call; it is called in whatever task serves the request, or in none, and must not wait.
-    It may run before this function returns. caller: a client of another process; it has a set ``at_end`` of functions that are called
-    when it has gone, so that a service can end what it began for it, and ``limits``, how much it may ask for (`rosbridge.guard.Limits`). A
-    request that cannot be sent (a wrong type in a field) is a failed call.
+    ``when_done``: a function of the finished call. It runs in the task that handles the request, or in none, must not wait, and may
+    run before this function returns. ``caller``: a client of another process. It has a set ``at_end`` of functions to call when it
+    has gone, so that a service can end its work for it, and ``limits`` on its requests (`rosbridge.guard.Limits`). A request that
+    cannot be sent, such as one with a wrong type in a field, is a failed call.
     """
     call = Call(service, request, when_done, caller)
 

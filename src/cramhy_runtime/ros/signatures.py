@@ -1,4 +1,4 @@
-"""What the functions of this room take, by name. Only type checkers read this module: nothing imports it when a program runs."""
+"""Types of the arguments in this room. Only type checkers read this module: no code imports it when a program runs."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from .topics import Publication
 Text = str | LispString
 MessageType = type[RosMessage]
 TypeName = str | Symbol | MessageType
-"""What names a type of messages: ``"turtlesim/Pose"``, the symbol of its class, or the class itself."""
+"""The name of a message type: ``"turtlesim/Pose"``, the symbol of its class, or the class itself."""
 ServiceName = str | Symbol | ServiceType
 FieldPath = tuple[str, ...]
-"""The names of a field and of those that it is in, from the inside out: ``("X", "LINEAR")``."""
+"""The names of a field and the fields around it, from the inside out: ``("X", "LINEAR")``."""
 FieldSpecs = Sequence[tuple[FieldPath, object]]
 
 Parameter = str | int | float | bool | list["Parameter"] | dict[str, "Parameter"]
 """A value of the parameter server."""
 ParameterValue = str | int | float | bool | Sequence["ParameterValue"] | Mapping[str, "ParameterValue"]
-"""What a parameter can be set to."""
+"""A value for setting a parameter."""
 
 Handler = Callable[..., RosMessage]
-"""The function of a service: it gets the request and returns the response."""
+"""The handler of a service: a function that takes the request and returns the response."""
 Answers = Callable[[RosMessage], RosMessage | dict[str, object]]
-"""The function of a service that a Python program offers: its response, or the fields of that."""
+"""The handler of a service that a Python program offers: it returns the response, or the fields of that."""
 Observer = Callable[[str, str, bool], object]
-"""Told of what comes and goes: its kind, its name, and whether it is there now."""
+"""A function told of changes: the kind of thing, its name, and whether it is there now."""
 
 
 class Connection(Protocol):
@@ -47,7 +47,7 @@ class Connection(Protocol):
 
 
 class Answerable(Protocol):
-    """What takes the calls of a service."""
+    """An object that accepts the calls of a service."""
 
     name: str
 

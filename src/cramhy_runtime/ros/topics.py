@@ -1,7 +1,7 @@
 """The two ends of a topic: publications, and the subscriptions of nodes in Python.
 
-A publication knows its connections and hands them each message; there is no queue on this side, so what is published before
-somebody listens is lost unless the topic latches. A connection is any object with ``node``, ``type``, ``closed``,
+A publication knows its connections and gives them each message. There is no queue on this side, so a message without a
+subscriber is lost unless the topic latches. A connection is any object with ``node``, ``type``, ``closed``,
 ``receive(message)`` and ``spoiled(publication, message)``: `NativeSubscription` here, and the queue and task of the Lisp
 program's subscriptions in ``roslisp/topics.py``. Source: roslisp.md 6, wiki.ros.org/Topics.
 """
@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 
 
 class Publication:
-    """What ``advertise`` returns: one node's side of a topic. ``connections`` are subscriptions."""
+    """One node's publishing end of a topic (from ``advertise``). ``connections``: the connected subscriptions.
+
+    ``hidden``: how many of them belong to hidden nodes.
+    """
 
     __slots__ = ("node", "name", "type", "latch", "last_message", "connections", "hidden")
     lisp_name = "ROSLISP::PUBLICATION"
@@ -36,11 +39,11 @@ class Publication:
 
     @property
     def subscribers(self) -> int:
-        """How many connections there are, not counting those to hidden nodes."""
+        """The number of connections, without those to hidden nodes."""
         return len(self.connections) - self.hidden
 
     def connect(self, subscription: Connection) -> None:
-        """Write to ``subscription`` from now on; a latched message reaches it at once."""
+        """Send to ``subscription`` from now on, and a latched message at once. If its type differs, log an error instead."""
         if subscription in self.connections or subscription.closed:
             return
         if not same_on_the_wire(subscription.type, self.type):
@@ -52,20 +55,20 @@ class Publication:
             subscription.receive(wire.fresh(self.last_message))
 
     def mismatch(self, client: Node, message_type: MessageType) -> str:
-        """What this node says to ``client``, a node that wants messages of another type."""
+        """The text of the error about ``client``, a node that wants messages of ``message_type``, another type."""
         return (
             f"Client [{client.name}] wants topic {self.name} to have datatype [{message_type.ros_type}], "
             f"but our version has [{self.type.ros_type}]. Dropping connection."
         )
 
     def disconnect(self, subscription: Connection) -> None:
-        """Write to ``subscription`` no more."""
+        """Stop sending to ``subscription``."""
         if subscription in self.connections:
             self.connections.remove(subscription)
             self.hidden -= subscription.node.hidden
 
     def publish(self, message: RosMessage) -> int:
-        """Send ``message``, whatever it holds; the number of connections. Type errors are signalled here."""
+        """Check and send ``message``; returns the number of subscribers. A wrong value in a field is an error of serialisation."""
         if not self.connections and not self.latch:
             return 0
         received = wire.transmit(message)
@@ -76,9 +79,9 @@ class Publication:
         return self.send(received)
 
     def send(self, received: RosMessage) -> int:
-        """Send a message whose values are such as `wire.transmit` gives; the first receiver gets the object itself.
+        """Send ``received``, a message as from `wire.transmit`. The first receiver gets the object itself, the others get copies.
 
-        The value counts the connections that one may know of: not those to hidden nodes.
+        Returns the number of subscribers, without those of hidden nodes.
         """
         if self.latch:
             self.last_message = wire.fresh(received)
@@ -95,7 +98,7 @@ class Publication:
 
 
 class NativeSubscription:
-    """A subscription of a node in Python. The callback runs in the node's spin, or at once when the node does not spin."""
+    """A subscription of a node in Python. The callback runs in the node's spin, or at once if the node does not spin."""
 
     def __init__(self, node: Node, name: str, message_type: MessageType, callback: Callable[[Any], object], queue: int | None = None):
         self.node, self.name, self.type, self.callback = node, name, message_type, callback
@@ -103,6 +106,7 @@ class NativeSubscription:
         self.closed = False
 
     def receive(self, message: RosMessage) -> None:
+        """Call the callback with ``message`` at once, or queue it for the node's spin."""
         if self.node.spins:
             self.pending.append(message)
             self.node.inbox.append(self._handle)
@@ -120,11 +124,12 @@ class NativeSubscription:
             kernel.unhandled(kernel.current(), problem)
 
     def spoiled(self, publication: Publication, message: RosMessage) -> None:
-        """A message of another type came over the wire: roscpp cannot read it, says so, and goes on."""
+        """Log that ``message`` from ``publication`` has another type, and drop it, as roscpp does."""
         self.node.complain(
             f"Exception thrown when deserializing message of type [{message.ros_type}] from "
             f"[{publication.node.name}] on topic [{self.name}], which has type [{self.type.ros_type}]"
         )
 
     def close(self) -> None:
+        """End the subscription: waiting messages are not delivered."""
         self.closed = True

@@ -1,8 +1,8 @@
-"""What ROS tells types apart by: the md5 sum of a definition, and its complete text with all the messages that it is made of.
+"""The md5 sum of a message definition, and its complete text with all the messages inside. ROS tells types apart by them.
 
-Two programs agree on a message when its sums are equal, for the sum covers names, order and constants of all fields, also of
-those inside; comments and spaces do not count. The complete text is what a recording keeps, so that its readers need no
-definitions. Sources: wiki.ros.org/msg; roslisp.md 5.6 and 15.
+Two programs agree on a message if their sums are equal: the sum covers types, names, order and constants of all fields, also in
+the messages inside. Comments and spaces do not count. A recording keeps the complete text, so its readers need no definitions.
+Sources: wiki.ros.org/msg; roslisp.md 5.6 and 15.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def md5_of(message_type: MessageType | ServiceType) -> str:
 
 
 def same_on_the_wire(first: MessageType, second: MessageType) -> bool:
-    """Whether who expects messages of one class can read those of the other: ``tf/tfMessage`` and ``tf2_msgs/TFMessage``."""
+    """Whether two message classes have the same md5 sum, as ``tf/tfMessage`` and ``tf2_msgs/TFMessage`` have."""
     return first is second or md5_of(first) == md5_of(second)
 
 
@@ -45,7 +45,7 @@ def _md5_text(definition: Definition) -> str:
 
 
 def complete_text(message_class: MessageType) -> str:
-    """The definition of a message, followed by those of all messages that are part of it, each under its name."""
+    """The definition of a message class, followed by the definitions of all messages inside, each under its name."""
     parts: dict[str, MessageType] = {}
     _collect(message_class, parts)
     sections = [message_class.definition.text, *(f"MSG: {name}\n{part.definition.text}" for name, part in parts.items())]
@@ -60,7 +60,7 @@ def _collect(message_class: MessageType, parts: dict[str, MessageType]) -> None:
 
 
 def definition_text(message_type: MessageType | ServiceType) -> str:
-    """The complete text of a message class; of a `ServiceType` both halves, with a line of dashes between them."""
+    """The complete text of a message class, or of both halves of a `ServiceType` with a line of dashes between."""
     if isinstance(message_type, ServiceType):
         return f"{complete_text(message_type.request)}---\n{complete_text(message_type.response)}"
     return complete_text(message_type)

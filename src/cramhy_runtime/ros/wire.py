@@ -1,9 +1,9 @@
-"""What a message becomes on its way through the graph: roslisp's serialisation, without the bytes.
+"""Check and convert messages on their way through the graph: roslisp's serialisation, without the bytes.
 
-A message may hold anything; its types are looked at when it is sent. `transmit` gives the object that a receiver gets: a
-fresh one, with integers cut to their bits, reals as double-floats (a ``float32`` rounded to 32 bits), booleans as T or NIL,
-strings of Latin-1 characters. Errors are those of roslisp, signalled in the task of the sender (roslisp.md 5.2). Where in the message
-the wrong value is, their hint says; it is looked for only then.
+A message may hold any values; sending it checks their types. `transmit` returns the object for a receiver: a fresh one, with
+integers cut to their bits, reals as double-floats (a ``float32`` rounded to 32 bits), booleans as T or NIL, strings of Latin-1
+characters. The sender's task gets the errors of roslisp (roslisp.md 5.2). Their hint says where in the message the wrong value
+is; only an error starts the search for it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleError, TypeError_
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol
 from cramhy_runtime.ground.numbers import is_real, single
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import intern
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.utilities.generated_functions import generated_function
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
 M = TypeVar("M", bound="RosMessage")
 on_misfit: list[Callable[[str], object]] = []
-"""Called with the text that roslisp logs before it signals that something is no message; its log, further up, is in this list."""
+"""Functions of a text. They are called with the text that roslisp logs before the error about a value that is not a message.
+
+The log of roslisp, a higher module, adds itself here."""
 
 POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
     intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
@@ -36,7 +38,7 @@ POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
 
 
 class Misfit(Exception):
-    """A value cannot be sent. ``signal``: a function of the hint that signals the error of roslisp for it."""
+    """A value cannot be sent. ``signal(hint)`` signals roslisp's error for it."""
 
     def __init__(self, signal: Callable[[str | None], NoReturn]):
         super().__init__()
@@ -57,7 +59,7 @@ def _overflow(hint):
 
 
 def as_float(value: float | Symbol) -> float:
-    """A received real as a Python float: undoes the symbols for infinity and not-a-number."""
+    """A received real as a Python float. The symbols for infinity and not-a-number become floats too."""
     if value.__class__ is DoubleFloat:
         return float(value)
     if isinstance(value, Symbol):
@@ -66,15 +68,15 @@ def as_float(value: float | Symbol) -> float:
 
 
 def ros_text(text: str) -> str:
-    """``text`` as a message holds it: ROS has one byte for a character, so one with others than Latin-1 goes in as its bytes in UTF-8.
+    """``text`` in the form that messages hold. ROS has one byte per character.
 
-    `message_json` lets it out as it was.
+    So a text with characters outside Latin-1 becomes its bytes in UTF-8; `message_json` turns them back into the text.
     """
     return text if text.isascii() or max(text) <= "\xff" else text.encode("utf-8", "replace").decode("latin-1")
 
 
 def lisp_float(value: float) -> DoubleFloat | Symbol:
-    """A float as a receiver gets it: a double-float, or a symbol when it is not finite."""
+    """A float in the form that receivers get: a double-float, or a symbol if it is not finite."""
     if math.isfinite(value):
         return DoubleFloat(value)
     if value != value:
@@ -188,11 +190,11 @@ _READY = {
     "bool": "{0} if {0} is True or {0} is None else {1}({0})",
     "string": "{0} if {0}.__class__ is str and {0}.isascii() else {1}({0})",
 }
-"""What is written out for a field whose value usually can be sent as it is; for the others the converter is called."""
+"""Generated expressions for fields whose value usually can be sent as it is. All other fields call the converter."""
 
 
 def _transmitter(cls: Any) -> Callable[[Any], Any]:
-    """Write out, compile and keep the function that transmits messages of class ``cls``."""
+    """Generate, compile and keep the function that transmits messages of class ``cls``."""
     scope = {"new": cls.__new__, "cls": cls, "Double": DoubleFloat, "floats": (DoubleFloat, float), "isfinite": math.isfinite}
     scope["single"] = single
     lines = ["result = new(cls)"]  # written out once per type: it is on the path of every message
@@ -208,7 +210,7 @@ def _transmitter(cls: Any) -> Callable[[Any], Any]:
 
 
 def transmit(message: M) -> M:
-    """The fresh object that a receiver of ``message`` gets. Signals the type errors of serialisation."""
+    """The fresh object that a receiver of ``message`` gets. A wrong value in a field is a type error of serialisation."""
     cls = message.__class__
     try:
         return (_transmitters.get(cls) or _transmitter(cls))(message)
@@ -228,7 +230,7 @@ def _converter(field):
 
 
 def _misplaced(message):
-    """Where in MESSAGE the first value is that cannot be sent: its path as ROS writes it, the type it should have, the value."""
+    """Find the first value in ``message`` that cannot be sent: its path as in ROS, the expected type, the value."""
     for field in message.fields:
         value = getattr(message, field.attribute)
         parts = [(field.name, value)]
@@ -253,7 +255,7 @@ _copiers: dict[type, Callable[[Any], Any]] = {}
 
 
 def _copier(cls: Any) -> Callable[[Any], Any]:
-    """Write out, compile and keep the function that copies messages of class ``cls``."""
+    """Generate, compile and keep the function that copies messages of class ``cls``."""
     scope = {"new": cls.__new__, "cls": cls, "fresh": fresh}
     lines = ["result = new(cls)"]
     for field in cls.fields:
@@ -269,6 +271,6 @@ def _copier(cls: Any) -> Callable[[Any], Any]:
 
 
 def fresh(message: M) -> M:
-    """One more copy of an object that `transmit` gave: what another receiver gets."""
+    """A copy, for another receiver, of an object from `transmit`."""
     cls = message.__class__
     return (_copiers.get(cls) or _copier(cls))(message)

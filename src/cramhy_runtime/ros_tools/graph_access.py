@@ -11,6 +11,8 @@ from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 
+OPEN_PAGE = "/cramhy/open_page"
+"""The service by which another terminal asks a session for its page."""
 reached = []
 """The graphs that were reached through a server, which may be asked for types (`there`)."""
 

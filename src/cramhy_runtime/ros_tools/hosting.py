@@ -2,8 +2,8 @@
 
 All nodes of a session live in its process. So ``rosrun`` asks the session to start the program there, prints the lines of its log, which
 come on ``/cramhy/program_log``, and ends it with Ctrl-C. A terminal that is killed cannot ask for that: what a client has started ends
-with its connection at the latest. A `Host` offers that to clients of the session's server, on a hidden node; it starts nodes of packages
-that are part of cramhy, and evaluates nothing.
+with its connection at the latest. The session's page opens when another terminal asks for it. A `Host` offers all that to clients of the
+session's server, on a hidden node; it starts nodes of packages that are part of cramhy, and evaluates nothing.
 """
 
 from __future__ import annotations
@@ -16,15 +16,18 @@ from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.services import OfCaller, Refusal, Service
 from ..ros.wire import ros_text
+from ..turtlesim import window
 from ..turtlesim.executables import PROGRAMS
 from cramhy_runtime.turtlesim.executables import start as start_executable
+from ..turtlesim.node import Turtlesim, start_waiting
+from ..turtlesim.roscpp import naming_of
 
 LOG = "/cramhy/program_log"
-SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode"}
+SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "open_page": "OpenPage"}
 MOST_ARGUMENTS = 10_000
 """Characters in the arguments of a program that a client starts."""
 SHARED = ("turtlesim_node",)
-"""What runs once: who starts it a second time under its name looks on, as at a window."""
+"""What runs once: whoever starts it a second time under its name looks on, as at a window."""
 
 
 class Host:
@@ -55,25 +58,48 @@ class Host:
         """(name of the node, whether it was there before, its log so far). The program ends with the caller, see `services.start_call`."""
         if package != "turtlesim" or executable not in PROGRAMS:
             raise Refusal(f"cramhy has no executable {package}/{executable}; turtlesim has {', '.join(sorted(PROGRAMS))}.")
-        there = self.graph.nodes.get("/turtlesim") if executable in SHARED and not arguments else None
-        if there is not None and hasattr(there, "program"):
-            self.tell(there.program)
-            return there.name, True, list(there.program.lines)
-
-        if caller is not None:
-            self._check(arguments, caller)
-        before = len(self.graph.parameters.names())
 
         def fail(condition):
             raise Refusal(condition.report())
 
-        program = conditions.handler_case([(Error, fail)], lambda: start_executable(executable, arguments))
+        def in_ros(function, *words):
+            return conditions.handler_case([(Error, fail)], lambda: function(*words))
+
+        there = in_ros(self._simulator_that_is_meant, arguments) if executable in SHARED else None
+        if there is not None:
+            self.tell(there)
+            return there.node.name, True, list(there.lines)
+        if caller is not None:
+            self._check(arguments, caller)
+        before = len(self.graph.parameters.names())
+        program = in_ros(start_executable, executable, arguments)
         self.tell(program)
         if caller is not None:
+            program.of_client = True
             self._parameters += max(0, len(self.graph.parameters.names()) - before)
             caller.at_end.add(program.shutdown)
             program.node.on_shutdown.append(lambda: caller.at_end.discard(program.shutdown))
         return program.node.name, False, list(program.lines)
+
+    def _simulator_that_is_meant(self, arguments):
+        """The simulator ``/turtlesim`` of the session, if a ``turtlesim_node`` with these arguments would take its name; else ``None``.
+
+        A plan may be driving the session's own turtle. So whoever starts another one under its name looks on, and ends nothing by Ctrl-C.
+        """
+        naming = naming_of(Turtlesim.name, arguments=arguments)
+        if naming.node_name != "/turtlesim":
+            return None
+        if naming.node_name not in self.graph.nodes:
+            start_waiting()
+        there = getattr(self.graph.nodes.get(naming.node_name), "program", None)
+        if there is None or not (naming.remappings or naming.private_parameters):
+            return there
+        if not there.of_client:
+            raise Refusal(
+                "/turtlesim is the session's own, and would end if another one took its name. Give yours another name: __name:=other. "
+                "To look on at the session's, leave out the words after turtlesim_node."
+            )
+        return None
 
     def _check(self, arguments, caller):
         """Refuse a client that asks for too much: what its programs set stays among the parameters when they end."""
@@ -124,3 +150,13 @@ class Host:
             raise Refusal(f"There is no node {name}.")
         node.shutdown()
         return ()
+
+    def open_page(self, asked, shows):
+        """(address of the session's page, its port, whether a browser was opened for it before); the page opens if it is not open yet."""
+        try:
+            page = window.page(show=False, asked=asked is True)
+        except window.NoPage as problem:
+            raise Refusal(str(problem)) from None
+        seen = page.seen
+        page.seen = seen or shows is True
+        return page.url, page.port, seen or None

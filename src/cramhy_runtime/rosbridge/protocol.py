@@ -22,7 +22,7 @@ from ..ros import services
 from ..ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json
 from .encoding import COMPRESSIONS, text_of, weight
 from .hub import Refused
-from .no_answers import SESSION_ENDS, reason
+from .no_answers import NOBODY, SESSION_ENDS, reason
 from .parsing import json_type
 
 LEVELS = {"info": 0, "warning": 1, "error": 2, "none": 3}
@@ -300,7 +300,7 @@ class Session:
         name = self.hub.name(operation.get("service"), "service")
         service = self.hub.graph.services.get(name)
         if service is None:
-            raise Refused(f"Nobody offers the service {name}.")
+            raise Refused(NOBODY.format(name))
         if len(self.calls) >= self.limits.calls:
             raise Refused(f"{len(self.calls)} of your calls are not answered yet; more are not allowed.")
         request = request_from_json(service.type.request, operation.get("args"), self.hub.graph.now())

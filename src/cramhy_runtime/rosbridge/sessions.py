@@ -23,7 +23,7 @@ from dataclasses import MISSING, asdict, dataclass, fields
 from pathlib import Path
 
 from cramhy_runtime.storage import owners
-from cramhy_runtime.storage.unfinished import CAREFULLY
+from cramhy_runtime.storage.partial_names import CAREFULLY
 from . import processes
 from .processes import Identity
 

@@ -15,16 +15,16 @@ A process that is killed has no time to tidy up. The name of an unfinished file 
 with the process, also in another container. An unfinished file without a lock is removed by the next start, or by the next write into
 that folder.
 
-Where the parts are: `parts` is a file that is being written, in one go or for hours; `whole` writes a file at once, `trees` several;
-`unfinished` is about their names and locks; `leftovers` removes or recovers what killed processes left; `backups` keeps the older version
-of a file; `sealed` is for code that is kept, and proves whose it is and that it is undamaged before anybody reads it; `owners` says whose
-a file is; `system_errors` tells what to try.
+`partial_files` writes a file, in one go or for hours; `partial_names` gives it its names and locks meanwhile. `atomic_write` replaces a
+file at once, `file_transactions` several. `leftovers` removes or recovers what killed processes left. `backups` keeps the older version
+of a file. `checksummed_code` is for compiled code: it proves whose a file is and that it is undamaged before anybody reads it. `owners`
+says whose a file is, and `system_errors` what to try.
 """
 
 from .leftovers import tidy, tidy_once
-from .parts import Part, growing
+from .partial_files import Part, growing
 from .system_errors import why
-from .trees import Tree
-from .whole import write_whole, writing
+from .file_transactions import Tree
+from .atomic_write import write_whole, writing
 
 __all__ = ["Part", "Tree", "growing", "tidy", "tidy_once", "why", "write_whole", "writing"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from .unfinished import PART, forget, part_name
+from .partial_names import PART, forget, part_name
 
 
 def replace(new, place, backup):

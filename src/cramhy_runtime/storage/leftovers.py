@@ -11,7 +11,7 @@ import os
 import stat
 
 from . import owners
-from .unfinished import CAREFULLY, RECORDING, fcntl, free_name, lock, parsed, same_file
+from .partial_names import CAREFULLY, RECORDING, fcntl, free_name, lock, parsed, same_file
 
 _tidied = set()
 

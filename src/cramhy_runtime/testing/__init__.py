@@ -1,4 +1,4 @@
-"""Testing plans: virtual time, seeds, all schedules, faults, and what must not be left. With pytest or without.
+"""Testing plans: virtual time, seeds, all schedules, faults, and leftovers. With pytest or without.
 
     from cramhy_runtime import cpl, testing
 
@@ -6,15 +6,16 @@
         door = cpl.make_fluent()
         return cpl.top_level(lambda: cpl.par(lambda: cpl.wait_for(door, timeout=5), lambda: door.set(True)))
 
-    testing.explore(plan)                                                     # the same result, whoever goes first
+    testing.explore(plan)                                                     # the same result under all schedules
     testing.run(plan, faults=[testing.faults.at(task="*#1/2", action="fail")])    # and when a branch fails
 
 A plan is a Python function or Lisp, as a text or a form. Each run has a kernel of its own, in virtual time, on either back end, so
-tests take milliseconds and disturb nothing. docs/testing.md has a whole example.
+tests take milliseconds and do not disturb the session. docs/testing.md has a whole example.
 
-Where the parts are: ``runs`` (a run, its outcome), ``plans`` (what can be run) · ``schedules``, ``exploration`` (who goes first) ·
-``traces`` (marks and their order) · ``park_points``, ``faults`` (what may happen where) · ``leftovers`` (tasks, observers, timers) ·
-``watched`` (the kernel that sees all this), ``labels`` (names of tasks that are the same in every run) · ``package`` (the Lisp face).
+Where the parts are: ``runs`` (a run and its outcome), ``plans`` (functions and Lisp as plans) · ``schedules``, ``exploration`` (the order
+of tasks) · ``traces`` (marks and their order) · ``park_points``, ``faults`` (faults at waiting points) · ``leftovers`` (tasks, observers,
+timers) · ``watched`` (the kernel that records all this), ``labels`` (names of tasks that are the same in every run) · ``package`` (the
+Lisp packages).
 """
 
 from . import faults

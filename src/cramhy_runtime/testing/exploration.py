@@ -1,12 +1,11 @@
-"""Exploring a plan: does its result depend on who happens to go first?
+"""Exploring a plan: does its result depend on the order in which its tasks run?
 
     testing.explore(plan, schedules=1000)
 
-runs it with first come, first served, and then with 999 seeds, and compares what comes of it. When a run differs, its schedule is
-shrunk, as property-based testing shrinks an input: to the shortest prefix of decisions that still makes the difference, and of these
-to the fewest that are not those of first come, first served. The message says, decision by decision, who could go on and who went,
-and how to see it again. The idea of exploring schedules under a seed is that of systematic concurrency testing (CHESS, loom);
-one baton makes it cheap here.
+runs it first come, first served, then with 999 seeds, and compares the outcomes. If a run differs, its schedule is shrunk, as
+property-based testing shrinks an input: to the shortest prefix of decisions that still makes the difference, and then to the fewest
+decisions that differ from first come, first served. The message shows for each decision which tasks could go on and which one did, and
+how to repeat it. Exploring schedules under a seed is the idea of systematic concurrency testing (CHESS, loom); with one baton it is cheap.
 """
 
 from __future__ import annotations
@@ -32,10 +31,10 @@ MOST_RUNS_TO_SHRINK = 2000
 
 
 class DependsOnLuck(AssertionError):
-    """A plan whose result is not the same, or not right, under every schedule.
+    """The result of a plan is not the same, or not right, under every schedule.
 
-    ``schedule``: the shortest that shows it; ``seed``: the one it was found with, None for first come, first served; ``outcome``:
-    what came of it; ``expected``: what came of first come, first served; ``decisions``: those of the schedule.
+    ``schedule`` is the shortest that shows it, and ``decisions`` are its decisions. ``seed`` is the seed with which it was found, None for
+    first come, first served. ``outcome`` is the outcome of the schedule, ``expected`` that of first come, first served.
     """
 
     def __init__(
@@ -52,7 +51,7 @@ class DependsOnLuck(AssertionError):
 
 
 class Exploration(Generic[T]):
-    """What `explore` saw: how many ``runs``, the ``different`` schedules among them, and the common ``outcome``."""
+    """The result of `explore`: the number of ``runs``, of ``different`` schedules among them, and the common ``outcome``."""
 
     __class_getitem__ = subscripted
 
@@ -72,12 +71,13 @@ def explore(
     replay: Sequence[int] | None = None,
     time_limit: float | None = TIME_LIMIT,
 ) -> Exploration[T]:
-    """Run ``plan`` under so many schedules and see that nothing depends on luck; returns an `Exploration`.
+    """Run ``plan`` under many schedules and check that the result does not depend on the order of tasks. Returns an `Exploration`.
 
-    The first run is first come, first served, the next use the seeds 1, 2, ...; each has a fresh kernel. Without ``check`` all runs
-    must end alike (`Outcome.same`). ``check(value)`` says of the plan's first value whether it is right: by raising an AssertionError
-    or by returning false (a Python function may return None for right); an error that leaves the plan is wrong then. A check that takes an
-    `Outcome` is marked so by ``check.of_outcome = True``. ``replay``: a schedule, to run that one only. Raises `DependsOnLuck`.
+    schedules: the number of runs, each in a fresh kernel. The first is first come, first served; the others use the seeds 1, 2, ...
+    check: without it all runs must end alike (`Outcome.same`). ``check(value)`` gets the plan's first value; if the value is wrong, it
+    raises an AssertionError or returns false (a Python function may return None for right). An error that leaves the plan counts as wrong.
+    A check with the attribute ``of_outcome = True`` gets the `Outcome` instead. backend: "threads" or "greenlet". replay: a schedule, to
+    run only that one. time_limit: seconds of virtual time for each run. Raises `DependsOnLuck`, and ValueError if ``replay`` does not fit.
     """
     function = plan_of(plan)
     if isinstance(check, str):
@@ -123,6 +123,7 @@ class _Explorer(Generic[T]):
         self.runs = 0
 
     def run(self, prefix: Sequence[int] = (), seed: int | None = None, noting: bool = False) -> tuple[Outcome[T], Schedule]:
+        """Run the plan once. Returns the outcome and the schedule."""
         schedule = Schedule(prefix, seed, noting)
         outcome = observe(self.function, self.backend, schedule=schedule, time_limit=self.time_limit)
         self.runs += 1
@@ -131,7 +132,7 @@ class _Explorer(Generic[T]):
         return outcome, schedule
 
     def wrong(self, outcome: Outcome[T]) -> str | None:
-        """What is wrong with OUTCOME, as text; None if nothing is."""
+        """A text that says what is wrong with ``outcome``, or ``None``."""
         if self.check is None:
             return None if outcome.same(self.expected) else "the result is another one"
         if getattr(self.check, "of_outcome", False):
@@ -145,11 +146,12 @@ class _Explorer(Generic[T]):
             return f"the check says: {problem or 'no'}"
 
     def breaks(self, choices: Sequence[int]) -> bool:
+        """Whether the schedule ``choices`` fits the plan and gives a wrong outcome."""
         outcome, schedule = self.run(choices)
         return schedule.misfit is None and self.wrong(outcome) is not None
 
     def shrink(self, choices: Sequence[int]) -> list[int]:
-        """The shortest prefix of CHOICES that breaks the plan, with as many zeros as possible."""
+        """The shortest prefix of ``choices`` that breaks the plan, with as many zeros as possible."""
         choices = without_defaults(choices)
         limit = self.runs + MOST_RUNS_TO_SHRINK
         for length in range(len(choices)):
@@ -166,6 +168,7 @@ class _Explorer(Generic[T]):
         return without_defaults(choices)
 
     def report(self, choices: list[int], seed: int | None) -> NoReturn:
+        """Raise `DependsOnLuck` for the schedule ``choices``."""
         outcome, schedule = self.run(choices, noting=True)
         decisions = schedule.decisions[: len(choices)]
         found = "first come, first served" if seed is None else f"seed {seed}"

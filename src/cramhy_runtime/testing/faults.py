@@ -1,10 +1,10 @@
-"""Faults: what may happen to a branch at a park point, on purpose.
+"""Faults: events that happen to a branch at a park point, on purpose.
 
     fault = faults.at(task="*PAR-CHILD-#1/2", park="sleep", nth=2, action="evaporate")
     outcome = testing.run(plan, faults=[fault])
 
-Somebody ends the branch, suspends it and lets it go on, or an error arises where it waits. A plan must get through all of it: its
-cleanup forms run once, its other branches end, nothing is left.
+A fault ends the branch, suspends it and lets it go on, or raises an error where it waits. A plan must survive all of them: its
+cleanup forms run once, its other branches end, and nothing is left.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class InjectedError(Exception):
 
 
 class Fault:
-    """Something that happens once, at the park point that `at` describes. ``happened``: the point, or None."""
+    """A fault that happens once, at the park point that `at` describes. ``happened`` is that point, or None."""
 
     def __init__(self, task: str, park: str | None, nth: int, action: Action, seconds: float, entering: bool):
         self.task, self.park, self.nth, self.action, self.seconds, self.entering = task, park, nth, action, seconds, entering
@@ -48,18 +48,18 @@ class Fault:
         self.timer: Timer | None = None
 
     def over(self) -> None:
-        """The run is over: nothing is to be resumed any more."""
+        """Called when the run is over: resume nothing any more."""
         if self.timer is not None:
             self.timer.cancel()
 
     def meets(self, point: ParkPoint) -> bool:
-        """True if it has not happened yet and this is the point."""
+        """True if the fault has not happened yet and this is its point."""
         if self.happened is not None or not (self.task == point.task or fnmatchcase(point.task, _pattern(self.task))):
             return False
         return self.nth == point.number if self.park is None else self.park == point.name and self.nth == point.nth
 
     def happen(self, kernel: Kernel, me: Task[object], point: ParkPoint) -> None:
-        """Have it happen to the kernel's task ME: before it parks (``entering``), or as the first thing after."""
+        """Let the fault happen to the kernel's task ``me``: before it parks (``entering``), or as soon as it has parked."""
         self.happened = point
         task = me.owner
         if self.entering:
@@ -107,12 +107,12 @@ def at(
     seconds: float = SUSPENDED_FOR,
     entering: bool = False,
 ) -> Fault:
-    """A fault that happens to ``task``, a label or a pattern of one (``*``, ``?``), at its ``nth`` park point.
+    """A fault that happens to ``task``, a label or a pattern of labels (``*``, ``?``), at its ``nth`` park point.
 
-    ``park``: count points of this name only, as ``"sleep"`` or ``"wait-for"`` (see ``park_points.NAMES``). ``action``:
-    ``"evaporate"``; ``"fail"`` with a plan failure `InjectedFailure`; ``"raise"`` an error `InjectedError`;
-    ``"suspend-and-resume"`` after ``seconds``; or a function that is called on the task's own stack. ``entering``: before the task
-    parks instead of as soon as it has parked.
+    park: count only points of this name, such as ``"sleep"`` or ``"wait-for"`` (see ``park_points.NAMES``). action: ``"evaporate"``;
+    ``"fail"`` with a plan failure `InjectedFailure`; ``"raise"`` an error `InjectedError`; ``"suspend-and-resume"`` after ``seconds`` of
+    virtual time; or a function, which is called on the task's own stack. entering: let it happen before the task parks, not as soon as it
+    has parked. Another action, or an ``nth`` below 1, is a ValueError.
     """
     if not callable(action) and action not in ACTIONS:
         raise ValueError(f'There is no action "{action}". Choose one of {", ".join(ACTIONS)}, or give a function.')

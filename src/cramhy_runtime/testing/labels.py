@@ -1,8 +1,8 @@
 """Names of tasks that are the same in every run.
 
-The plan language names a task when somebody asks, ``[PAR-CHILD-#1/2]-7``, and counts the askings. A schedule or a fault must mean
-the same task tomorrow, so a test uses labels: the names without that number, from the top-level down, ``TOP-LEVEL/PAR-CHILD-#1/2``.
-Of siblings with one name the second is called ``... (2)``, in the order in which they were started.
+The plan language names a task when its name is first asked for, ``[PAR-CHILD-#1/2]-7``, and counts these names. A schedule or a fault must
+mean the same task in every run, so tests use labels: the names without that number, from the top-level down,
+``TOP-LEVEL/PAR-CHILD-#1/2``. Siblings of the same name are numbered in the order in which they started; the second is ``... (2)``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _NUMBERED = re.compile(r"\[(.*)\]-\d+$")
 
 
 class Births:
-    """The tasks that one task has started, in order, and their labels as far as somebody has asked."""
+    """The tasks that one task has started, in order, and the labels that were asked for."""
 
     __slots__ = ("born", "known", "counts")
 
@@ -31,7 +31,7 @@ class Births:
         self.counts: Counter[str] = Counter()
 
     def label_until(self, task: Task[object], prefix: str) -> None:
-        """Label the tasks up to TASK in their order of birth."""
+        """Label the tasks up to ``task`` in the order in which they started."""
         while True:
             entry = self.born[self.known]
             other = None if isinstance(entry, str) else entry()
@@ -47,14 +47,14 @@ class Births:
 
 
 def plain_name(task: Named | None) -> str:
-    """The task's own name, without brackets and number."""
+    """The own name of ``task``, without brackets and number."""
     name = "a task" if task is None else str(task.name)
     numbered = _NUMBERED.match(name)
     return numbered[1] if numbered else name.removeprefix("[").removesuffix("]")
 
 
 def born(task: Task[object], parent: Task[object]) -> None:
-    """Note that PARENT has started TASK."""
+    """Note that ``parent`` has started ``task``."""
     births = getattr(parent.local, "births", None)
     if births is None:
         births = parent.local.births = Births()

@@ -1,6 +1,6 @@
-"""What must not be left when a plan has ended: tasks, observers, timers, threads.
+"""Leftovers: tasks, observers, timers and threads, none of which may be left when a plan has ended.
 
-`assert_nothing_left` looks at a kernel in whole, `assert_all_dead` and `assert_tree` at the tasks of one plan, by their labels
+`assert_nothing_left` looks at a whole kernel, `assert_all_dead` and `assert_tree` at the tasks of one plan, by their labels
 (``TOP-LEVEL/PAR-CHILD-#1/2``) or their names in the task tree.
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def leftovers(watched: WatchedKernel) -> list[str]:
-    """What is left on a kernel of `virtual_time`, as texts; an empty list when nothing is."""
+    """Texts about everything that is left on a kernel of `virtual_time`."""
     finished_plans.forget()  # the task tree of the last plan is kept on purpose, for whoever asks for its episode
     found = [
         f"task {label(task)} is alive ({task.state}, waits for {task.describe_why() or 'nothing'})"
@@ -51,7 +51,7 @@ def leftovers(watched: WatchedKernel) -> list[str]:
 
 
 def _observed(watched: WatchedKernel) -> list[str]:
-    """What is wrong with the fluents that somebody still holds."""
+    """Texts about the waiters, callbacks and nets of fluents that are still in use."""
     found = []
     for fluent in watched.living_fluents():
         if fluent.waiters:
@@ -66,31 +66,34 @@ def _observed(watched: WatchedKernel) -> list[str]:
 
 
 def assert_nothing_left(watched: WatchedKernel | None = None, allowed: Iterable[str] = ()) -> None:
-    """No task but the main one, no timer, no thread, no waiter, callback or net on a fluent made since `watch_fluents`.
+    """Assert that the kernel has no task but the main one, no timer, no thread, and no waiter, callback or net on a fluent made since
+    `watch_fluents`.
 
-    ``allowed``: patterns of texts that may be left.
+    watched: a kernel of `virtual_time`, by default the active one. allowed: patterns of texts about leftovers that are allowed.
+    Raises AssertionError.
     """
     complain([text for text in leftovers(watched or kernel.active()) if not any(fnmatchcase(text, pattern) for pattern in allowed)])
 
 
 def complain(found: Sequence[str]) -> None:
-    """The AssertionError of what is left, if anything is."""
+    """Raise an AssertionError with the texts ``found``, if there are any."""
     if found:
         raise AssertionError("Something is left:\n" + "\n".join(f"  {text}" for text in found))
 
 
 def assert_all_dead(tree_or_tasks: TaskTreeNode | Sequence[AbstractTask[object]]) -> None:
-    """All tasks of a task tree, or of a list, are dead."""
+    """Assert that all tasks of a task tree, or of a list, are dead. Raises AssertionError."""
     alive = [task for _, task in _tasks(tree_or_tasks) if task.alive]
     if alive:
         raise AssertionError("Alive: " + ", ".join(f"{plain_name_of(task)} {task.status.name.lower()}" for task in alive))
 
 
 def assert_tree(tree: TaskTreeNode, expected: Mapping[str, str]) -> None:
-    """The tasks of a task tree have the statuses that ``expected`` says: {pattern of a path: status}.
+    """Assert that the tasks of a task tree have the statuses in ``expected``, a dict {pattern of a path: status}.
 
-    A path is written from the top, ``"drive-home/tagged-grasp"``, its parts in lower case; a pattern may use ``*``. Every pattern
-    must fit a task, and all tasks that it fits must have its status, as ``"succeeded"``, ``"failed"`` or ``"evaporated"``.
+    A path is written from the top, ``"drive-home/tagged-grasp"``, with its parts in lower case; a pattern may use ``*``. Every pattern
+    must fit a task, and all tasks that it fits must have its status, such as ``"succeeded"``, ``"failed"`` or ``"evaporated"``.
+    Raises AssertionError.
     """
     statuses = {path: task.status.name.lower() for path, task in _tasks(tree)}
     wrong = []
@@ -121,5 +124,5 @@ def _word(word: object) -> str:
 
 
 def plain_name_of(task: AbstractTask[object]) -> str:
-    """The name of a plan's task without brackets and number."""
+    """The label of a task of a plan, or if it is not started its name without brackets and number."""
     return label(task.kernel_task) if task.kernel_task is not None else plain_name(task)

@@ -1,4 +1,4 @@
-"""The Lisp face: package CRAMHY-TESTING with ``mark``, and TESTING-USER, in which texts of plans are read.
+"""The Lisp packages: CRAMHY-TESTING with ``mark``, and TESTING-USER, in which texts of plans are read.
 
 They are made when a program first names one of them (`repl.session`).
 """

@@ -1,11 +1,10 @@
-"""Park points: where a task gives the baton away, by name.
+"""Park points: the places where a task gives the baton away, with names.
 
-Everything that can happen to a plan from outside happens at such a point: a sibling fails, a parent ends, somebody suspends it. A
-point has a stable name, that of the operation which waits: ``wait-for``, ``sleep``, ``branches`` (a parallel form for its
-branches), ``cleanup`` (a form for the death of branches that it has ended), ``end`` (of another task), and those in `NAMES`.
+Everything that can happen to a task from outside happens at such a point: a sibling fails, a parent ends, another task suspends it. A
+point has a stable name, that of the operation that waits: ``wait-for``, ``sleep``, ``branches`` (a parallel form waits for its branches),
+``cleanup`` (a form waits for the death of branches that it has ended), ``end`` (of another task), and those in `NAMES`.
 
-Nothing of this is paid for outside of tests: the name is found, by looking which function waits, only in the kernel that tests
-start.
+This costs nothing outside of tests: only the kernel that tests start finds the name, by looking which function waits.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ NAMES = {
     "cpl/tasks/waiting.py:sleep_star": "sleep",
     "cpl/tasks/parallel_children.py:watch": "with-parallel-childs",
     "cpl/tasks/branches.py:Branches.wait": "branches",
-    "cpl/tasks/tasks.py:end_tasks": "cleanup",
+    "cpl/tasks/ending.py:end_tasks": "cleanup",
     "cpl/tasks/tasks.py:AbstractTask.join": "end",
     "cpl/tasks/tasks.py:_evaporate": "evaporation",
     "cpl/tasks/tasks.py:AbstractTask.suspend": "suspension",
@@ -31,7 +30,7 @@ NAMES = {
     "process_modules/executing.py:_attempt": "pm-execute",
     "process_modules/modules.py:ProcessModule.withdraw": "cleanup",
 }
-"""The functions that wait, by file and name, and what their waiting is called."""
+"""The functions that wait, by file and name → the name of their park points."""
 
 ORDER = "cpl/tasks/tasks.py:AbstractTask._await_constraints"  # waits by wait-for, for the steps before in a partial order
 OTHER = "park"
@@ -41,7 +40,7 @@ _known: dict[CodeType, str] = {}  # what each code object is
 
 
 def name_of_wait(frame: FrameType | None) -> str:
-    """What the innermost function of `NAMES` from FRAME outwards is called; ``park`` if none of them is near."""
+    """The name for the innermost function of `NAMES` from ``frame`` outwards, or ``park`` if none of them is near."""
     for _ in range(_FARTHEST):
         if frame is None:
             break
@@ -70,8 +69,11 @@ def _called_by(frame: FrameType, name: str) -> bool:
 
 
 class ParkPoint:
-    """One time that a task parked: the label of the ``task``, the ``name`` of the point, how manyeth of the task's points it is
-    (``number``) and of those with this name (``nth``), the ``time``."""
+    """One time that a task parked.
+
+    ``task`` is the label of the task, ``name`` the name of the point, and ``time`` is in seconds. ``number`` counts all points of the task,
+    and ``nth`` those of this name, both from 1.
+    """
 
     __slots__ = ("task", "name", "number", "nth", "time")
 

@@ -1,8 +1,8 @@
-"""What can be run as a plan: a Python function, the text of a Lisp program, or a Lisp form.
+"""Plans for tests: a Python function, the text of a Lisp program, or a Lisp form.
 
-Of a text all forms but the last are evaluated once: they are its definitions. The last one is the plan, compiled once and called
-in every run, so what a run changes should be made in it (``let``), not in a global variable. Names are those of the package
-TESTING-USER, which has the plan language and ``mark``, unless the text begins with ``in-package``.
+All forms of a text but the last are its definitions, and are evaluated once. The last form is the plan. It is compiled once and called
+in every run, so it should make the objects that a run changes (``let``), and not use global variables for them. Names are those of the
+package TESTING-USER, which has the plan language and ``mark``, unless the text begins with ``in-package``.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _AT_ONCE = (sym("IN-PACKAGE"), sym("DEFPACKAGE"))
 
 
 def plan_of(plan: Plan[T]) -> Callable[[], T]:
-    """The function of no arguments that runs ``plan``."""
+    """The function of no arguments that runs ``plan``: a function, a text or a form. Other objects are a TypeError."""
     if callable(plan):
         return plan
     if isinstance(plan, str):
@@ -39,7 +39,7 @@ def plan_of(plan: Plan[T]) -> Callable[[], T]:
 
 
 def with_lisp(thunk: Callable[[], T]) -> T:
-    """Call ``thunk`` with the Lisp image made, in a kernel of its own, in the package TESTING-USER."""
+    """Make the Lisp image if necessary, and call ``thunk`` in a kernel of its own, in the package TESTING-USER."""
     from .. import session
     from cramhy_runtime.ground.dynamic import binding
     from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE

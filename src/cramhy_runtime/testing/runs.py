@@ -1,7 +1,7 @@
 """Running a plan once, in a kernel of its own: in virtual time, with a seed, a schedule, or faults.
 
-`virtual_time` gives a block its own kernel; `run` does that for one plan and returns what came of it as an `Outcome`. Neither
-disturbs the kernel that was active before, which is put aside meanwhile. A plan is a Python function, or Lisp: a text or a form.
+`virtual_time` gives a block its own kernel. `run` does that for one plan and returns an `Outcome`. Neither disturbs the kernel that was
+active before, which is put aside meanwhile. A plan is a Python function, or Lisp: a text or a form.
 """
 
 from __future__ import annotations
@@ -41,17 +41,17 @@ def virtual_time(
     faults: Sequence[Fault] = (),
     time_limit: float | None = TIME_LIMIT,
 ) -> Iterator[WatchedKernel]:
-    """A block with a kernel of its own, in virtual time: ``with virtual_time() as clock: ...; clock.now()``.
+    """``with virtual_time() as clock: ...; clock.now()`` gives the block a kernel of its own, in virtual time.
 
-    ``backend``: ``"threads"`` or ``"greenlet"``. ``seed``: a number that shuffles which of the runnable tasks goes on, as
-    ``--seed`` does; ``schedule``: a list of choices, or a `Schedule`, instead. ``faults``: see `faults.at`. ``time_limit``: in
-    seconds of virtual time. Gives the kernel. Tasks that are left when the block ends are ended.
+    backend: ``"threads"`` or ``"greenlet"``. seed: a number that shuffles which of the runnable tasks goes on, as ``--seed`` does.
+    schedule: instead, a list of choices, or a `Schedule`; with both it is a ValueError. faults: see `faults.at`. time_limit: seconds of
+    virtual time. The value is the kernel. Tasks that are left when the block ends are ended.
     """
     chooser: int | Schedule | None
     if schedule is None:
         chooser = seed
     elif seed is not None:
-        raise ValueError("A seed or a schedule, not both: each says who goes next.")
+        raise ValueError("A seed or a schedule, not both: each decides which task goes next.")
     else:
         chooser = schedule if isinstance(schedule, Schedule) else Schedule(schedule)
     with kernel.aside():
@@ -68,8 +68,11 @@ def _same_random_numbers() -> None:
 
 
 class Outcome(Generic[T]):
-    """What came of a run: ``values`` (a list) or the ``error`` that left the plan; ``trace``, ``points``, ``time`` (s);
-    ``left``: what it left behind, as `assert_nothing_left` sees it; ``stack``: where the error came through."""
+    """The outcome of a run.
+
+    ``values`` is a list, or ``error`` the error that left the plan, with the places in its traceback in ``stack``. ``trace`` has the marks,
+    ``points`` the park points, and ``time`` the time at the end, in seconds. ``left`` are texts about leftovers, as in `leftovers`.
+    """
 
     __class_getitem__ = subscripted
 
@@ -83,13 +86,13 @@ class Outcome(Generic[T]):
 
     @property
     def value(self) -> T:
-        """The first value; the error is raised if there was one."""
+        """The first value. If there was an error, it is raised."""
         if self.error is not None:
             raise self.error
         return self.values[0] if self.values else None  # type: ignore[return-value]  # no values are nil
 
     def same(self, other: Outcome[object]) -> bool:
-        """True if both ended alike: equal values (``equalp``), or errors of one type with one text."""
+        """True if both ended alike: with equal values (``equalp``), or with errors of the same type and text."""
         if (self.error is None) != (other.error is None):
             return False
         if self.error is not None:
@@ -106,7 +109,7 @@ class Outcome(Generic[T]):
 
 
 def describe(error: BaseException) -> str:
-    """An error as text, those in a composite failure and in an envelope too."""
+    """An error as text, with the errors in a composite failure or an envelope."""
     error = opened(error) if isinstance(error, CommonLispErrorEnvelope) else error
     if isinstance(error, CompositeFailure):
         return f"{type(error).__name__} of [{'; '.join(describe(failure) for failure in error.failures or ())}]"
@@ -137,10 +140,10 @@ def run(
     faults: Sequence[Fault] = (),
     time_limit: float | None = TIME_LIMIT,
 ) -> Outcome[T]:
-    """Run ``plan`` once in a fresh kernel and return its `Outcome`; nothing is raised that the plan raises.
+    """Run ``plan`` once in a fresh kernel and return its `Outcome`. An error of the plan is not raised, but is in the outcome.
 
-    The arguments are those of `virtual_time`. A fault that did not happen is an AssertionError, since a test of it would test
-    nothing, and something left behind (`assert_nothing_left`) is one too.
+    The arguments are those of `virtual_time`. A fault that did not happen is an AssertionError, since such a test would test
+    nothing. Leftovers (see `assert_nothing_left`) are an AssertionError, too.
     """
     outcome = observe(plan_of(plan), backend, seed, schedule=schedule, faults=faults, time_limit=time_limit)
     missed = [fault for fault in faults if fault.happened is None]
@@ -152,7 +155,7 @@ def run(
 
 
 def observe(function: Callable[[], T], *arguments: Any, **options: Any) -> Outcome[T]:
-    """The `Outcome` of ``function()`` in a `virtual_time` with the given arguments; ``left`` says what it left behind."""
+    """The `Outcome` of ``function()`` in a `virtual_time` with the given arguments, without the checks of `run`."""
     with virtual_time(*arguments, **options) as watched:
         watched.watch_fluents()
         values: Sequence[Any] | None = None
@@ -175,7 +178,7 @@ def observe(function: Callable[[], T], *arguments: Any, **options: Any) -> Outco
 
 
 def _let_go_of_stacks(error: object, known: set[int]) -> None:
-    """Take from an error, and those it is made of, the stacks that they came through, which are not what the plan has left behind."""
+    """Remove the tracebacks from an error, and from the errors in it: objects in them are not leftovers of the plan."""
     if isinstance(error, list | tuple | Cons):
         for other in error:
             _let_go_of_stacks(other, known)

@@ -1,9 +1,9 @@
-"""Schedules: who goes next, decided, noted and repeated.
+"""Schedules: decisions which task goes next, which can be recorded and repeated.
 
-A run of a plan is a function of its inputs and of the decisions which of the runnable tasks gets the baton. Where only one may go
-on there is nothing to decide; elsewhere the candidates stand in the order in which they became runnable, and a decision is the
-number of the one that goes, 0 for the first. A schedule is the list of these numbers. After its end the first come is first served,
-so ``[]`` is the ordinary run, and ``[0, 1]`` is one in which the second decision alone is another one.
+A run of a plan is a function of its inputs and of the decisions which of the runnable tasks gets the baton. If only one task can go on,
+there is nothing to decide. Otherwise the candidates are in the order in which they became runnable, and a decision is the number of the
+one that goes, 0 for the first. A schedule is the list of these numbers. After its end, tasks run first come, first served. So ``[]`` is
+the ordinary run, and in ``[0, 1]`` only the second decision is different.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Decision:
-    """One decision: the ``time``, the labels of those who could go (``candidates``, with what each does) and the ``choice``."""
+    """One decision: the ``time`` in seconds, the ``candidates`` (a label and an activity of each), and the ``choice``, a number."""
 
     __slots__ = ("time", "candidates", "choice")
 
@@ -29,9 +29,9 @@ class Decision:
 
 
 class Schedule:
-    """Decides for one run: first by ``prefix``, then by lot if there is a ``seed``, else first come, first served.
+    """Decides for one run: first by ``prefix``, then by lot if there is a ``seed``, or else first come, first served.
 
-    Afterwards ``choices`` are the decisions made. ``noting``: keep them with their candidates in ``decisions`` as well.
+    Afterwards ``choices`` are the decisions made. With ``noting``, ``decisions`` has them with their candidates as well.
     """
 
     def __init__(self, prefix: Iterable[int] = (), seed: int | None = None, noting: bool = False):
@@ -44,7 +44,7 @@ class Schedule:
         self.kernel: Kernel  # from `watch` on
 
     def watch(self, kernel: Kernel) -> None:
-        """It decides for KERNEL."""
+        """Decide for ``kernel``."""
         self.kernel = kernel
 
     def __call__(self, queue: deque[Task[object]]) -> int:
@@ -78,7 +78,7 @@ class Schedule:
 
 
 def _activity(task: Task[object]) -> str:
-    """Who TASK is, and what it goes on with."""
+    """The label of ``task``, and what it goes on with."""
     if task.carrier is None:
         doing = "begins"
     elif task.preempted:
@@ -90,7 +90,7 @@ def _activity(task: Task[object]) -> str:
 
 
 def without_defaults(choices: Sequence[int]) -> list[int]:
-    """The schedule without the zeros at its end, which are what happens anyway."""
+    """The schedule without the zeros at its end, which change nothing."""
     end = len(choices)
     while end and not choices[end - 1]:
         end -= 1

@@ -1,4 +1,4 @@
-"""Marks that a plan leaves, and what a test says of their order.
+"""Marks that a plan leaves, and assertions about their order.
 
     def plan():
         mark("reach")
@@ -8,8 +8,8 @@
     trace = testing.run(lambda: cpl.top_level(plan)).trace
     assert_order(trace, ("reach", "grasp", "done"), ("reach", "look", "done"))
 
-A plan with branches has no one right order of events, so a test that compares lists breaks when nothing is wrong. What is right is
-a *partial* order: reach before grasp, whatever else comes between. In Lisp: ``(mark :reach)``, the same event.
+A plan with branches has more than one right order of events, so a test that compares lists breaks when nothing is wrong. The right thing to
+test is a *partial* order: reach before grasp, with anything in between. In Lisp, ``(mark :reach)`` is the same event.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 
 class Event:
-    """A mark: its ``name``, the ``time`` (s of virtual time), the label of the ``task`` that left it, its place in the trace."""
+    """A mark: its ``name``, the ``time`` (seconds of virtual time), the label of the ``task`` that left it, its ``number`` in the trace,
+    and its ``value``."""
 
     __slots__ = ("name", "time", "task", "number", "value")
 
@@ -59,7 +60,7 @@ class Trace:
         return [event.name for event in self.events]
 
     def named(self, name: Name) -> list[Event]:
-        """The events of one name, which may be a string or a Lisp symbol."""
+        """The events of one name, a string or a Lisp symbol."""
         name = spelled(name)
         return [event for event in self.events if event.name == name]
 
@@ -68,12 +69,12 @@ class Trace:
 
 
 def spelled(name: Name) -> str:
-    """A mark's name as a test writes it: Lisp symbols and keywords in lower case."""
+    """The name of a mark as tests write it: Lisp symbols and keywords are in lower case."""
     return name.name.lower() if isinstance(name, Symbol) else str(name)
 
 
 def mark(name: Name, value: object = None) -> None:
-    """Leave a mark in the trace of the test that runs; without one nothing happens. Returns nil, so that plans are as before."""
+    """Leave a mark in the trace of the test that runs; outside of tests do nothing. Returns nil."""
     active = kernel.active()
     trace = getattr(active, "trace", None)
     if trace is not None:
@@ -81,7 +82,10 @@ def mark(name: Name, value: object = None) -> None:
 
 
 def assert_order(trace: Trace, *chains: Sequence[Name]) -> None:
-    """In each chain of names every event of a name comes before all events of the next name. Each name must occur."""
+    """Assert for each chain of names that every event of a name comes before all events of the next name. Each name must occur.
+
+    Raises AssertionError.
+    """
     for chain in chains:
         groups = [_some(trace, name) for name in chain]
         for before, after in zip(groups, groups[1:], strict=False):
@@ -91,19 +95,19 @@ def assert_order(trace: Trace, *chains: Sequence[Name]) -> None:
 
 
 def assert_before(trace: Trace, before: Name, after: Name) -> None:
-    """Every event ``before`` comes before every event ``after``."""
+    """Assert that every event ``before`` comes before every event ``after``. Both must occur. Raises AssertionError."""
     assert_order(trace, (before, after))
 
 
 def assert_after(trace: Trace, after: Name, before: Name) -> None:
-    """Every event ``after`` comes after every event ``before``."""
+    """Assert that every event ``after`` comes after every event ``before``. Both must occur. Raises AssertionError."""
     assert_order(trace, (before, after))
 
 
 def assert_concurrent(trace: Trace, *names: Name) -> None:
-    """The names overlap in time, each pair of them: from its first to its last mark each spans a time, and the spans meet.
+    """Assert that each pair of names overlaps in time. The span of a name is from its first to its last mark. Each name must occur.
 
-    Mark the beginning and the end of a step with one name. One mark is a span without length.
+    Mark the beginning and the end of a step with the same name. One mark is a span without length. Raises AssertionError.
     """
     spans = [(name, _some(trace, name)) for name in names]
     for index, (_, one) in enumerate(spans):
@@ -119,7 +123,7 @@ def assert_concurrent(trace: Trace, *names: Name) -> None:
 
 
 def assert_never(trace: Trace, *names: Name) -> None:
-    """None of the names was marked."""
+    """Assert that none of the names was marked. Raises AssertionError."""
     for name in names:
         events = trace.named(name)
         if events:
@@ -127,7 +131,7 @@ def assert_never(trace: Trace, *names: Name) -> None:
 
 
 def assert_times(trace: Trace, name: Name, times: int) -> None:
-    """``name`` was marked so many times."""
+    """Assert that ``name`` was marked ``times`` times. Raises AssertionError."""
     events = trace.named(name)
     if len(events) != times:
         _fail(trace, f"{spelled(name)} happened {len(events)} times, not {times}.", events)

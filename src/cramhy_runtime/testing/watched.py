@@ -1,7 +1,7 @@
-"""The kernel that tests run plans on: it notes who parks where, what was marked, and what is left in the end.
+"""The kernel on which tests run plans: it records where tasks park, the marks, and what is left in the end.
 
-It behaves as the ordinary one; what it adds is a list of park points, faults that happen at them, a trace of marks, the decisions
-who goes next (``schedules.py``), and the fluents that were made. None of it exists outside of tests.
+It behaves like the ordinary kernel. It adds a list of park points, faults that happen at them, a trace of marks, the decisions which task
+goes next (``schedules.py``), and the fluents that were made. None of this exists outside of tests.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ HOOK = "cramhy-testing"
 
 
 class WatchedKernel(Kernel):
-    """A kernel that is looked at. ``points``: the park points of tasks of plans so far; ``faults``: what shall happen at them."""
+    """A kernel that tests look at. ``points`` are the park points of tasks of plans so far; ``faults`` happen at them."""
 
     def __init__(
         self,
@@ -93,7 +93,7 @@ class WatchedKernel(Kernel):
     # ----------------------------------------------------------------------------------------------------------- what is left
 
     def watch_fluents(self) -> None:
-        """Note the fluents that are made from now on, until the kernel stops."""
+        """Remember the fluents that are made from now on, until the kernel stops."""
         on_make_fluent_hook.add(lambda fluent, *_: self.fluents.append(ref(fluent)), HOOK)
 
     def stop(self) -> None:
@@ -103,14 +103,14 @@ class WatchedKernel(Kernel):
             on_make_fluent_hook.remove(HOOK)
 
     def living_fluents(self) -> list[Fluent[object]]:
-        """The fluents made since `watch_fluents` that somebody still holds."""
+        """The fluents made since `watch_fluents` that are still in use."""
         return [fluent for fluent in (reference() for reference in self.fluents) if fluent is not None]
 
     def next_timer(self) -> float | None:
-        """The time of the next timer or deadline that counts, or None. Those that do not count are swept out."""
+        """The time in seconds of the next timer or deadline that is still in force, or None. Others are removed."""
         self._timers.sweep()
         return self._timers.next_time()
 
     def threads_kept(self) -> int:
-        """How many more threads are in use than when this kernel was made; those of living tasks count."""
+        """How many more threads are in use than when this kernel was made. Threads of living tasks count, too."""
         return threads_in_use() - self.threads_before

@@ -13,7 +13,7 @@ from .. import kernel
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, list_from, truth
 from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from ..ros import graph
 from ..ros.messages import message_class_exact
 from ..ros.roslisp import topics

@@ -13,7 +13,7 @@ from cramhy_runtime.ground.condition_types import Error
 from cramhy_runtime.ground.conditions import SimpleError, error, handler_case, type_error, warn
 from cramhy_runtime.ground.data import DoubleFloat, LispString, truth
 from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.roslisp import logging, node, parameters, topics
 from ..ros.roslisp.clock import ros_time

@@ -15,7 +15,7 @@ from cramhy_runtime.ground.conditions import FloatingPointInvalidOperation, Simp
 from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ground.numbers import is_real, single
 from cramhy_runtime.ground.numbers import too_large_for
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import ensure_package, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 

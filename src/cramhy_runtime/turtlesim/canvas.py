@@ -1,10 +1,10 @@
-"""The paper: 500 by 500 pixels that the pens draw on and the colour sensors read.
+"""The paper: 500 by 500 pixels. The pens draw on them and the colour sensors read them.
 
-Pixels are set as Qt's raster painter sets them without anti-aliasing: a line of width w with square caps is a rectangle that
-reaches w/2 beyond its ends and to its sides, and a pixel is painted when its centre lies inside; a centre on the border counts
-on the side of greater coordinates. Measured sensor readings of the original (turtle-facts.txt, section 7) agree with that.
+Lines set the same pixels as in Qt's raster painter without anti-aliasing. A line of width w with square caps is a rectangle that
+reaches w/2 beyond its ends and to its sides. A pixel is painted if its centre is inside; a centre on the border counts on the
+side of greater coordinates. Measured sensor readings of the original (turtle-facts.txt, section 7) agree with that.
 
-Lines are kept until somebody looks: a run that nobody watches does not wait for its drawing. Source: turtlesim.md 7.
+Lines are kept, and drawn only when pixels are read, so a run without a viewer does not wait for its drawing. Source: turtlesim.md 7.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ _AS_DRAWN = 20_000  # five minutes of driving without a clear: what is drawn lat
 
 
 class Canvas:
-    """The path image. Coordinates are metres on the screen, x to the right and y down; colours are (r, g, b).
+    """The image of the trails. Coordinates are metres on the screen, x to the right and y down; colours are (r, g, b).
 
-    ``clears`` counts how often the paper was filled, ``background`` is with what. ``news`` is ``None``, or a list that gets every
-    line as it is kept, for those who follow the pens tick by tick (`Turtlesim.observe`).
+    ``background``: the colour of the paper. ``clears``: how often the paper was filled with it. ``news``: ``None``, or a list that
+    gets every new line, for observers of the pens (`Turtlesim.observe`).
     """
 
     def __init__(self, background: Iterable[int] = (69, 86, 255)):
@@ -42,7 +42,7 @@ class Canvas:
         self.clear(background)
 
     def clear(self, background: Iterable[int]) -> None:
-        """Fill everything with ``background``."""
+        """Fill the paper with ``background``, a colour (r, g, b)."""
         self.background: Colour = tuple(background)  # type: ignore[assignment]  # of three
         self._pixels[:] = bytes(self.background) * (SIZE * SIZE)
         self._lines: list[Stroke] = []
@@ -53,7 +53,7 @@ class Canvas:
             self.news.clear()
 
     def line(self, x0: float, y0: float, x1: float, y1: float, colour: Colour, width: int) -> None:
-        """Draw a line; a width of 0 is a width of 1."""
+        """Draw a line from (x0, y0) to (x1, y1), in metres on the screen. ``width``: in pixels; 0 means 1."""
         line = (x0, y0, x1, y1, colour, width)
         self._lines.append(line)
         if self.news is not None:
@@ -64,18 +64,18 @@ class Canvas:
             self._lines, self._drawn = [], 0
 
     def flush(self) -> None:
-        """Draw the lines that were kept."""
+        """Draw the kept lines into the pixels."""
         lines, begin = self._lines, self._drawn
         self._drawn = len(lines)
         for index in range(begin, len(lines)):
             self._draw(*lines[index])
 
     def strokes(self) -> list[Stroke]:
-        """All that was drawn since the last clear, as `Ink.strokes` tells it: for who was not there to see it."""
+        """All lines since the last clear, as from `Ink.strokes`: for observers that come later."""
         return self._all_ink().strokes()
 
     def polylines(self) -> list[Polyline]:
-        """The same as `Ink.polylines`, for pictures without pixels."""
+        """All lines since the last clear, as from `Ink.polylines`: for pictures without pixels."""
         return self._all_ink().polylines()
 
     def _all_ink(self) -> Ink:
@@ -84,7 +84,7 @@ class Canvas:
         return ink
 
     def pixel(self, x: float, y: float) -> Colour:
-        """The colour at (x, y) metres, at the nearest pixel, halves up; outside of the paper the nearest pixel on it."""
+        """The colour (r, g, b) of the paper's pixel nearest to (x, y), in metres on the screen; halves round up."""
         if self._drawn < len(self._lines):
             self.flush()
         if x != x or y != y:

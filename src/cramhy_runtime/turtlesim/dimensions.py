@@ -1,4 +1,4 @@
-"""How large the world is: the paper in pixels, the metre in pixels, and the paper in metres (turtlesim.md 2)."""
+"""The size of the world: the paper in pixels, the metre in pixels, and the paper in metres (turtlesim.md 2)."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ METRE = 45
 EXTENT = single((SIZE - 1) / METRE)
 """Width and height of the world in metres: 11.088889122009277."""
 CENTRE = single(EXTENT / 2)
-"""Both coordinates of the place where the first turtle stands: 5.544444561004639."""
+"""Both coordinates of the first turtle's place, in metres: 5.544444561004639."""
 DRAWINGS = 14
-"""How many drawings of turtles there are (`drawing`); they are given out in turn."""
+"""The number of drawings of turtles (`drawing`). New turtles get them in turn."""

@@ -1,9 +1,9 @@
-"""``draw_square``: a turtle that drives squares for ever, as well as it can.
+"""``draw_square``: a turtle drives rough squares for ever.
 
-It looks at the pose every 16 ms and is in one of four states: forward until the goal is near, standing until the turtle stands,
-turning until the goal's heading is near, standing again. Near is a tenth of a metre, or a hundredth of a radian by plain subtraction, and
-the command goes out first and is judged afterwards, so the sides are 1.9 m long and the square turns slowly to the right.
-`DrawSquare` is the program. Source: turtlesim.md 11.
+The program looks at the pose every 16 ms. It has four states: drive until the goal is near, stop until the turtle stands, turn
+until the goal's heading is near, stop again. Near means a tenth of a metre, or a hundredth of a radian by plain subtraction. The
+check follows the command, so the sides are 1.9 m long and the square turns slowly to the right. `DrawSquare` is the program.
+Source: turtlesim.md 11.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ FORWARD, STOP_FORWARD, TURNING, STOP_TURN = "forward", "stop forward", "turning"
 
 
 class DrawSquare(Program):
-    """The node ``/draw_square``: resets the simulator and drives ``turtle1`` of its namespace. ``state`` is one of the four."""
+    """The node ``/draw_square``: resets the simulator and drives ``turtle1`` of its namespace. ``state``: one of the four states.
+
+    Arguments: see `Program`.
+    """
 
     name = "draw_square"
 
@@ -54,7 +57,7 @@ class DrawSquare(Program):
         self.pose = tuple(value if math.isfinite(value) else math.nan for value in map(wire.as_float, pose.values()))
 
     def tick(self) -> None:
-        """What the timer does: one command, and perhaps the next state."""
+        """Send one command, and perhaps go to the next state. The timer calls it every 16 ms."""
         if self.pose is None:
             return
         x, y, heading, speed, turn = self.pose

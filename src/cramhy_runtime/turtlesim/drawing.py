@@ -1,9 +1,9 @@
 """Our own turtles: fourteen drawings, each a pile of filled outlines in a box of one by one.
 
-The original picks one of fourteen little pictures for a turtle; ours are drawn here, once, as vector paths, and both the
-pictures of this room (`pictures`) and the live page show these. The box is one metre of the world wide: its middle is the turtle's
-position, x runs ahead along the heading (the head looks to +x), y runs to the turtle's *right*, as on a screen when the turtle
-looks to the right. So a picture stands at ``translate(x, y) rotate(-theta) scale(45)`` on the paper of 500 by 500 pixels.
+The original has fourteen little pictures of turtles. This module has our own, as vector paths; the pictures of this room
+(`pictures`) and the live page both use them. The box is one metre of the world wide, with the turtle's position in the middle. x
+goes ahead along the heading (the head looks to +x), y goes to the turtle's *right*, as on a screen when the turtle looks to the
+right. So a picture has its place on the paper of 500 by 500 pixels at ``translate(x, y) rotate(-theta) scale(45)``.
 Source of the number and the size of the pictures: turtlesim.md 2, 3, 9.
 """
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 OUTLINE, WHITE, PUPIL = "#1b2a24", "#ffffff", "#14181c"
 EDGE = 0.02
-"""How far the dark outline stands out, in metres."""
+"""Width of the dark outline around each shape, in metres."""
 _ROUND = 0.5522847498
-"""Distance of the control points of a Bézier curve that makes a quarter of a circle."""
+"""Distance of the control points from the ends of a Bézier curve for a quarter of a circle."""
 
 
 def shapes() -> list[Shape]:
-    """The drawings, in the order in which turtles get them: picture ``n`` of a turtle is ``shapes()[n % 14]``.
+    """The drawings, in the order in which turtles get them: turtle number ``n`` has ``shapes()[n % 14]``.
 
-    Result: a list of ``{"name": str, "shell": "#rrggbb", "paths": [{"d": path data, "fill": "#rrggbb"}, ...]}``, to be painted in that
-    order; the path data have absolute ``M``, ``L``, ``C`` and ``Z`` only. It may go to JSON as it is.
+    Result: a list of ``{"name": str, "shell": "#rrggbb", "paths": [{"d": path data, "fill": "#rrggbb"}, ...]}``, ready for JSON.
+    Paint the paths in that order. The path data have only absolute ``M``, ``L``, ``C`` and ``Z``.
     """
     return [
         {"name": name, "shell": shell, "paths": [{"d": d, "fill": fill} for d, fill in _paths(number)]}
@@ -40,7 +40,7 @@ def shapes() -> list[Shape]:
 
 @cache
 def _paths(number):
-    """The (path data, colour) of one drawing, from the ground up."""
+    """The (path data, colour) of one drawing, the lowest layer first."""
     _, body, pattern, shell, second, skin, rim = PICTURES[number]
     limbs, back = body()
     head = _ellipse(0.36, 0.0, 0.12, 0.105)
@@ -72,7 +72,7 @@ def _ellipse(x, y, along, across, turn=0.0):
 
 
 def _smooth(*points):
-    """The closed Catmull-Rom curve through the points."""
+    """A closed Catmull-Rom curve through the points."""
     count, segments = len(points), []
     for index in range(count):
         before, start, end, after = (points[(index + step) % count] for step in (-1, 0, 1, 2))
@@ -125,7 +125,7 @@ def _shrunk(outline, factor):
 
 
 def _swollen(outline):
-    """The outline, `EDGE` further out on all sides, those that look inwards like that of a flipper's bend, too."""
+    """The outline, `EDGE` further out on all sides, also on sides that bend inwards, as on a flipper."""
     start, segments = outline
     starts = [start, *(segment[2] for segment in segments[:-1])]
     area = sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in zip(starts, [*starts[1:], start]))
@@ -137,7 +137,7 @@ def _swollen(outline):
         return along_y / length * side, -along_x / length * side
 
     def moved(point, before, after):
-        """Out so far that the sides before and after it come to lie `EDGE` further out; not quite so far where it is pointed."""
+        """The corner moved so far that both its sides are `EDGE` further out; a pointed corner moves a little less."""
         share = EDGE**2 / (EDGE**2 + max(before[0] * after[0] + before[1] * after[1], 0.0))
         return point[0] + (before[0] + after[0]) * share, point[1] + (before[1] + after[1]) * share
 
@@ -181,7 +181,7 @@ def _pond():
 
 
 def _sea():
-    """Long flippers ahead, short ones behind, a shell like a drop."""
+    """Long flippers in front, short ones behind, a shell like a drop."""
     flippers = _both(
         _smooth((0.13, 0.17), (0.25, 0.2), (0.27, 0.33), (0.13, 0.46), (0.02, 0.48), (0.1, 0.36)),
         _smooth((-0.27, 0.1), (-0.36, 0.2), (-0.47, 0.24), (-0.43, 0.13), (-0.36, 0.06)),
@@ -202,7 +202,7 @@ def _sea():
 
 
 def _dome():
-    """A high round shell from under which four toes look."""
+    """A high round shell with four toes under it."""
     toes = _both(_ellipse(0.2, 0.26, 0.09, 0.075), _ellipse(-0.26, 0.24, 0.09, 0.075))
     tail = _smooth((-0.32, -0.04), (-0.43, -0.02), (-0.43, 0.02), (-0.32, 0.04))
     return [*toes, tail], _ellipse(-0.03, 0.0, 0.325, 0.315)

@@ -1,7 +1,7 @@
-"""The executables of the package, as ``rosrun turtlesim …`` and launch files start them.
+"""The executables of the package. ``rosrun turtlesim …`` and launch files start them.
 
-`start` makes a node in the active graph and returns the running `Program`; it must be called in the kernel (from outside with
-``kernel.post``). The one who asked prints the log (``echo``) and ends it with `Program.shutdown`. Source: turtlesim.md 1.
+`start` makes a node in the active graph and returns the running `Program`. Call it in the kernel (from outside with
+``kernel.post``). The caller prints the log (``echo``) and ends the program with `Program.shutdown`. Source: turtlesim.md 1.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ def start(executable: Literal["mimic"], arguments: Words = (), echo: Echo = None
 @overload
 def start(executable: str, arguments: Words = (), echo: Echo = None) -> Program: ...
 def start(executable: str, arguments: Words = (), echo: Echo = None) -> Program:
-    """Start an executable of the package with the words of its command line (``__name:=x``, ``__ns:=/y``, ``a:=b``, ``_p:=v``).
+    """Start an executable of the package and return its `Program`. An unknown executable is a simple error.
 
-    echo: where its log goes, see `Program`. Result: the `Program`. An unknown executable is a simple error.
+    ``arguments``: the words of its command line (``__name:=x``, ``__ns:=/y``, ``a:=b``, ``_p:=v``). ``echo``: see `Program`.
     """
     program = PROGRAMS.get(executable)
     if program is None:

@@ -1,8 +1,8 @@
-"""What happened on the paper: the way of each turtle and every stroke with its tick, for a picture that moves (`replay`).
+"""The history of the paper: the way of each turtle and every stroke with its tick, for a moving picture (`replay`).
 
-A `History` observes a simulator (`Turtlesim.observe`) from the moment it is made. What stands still takes no room, a tick of driving
-some two hundred bytes. It is bounded: beyond `MOST_SAMPLES` the older half is forgotten, but for the lines that lay on the paper then.
-Ticks are counted from the beginning of the history, and a tick stands for 16 ms of plan time, whatever the clock said.
+A new `History` begins at once to observe its simulator (`Turtlesim.observe`). A turtle at rest takes no memory, a tick of driving
+about two hundred bytes. Beyond `MOST_SAMPLES`, the history forgets its older half, except the lines on the paper at that point.
+Ticks count from the beginning of the history. A tick means 16 ms of plan time, even if the clock differs.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 MOST_SAMPLES = 250_000
-"""Poses, strokes and clears that are kept: half an hour of one turtle that draws all the time, thirty megabytes."""
+"""Number of poses, strokes and clears to keep: half an hour of one turtle that draws all the time, thirty megabytes."""
 _LOOK = 4096  # ticks between two looks at how many they are
 
 
 class Track:
-    """The way of one turtle from the tick when it came to the tick when it went (``end`` is ``None`` while it is there)."""
+    """The way of one turtle, from tick ``begin``, when it appeared, to ``end``, when it left, or ``None`` while it is there."""
 
     __slots__ = ("turtle", "name", "number", "begin", "end", "ticks", "poses", "last")
 
@@ -38,7 +38,7 @@ class Track:
         self.last: tuple[float, float, float] | None = None
 
     def see(self, tick: int) -> None:
-        """Note where the turtle is, if that is news; before a move out of rest, also that it had not moved until then."""
+        """Note the turtle's pose at ``tick`` if it has changed. If it was at rest before, note that too."""
         turtle = self.turtle
         pose = (turtle.x, turtle.y, turtle.heading)
         if pose == self.last or (turtle.x + turtle.y + turtle.heading) * 0.0 != 0.0:  # one that is nowhere stays where it was seen last
@@ -51,12 +51,12 @@ class Track:
         self.last = pose
 
     def samples(self) -> list[Sample]:
-        """[(tick, x, y, heading), ...], metres on the screen and radians; between two samples the turtle moved evenly."""
+        """[(tick, x, y, heading), ...], in metres on the screen and radians. Between two samples, the turtle moves evenly."""
         values = self.poses
         return [(tick, *values[3 * index : 3 * index + 3]) for index, tick in enumerate(self.ticks)]
 
     def forget(self, cut: int) -> None:
-        """Keep only what was from tick ``cut`` on, and count ticks from there."""
+        """Forget the way before tick ``cut``, and count ticks from there."""
         first = max(bisect_left(self.ticks, cut + 1) - 1, 0)  # the last sample before says where the turtle stood
         self.ticks = array("I", (max(tick - cut, 0) for tick in self.ticks[first:]))
         self.poses = self.poses[3 * first :]
@@ -65,7 +65,11 @@ class Track:
 
 
 class History:
-    """``tracks`` are the turtles' ways, ``strokes`` and ``clears`` what happened to the paper, ``ticks`` how many have passed."""
+    """The history of one simulator.
+
+    ``tracks``: the ways of the turtles, as `Track`. ``strokes`` and ``clears``: the events on the paper, each with its tick.
+    ``ticks``: how many have passed.
+    """
 
     def __init__(self, simulator: Turtlesim):
         self.simulator = simulator
@@ -82,11 +86,11 @@ class History:
         simulator.observe(self.see)
 
     def stop(self) -> None:
-        """Look on no more."""
+        """Stop observing the simulator."""
         self.simulator.unobserve(self.see)
 
     def see(self, simulator: Turtlesim, strokes: list[Stroke]) -> None:
-        """One tick (the callback of `Turtlesim.observe`)."""
+        """Note one tick. It is the callback of `Turtlesim.observe`."""
         self.ticks = tick = self.ticks + 1
         canvas = simulator.canvas
         if canvas.clears != self._cleared:
@@ -102,7 +106,7 @@ class History:
             self._shorten()
 
     def eras(self) -> list[Era]:
-        """[(tick, background, strokes), ...]: each clear, or the beginning, with what was drawn until the next."""
+        """[(tick, background, strokes), ...]: the beginning and each clear, with the strokes until the next clear."""
         begins = [bisect_left(self.strokes, (tick,)) for tick, _ in self.clears] + [len(self.strokes)]
         return [(tick, background, self.strokes[begins[index] : begins[index + 1]]) for index, (tick, background) in enumerate(self.clears)]
 
@@ -110,7 +114,7 @@ class History:
         return len(self.strokes) + len(self.clears) + sum(len(track.ticks) for track in self.tracks)
 
     def _shorten(self) -> None:
-        """Forget the older half, but for what lay on the paper in its middle."""
+        """Forget the older half, except the lines on the paper in the middle."""
         cut = self.ticks // 2
         paper = Ink()
         begin = max(index for index, (tick, _) in enumerate(self.clears) if tick <= cut)

@@ -1,7 +1,7 @@
-"""``mimic``: one turtle does what another does. Every pose of the leader becomes a command for the follower.
+"""``mimic``: one turtle copies another. Every pose of the leader becomes a command for the follower.
 
-The speed of a pose is a magnitude, so a leader that drives backwards or sideways is followed by one that drives ahead.
-`Mimic` is the program; on a command line ``input:=turtle1 output:=turtle2`` say who leads and who follows. Source: turtlesim.md 12.
+The speed in a pose is a magnitude, so if the leader drives backwards or sideways, the follower drives ahead. `Mimic` is the program.
+On a command line, ``input:=turtle1 output:=turtle2`` name the leader and the follower. Source: turtlesim.md 12.
 """
 
 from __future__ import annotations
@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 class Mimic(Program):
-    """The node ``/turtle_mimic``, which follows ``leader`` with ``follower``, names of turtles (or what stands before ``/pose``)."""
+    """The node ``/turtle_mimic``. ``follower`` follows ``leader``: names of turtles, or the parts of topic names before ``/pose``.
+
+    Other arguments: see `Program`.
+    """
 
     name = "turtle_mimic"
 

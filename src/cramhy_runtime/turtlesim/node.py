@@ -1,8 +1,8 @@
 """The node ``/turtlesim``: topics, services and parameters around the turtles' world.
 
-It spins once per tick of 16 ms: first the commands and requests that arrived, then one update of every turtle in the order of
-their names. So a response comes before the update of its tick, and of several commands within a tick the last one counts.
-The first tick only looks at the time. What nobody subscribes to is not computed. Source: turtlesim.md 3, 4, 8.
+It spins once per tick of 16 ms: first it handles the commands and requests that have arrived, then it updates every turtle, in
+the order of names. So a response comes before the update of its tick, and of several commands within a tick the last one counts.
+The first tick only looks at the time. Messages without subscribers are not computed. Source: turtlesim.md 3, 4, 8.
 """
 
 from __future__ import annotations
@@ -58,6 +58,7 @@ class Inhabitant:
         self.simulator = simulator
 
     def leave(self) -> None:
+        """End the turtle's topics and services."""
         node = self.simulator.node
         for publication in (self.pose, self.colour):
             node.unadvertise(publication.name)
@@ -82,7 +83,7 @@ class Inhabitant:
         return self.services[2].type.response()
 
     def publish(self) -> None:
-        """The pose and the colour of this tick, for those who listen."""
+        """Publish the pose and the colour of this tick, if there are subscribers."""
         simulator = self.simulator
         if self.pose.connections:
             x, y, heading, speed, turn = self.turtle.pose()
@@ -97,9 +98,9 @@ class Inhabitant:
 
 
 class Turtlesim(Program):
-    """``turtlesim_node``. ``turtles`` are the turtles by name, ``canvas`` the paper; `Program` has the rest.
+    """The simulator, ``turtlesim_node``. Arguments: see `Program`.
 
-    ``observers`` are functions that look on, tick by tick (`observe`).
+    ``turtles``: the turtles by name. ``canvas``: the paper. ``observers``: functions called at every tick (`observe`).
     """
 
     name = "turtlesim"
@@ -128,10 +129,11 @@ class Turtlesim(Program):
 
     @property
     def turtles(self) -> dict[str, Turtle]:
+        """The turtles by name, sorted."""
         return {name: inhabitant.turtle for name, inhabitant in self.inhabitants.items()}
 
     def tick(self) -> None:
-        """What happens every 16 ms."""
+        """Handle the input and update all turtles. The timer calls it every 16 ms."""
         node = self.node
         if node.inbox:
             node.spin_once()
@@ -157,27 +159,29 @@ class Turtlesim(Program):
         node.tick_done()
 
     def observe(self, callback: Observer) -> None:
-        """Have ``callback(simulator, strokes)`` called at the end of every tick, after all updates; it must not wait.
+        """Call ``callback(simulator, strokes)`` at the end of every tick, after all updates. It must not wait.
 
-        strokes: a list of what the pens drew in this tick, ``(x1, y1, x2, y2, (r, g, b), width)``, in metres of the world (y up) and
-        pixels of width, in order of drawing; the list is the callback's to keep, empty when nothing was drawn. When
-        ``simulator.canvas.clears`` has grown since the call before, the paper was first filled with ``simulator.canvas.background``, and
-        the strokes are those since then. ``simulator.turtles`` are the turtles by name: `Turtle.pose`, ``pen_on``, ``pen_colour``,
-        ``pen_width``, ``number`` (which drawing: `drawing.shapes`). What was drawn before the first call: ``simulator.canvas.strokes()``.
-        Without observers none of this is computed. One that raises an error is reported and called no more.
+        ``strokes``: a new list of the lines of this tick, ``(x1, y1, x2, y2, (r, g, b), width)``, in the order of drawing. Coordinates
+        are metres of the world (y up), the width is in pixels. If ``simulator.canvas.clears`` has grown since the last call, the paper
+        was first filled with ``simulator.canvas.background``, and the list has only the lines since then.
+
+        ``simulator.turtles``: the turtles by name, with `Turtle.pose`, ``pen_on``, ``pen_colour``, ``pen_width`` and ``number`` (of the
+        drawing, `drawing.shapes`). ``simulator.canvas.strokes()`` returns the lines from before the first call.
+
+        Without observers, none of this is computed. If a callback raises an error, the error is reported and the callback removed.
         """
         if self.canvas.news is None:
             self.canvas.news = []
         self.observers = (*self.observers, callback)
 
     def unobserve(self, callback: Observer) -> None:
-        """Call ``callback`` no more; one that does not observe is no error."""
+        """Stop calling ``callback``. If it is not an observer, do nothing."""
         self.observers = tuple(each for each in self.observers if each != callback)
         if not self.observers:
             self.canvas.news = None
 
     def keep_history(self) -> History:
-        """Remember from now on what happens, for `replay`; the `History`, the same one when it is asked for again."""
+        """Keep a `History` from now on, for `replay`, and return it. Later calls return the same one."""
         if self.history is None:
             self.history = History(self)
         return self.history
@@ -200,7 +204,10 @@ class Turtlesim(Program):
                 kernel.unhandled(kernel.current(), problem)
 
     def spawn(self, name: str, x: float, y: float, heading: float) -> str:
-        """A new turtle at world coordinates; an empty name stands for the next free ``turtleN``. Returns the name."""
+        """Make a turtle at (x, y), in metres of the world (y up), with ``heading`` in radians; returns its name.
+
+        An empty ``name`` means the next free ``turtleN``. A name that is taken or illegal raises `Refusal`. Source: turtlesim.md 8.
+        """
         if not name:
             while True:
                 self.counter += 1
@@ -222,12 +229,12 @@ class Turtlesim(Program):
         return name
 
     def _taken(self, name: str) -> bool:
-        """Whether a turtle has the name, or one that means the same (``/turtle1``): the two would share their topics."""
+        """Whether a turtle has the name, or one with the same meaning (``/turtle1``): the two would share their topics."""
         full = self.node.resolve(name)
         return any(self.node.resolve(other) == full for other in self.inhabitants)
 
     def _check_number(self, name: str, caller: Any) -> None:
-        """Refuse a client of another process that asks for too much (`ros.services.start_call`)."""
+        """Raise `Refusal` if a client of another process spawns too many turtles or too long a name (`ros.services.start_call`)."""
         if caller is None:
             return
         there = sum(inhabitant.of_client for inhabitant in self.inhabitants.values())
@@ -237,7 +244,7 @@ class Turtlesim(Program):
             raise Refusal(f"The name of the turtle has {len(name)} characters; {caller.limits.name} are allowed.")
 
     def kill(self, name: str) -> None:
-        """Remove a turtle; its trail stays."""
+        """Remove the turtle ``name``; its trail stays. An unknown name raises `Refusal`."""
         if name not in self.inhabitants:
             self.log(rosout.ERROR, f"Tried to kill turtle [{name}], which does not exist")
             raise Refusal("")
@@ -245,12 +252,12 @@ class Turtlesim(Program):
         self.inhabitants = {other: inhabitant for other, inhabitant in self.inhabitants.items() if other != name}
 
     def clear(self) -> None:
-        """Fill the paper with the background, as the parameters are now."""
+        """Fill the paper with the background colour from the present parameters."""
         self.log(rosout.INFO, "Clearing turtlesim.")
         self._clear()
 
     def reset(self) -> None:
-        """One turtle in the centre, clean paper."""
+        """Remove all turtles, make one in the centre, and clear the paper."""
         self.log(rosout.INFO, "Resetting turtlesim.")
         for inhabitant in self.inhabitants.values():
             inhabitant.leave()
@@ -296,40 +303,54 @@ _expecting: WeakKeyDictionary[graph.Graph, list[Callable[[Turtlesim], object]]] 
 
 
 def simulators() -> list[Turtlesim]:
-    """The simulators that run in the active graph, in the order of their start."""
+    """The running simulators of the active graph, in the order of their start."""
     return [node.program for node in graph.active().nodes.values() if isinstance(getattr(node, "program", None), Turtlesim)]
 
 
 def each_simulator(callback: Callable[[Turtlesim], object]) -> None:
-    """Have ``callback(simulator)`` called for each simulator of the active graph: those that run at once, others when they start."""
+    """Call ``callback(simulator)`` for each simulator of the active graph: at once for running ones, for others when they start."""
     _expecting.setdefault(graph.active(), []).append(callback)
     for simulator in simulators():
         callback(simulator)
 
 
 def start_turtlesim(name: str | None = None, namespace: str = "/", echo: Echo = None) -> Turtlesim:
-    """Start the simulator in the active graph; see `Program`."""
+    """Start the simulator in the active graph and return it. Arguments: see `Program`."""
     return Turtlesim(name, namespace, echo=echo)
 
 
 def running_simulator() -> Turtlesim | None:
-    """The simulator whose node is ``/turtlesim``, else the one that runs longest, or ``None``."""
+    """The simulator with the node ``/turtlesim``, else the one that has run longest, or ``None``."""
     running = simulators()
     return next((each for each in running if each.node.name == "/turtlesim"), running[0] if running else None)
 
 
 def needed_simulator() -> Turtlesim:
-    """The `running_simulator`; that there is none is a simple error."""
+    """The `running_simulator`. If there is none, it is a simple error."""
     return running_simulator() or conditions.error(
         'No turtlesim is running in this process. It starts with (start-ros-node "name"), or with (turtlesim:start).'
     )
 
 
+_starters: WeakKeyDictionary[graph.Graph, Callable[[], object]] = WeakKeyDictionary()  # graph -> what its first node starts
+
+
 def start_with_first_node(echo: Echo = None) -> None:
-    """Have the simulator start with the first ``start-ros-node``, as if ``turtlesim_node`` had been running before."""
+    """Let the first ``start-ros-node`` start the simulator, as if ``turtlesim_node`` had been running before.
+
+    ``echo``: see `Program`. If a simulator runs already, none is started.
+    """
 
     def start():
         if running_simulator() is None:
             start_turtlesim(echo=echo)
 
+    _starters[graph.active()] = start
     graph.active().before_first_node.append(start)
+
+
+def start_waiting() -> None:
+    """Start the simulator that waits for the first ``start-ros-node``, if one waits."""
+    start = _starters.get(graph.active())
+    if start in graph.active().before_first_node:
+        start()

@@ -1,4 +1,4 @@
-"""Which kind of picture a file gets, by its ending: a still one of the window as it is, or a replay of what has happened.
+"""Write pictures of the simulator. The ending of the file says the kind: the present window, or a replay of the history.
 
 =================  ==========================================================================
 ``x.png``          the window as it is, 500 by 500 pixels
@@ -7,8 +7,8 @@
 ``x.replay.svg``   a replay as vectors, for browsers
 =================  ==========================================================================
 
-A replay needs a history that was kept from the beginning: `keep_history`, which costs five microseconds per tick of driving, a quarter of
-what a tick may cost, and is therefore done only when asked for.
+A replay needs a history from the beginning of the run. `keep_history` costs five microseconds per tick of driving, a quarter of
+the allowed time of a tick, so it is off by default.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ _STILLS = {".png": stills.still_png, ".svg": stills.still_svg}
 
 
 def is_picture(path: str | Path) -> bool:
-    """Whether the file's name says which kind of picture it is to be."""
+    """Whether the ending of the file's name is that of a picture."""
     return str(path).lower().endswith((*_REPLAYS, *_STILLS))
 
 
 def check(path: str | Path) -> None:
-    """Complain of a file name that says no kind of picture: a simple error. To be called before what the picture shall show."""
+    """Signal a simple error if the ending of the file's name is not that of a picture. Call it before the run to be shown."""
     if not is_picture(path):
         conditions.error(
             SimpleError(
@@ -53,22 +53,24 @@ def check(path: str | Path) -> None:
 
 
 def is_replay(path: str | Path) -> bool:
-    """Whether the file's name asks for a replay, and so for `keep_history` before the plan runs."""
+    """Whether the ending of the file's name is that of a replay, which needs `keep_history` before the plan runs."""
     return str(path).lower().endswith(tuple(_REPLAYS))
 
 
 def keep_history() -> None:
-    """Remember from now on what happens, in every simulator that runs or starts in the active graph."""
+    """Keep a history from now on in every simulator of the active graph, running already or started later."""
     each_simulator(lambda simulator: simulator.keep_history())
 
 
 def save(path: str | Path, simulator: Turtlesim | None = None, speed: float | None = None, called: str | None = None) -> None:
-    """Write a picture to ``path``; its ending says which kind (see the module).
+    """Write a picture to ``path``. Its ending says the kind of picture; see the module.
 
-    simulator: a `Turtlesim`; the running one when it is left out. speed: of a replay, seconds of plan time per second; ``None``: 1, or as
-    fast as it takes to be over in 30 seconds. called: how the user writes the name. Errors: a file-error when the file cannot be
-    written, which is then as it was; simple errors: an ending that says nothing, no simulator, no history, a speed that is no number above
-    zero, or with which the replay would take longer than ten minutes, or of a still picture.
+    ``simulator``: a `Turtlesim`, by default the running one. ``speed``: of a replay, in seconds of plan time per second. By default 1,
+    or faster, so that the replay ends within 30 seconds. ``called``: the user's spelling of the file name, for errors.
+
+    If the file cannot be written, it is a file-error, and an old file stays as it was. Simple errors: an unknown ending; no
+    simulator; no history; a speed for a still picture; a speed that is not a number above zero, or so low that the replay would take
+    more than ten minutes.
     """
     path = str(path)
     called = called or path
@@ -103,7 +105,7 @@ def _check_speed(speed: float, path: str) -> None:
 
 
 def _bearable(speed: float, history: History, path: str) -> float:
-    """``speed`` as a float, when a replay of ``history`` ends in a reasonable time with it."""
+    """``speed`` as a float. If the replay of ``history`` would take too long with it, it is a simple error."""
     least = history.ticks * TICK / replay.UTMOST
     if speed < least:
         conditions.error(

@@ -1,11 +1,11 @@
-"""A picture that moves: what a `History` tells, as an SVG file that any browser plays, or as a GIF.
+"""Moving pictures: the replay of a `History`, as an SVG file for any browser, or as a GIF.
 
-The SVG is one file without scripts and without anything from outside: SMIL animations along the lines (``stroke-dashoffset``) and of the
-turtles, all as long as the whole replay, which begins again at its end. A viewer that does not animate shows the last picture. The GIF
-has twenty frames a second, painted pixel by pixel like the paper itself; frames in which nothing happens take no room.
+The SVG is one file without scripts or external parts. SMIL animations move the turtles and draw the lines (``stroke-dashoffset``).
+All are as long as the whole replay, which repeats. A viewer without animation shows the last picture. The GIF has twenty frames a
+second, painted pixel by pixel like the paper itself; frames without a change take no room.
 
-A replay takes at most `LONGEST` seconds unless asked for: longer histories go two, three, ... times as fast. The end stays for `REST`
-seconds.
+By default, a replay takes at most `LONGEST` seconds: longer histories run two, three, ... times as fast. The last picture stays for
+`REST` seconds.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
 
 LONGEST = 30.0
 UTMOST = 600.0
-"""Seconds that a replay may take at all: a picture of a GIF is seen for ten minutes at most, and there are twenty a second."""
+"""The longest allowed replay, in seconds: a GIF can show one picture for ten minutes at most, and it has twenty a second."""
 REST = 2.0
 FRAME = 0.05
 _CLOSE, _TURNED, _SHARP = 0.015, 0.05, 0.005
-"""How far a turtle may be off its way, in metres, or off its heading, in radians; and how far a line, in metres."""
+"""The allowed error of a turtle's place, in metres, of its heading, in radians, and of a line, in metres."""
 
 
 def speed_for(history: History, speed: float | None = None) -> float:
-    """How many seconds of plan time pass in a second of the replay."""
+    """The speed of a replay, in seconds of plan time per second: ``speed``, or if it is ``None``, the default (see the module)."""
     return speed or max(1.0, math.ceil(history.ticks * TICK / LONGEST))
 
 
@@ -44,7 +44,7 @@ def speed_for(history: History, speed: float | None = None) -> float:
 
 
 def write_svg(history: History, path: str, speed: float | None = None) -> None:
-    """Write the replay as an animated SVG. speed: seconds of plan time per second, ``None``: see the module."""
+    """Write the replay of ``history`` to ``path``, as an animated SVG. ``speed``: see `speed_for`. Errors: `OSError`."""
     speed = speed_for(history, speed)
     writer = _Writer(history.ticks * TICK / speed + REST, speed)
     names = sorted({track.name for track in history.tracks})
@@ -69,11 +69,14 @@ class _Writer:
         self.length, self.speed = length, speed
 
     def share(self, tick):
-        """Where in the replay a tick is, between 0 and 1."""
+        """The place of a tick in the replay, between 0 and 1."""
         return min(tick * TICK / self.speed / self.length, 1.0)
 
     def animation(self, element, attribute, moments, more=""):
-        """``moments``: [(share, value), ...] in order; the first value counts from the beginning, the last one to the end."""
+        """An animation of ``attribute``. ``moments``: [(share, value), ...] in order.
+
+        The first value holds from the beginning, the last one to the end.
+        """
         moments = [(0.0, moments[0][1]), *moments, (1.0, moments[-1][1])]
         times = ";".join(f"{share:.5f}".rstrip("0").rstrip(".") for share, _ in moments)
         values = ";".join(value for _, value in moments)
@@ -83,7 +86,7 @@ class _Writer:
         )
 
     def shown(self, begin, end):
-        """(attribute, animation) of what is there from one tick to another, or to the end."""
+        """(attribute, animation) of an element that is there from one tick to another, or to the end."""
         if begin == 0 and end is None:
             return "", ""
         moments = [(0.0, "none" if begin else "inline")]
@@ -94,7 +97,7 @@ class _Writer:
         return ' display="none"' * (end is not None), self.animation("animate", "display", moments, ' calcMode="discrete"')
 
     def line(self, colour, width, points):
-        """A polyline that is drawn as time goes by. ``points``: [(x, y, tick), ...], metres on the screen."""
+        """A polyline drawn in the course of the replay. ``points``: [(x, y, tick), ...], in metres on the screen."""
         begin = points[0][2]
         attribute, animations = self.shown(begin, None)
         way, moments = 0.0, [(self.share(begin), 0.0)]
@@ -108,7 +111,7 @@ class _Writer:
         return drawn.replace("/>", f">{animations}</path>") if animations else drawn
 
     def turtle(self, track):
-        """A turtle that goes its way."""
+        """A turtle that moves along its track."""
         way = _moved(track.samples())
         attribute, animations = self.shown(track.begin, track.end)
         places = [(self.share(tick), f"{x * METRE:.1f} {y * METRE:.1f}") for tick, x, y, _ in way]
@@ -124,7 +127,7 @@ class _Writer:
 
 
 def _moved(samples):
-    """The samples of a track with headings that do not jump by a whole turn, and without those that lie on the way anyhow."""
+    """The samples of a track, without jumps of the heading by a whole turn, and without those on an even way between others."""
     unwrapped, heading = [], samples[0][3]
     for tick, x, y, wrapped in samples:
         heading += (wrapped - heading + math.pi) % (2 * math.pi) - math.pi
@@ -133,7 +136,7 @@ def _moved(samples):
 
 
 def _evenly(samples, tolerances):
-    """The samples (tick, value, ...) without those that an even change between their neighbours passes within the tolerances."""
+    """The samples (tick, value, ...) without those that differ less than the tolerances from an even change between others."""
     return thinned_by(lambda begin, end: _passes(samples, begin, end, tolerances), samples, 64)
 
 
@@ -150,7 +153,7 @@ def _passes(samples, begin, end, tolerances):
 
 
 def _polylines(strokes):
-    """[(colour, width, [(x, y, tick), ...]), ...], metres on the screen: strokes that continue one another, thinned in place and time."""
+    """[(colour, width, [(x, y, tick), ...]), ...], in metres on the screen: connected strokes, thinned in place and time."""
     found, ending = [], {}
     for tick, x1, y1, x2, y2, colour, width in strokes:
         points = ending.pop((x1, y1, colour, width), None)
@@ -166,7 +169,7 @@ def _polylines(strokes):
 
 
 def write_gif(history: History, path: str, speed: float | None = None) -> None:
-    """Write the replay as a GIF that runs for ever. speed: seconds of plan time per second, ``None``: see the module."""
+    """Write the replay of ``history`` to ``path``, as a GIF that repeats. ``speed``: see `speed_for`. Errors: `OSError`."""
     moments = _moments(history, speed_for(history, speed))
     palette = _palette(history, [*moments[:: max(len(moments) // 6, 1)][:6], moments[-1]])
     frames = (image.quantize(palette=palette, dither=0) for image in _painted(history, moments))
@@ -186,7 +189,7 @@ def write_gif(history: History, path: str, speed: float | None = None) -> None:
 
 
 def _palette(history, moments):
-    """A palette of what some of the frames show."""
+    """A palette with the colours of some frames."""
     from PIL import Image
 
     sheet = Image.new("RGB", (SIZE, SIZE * len(moments)))
@@ -196,7 +199,7 @@ def _palette(history, moments):
 
 
 def _moments(history, speed):
-    """[[era, strokes of it, turtles, seconds], ...]: the frames, each with how long it is to be seen."""
+    """[[era, number of its strokes, turtles, seconds], ...]: the frames, each with the time that it is shown."""
     step = FRAME * speed / TICK
     eras = history.eras()
     tracks = [(track, track.samples()) for track in sorted(history.tracks, key=lambda track: track.name) if track.ticks]
@@ -220,7 +223,7 @@ def _moments(history, speed):
 
 
 def _painted(history, moments):
-    """The Pillow images of some moments, in order."""
+    """Yield the Pillow images of ``moments``, in order."""
     from PIL import Image
 
     eras = history.eras()
@@ -239,7 +242,7 @@ def _painted(history, moments):
 
 
 def _place(samples, tick):
-    """(x, y, heading) at a tick: where the last sample until then says, or on the way to the next one."""
+    """(x, y, heading) at a tick: of the last sample, or on the way to the next one."""
     index = bisect_left(samples, (tick + 1e-9,))
     if index == 0:
         return samples[0][1:]

@@ -1,8 +1,8 @@
-"""What the executables of the package have in common: a roscpp node with a command line, loggers, and a log on its terminal.
+"""The common part of the package's executables: a roscpp node with a command line, loggers, and a log on its terminal.
 
-A program starts in the active graph as ``rosrun`` would start it in a process of its own: ``__name:=sim``, ``__ns:=/left``,
-``turtle1/cmd_vel:=turtle2/cmd_vel`` and ``_background_r:=150`` on its command line mean what they mean in ROS. What the original
-prints in its terminal is kept in `Program.lines`, and printed where ``echo`` says. Source: turtlesim.md 1, 3; wiki.ros.org/Remapping
+A program starts in the active graph as ``rosrun`` would start it in its own process. On its command line, ``__name:=sim``,
+``__ns:=/left``, ``turtle1/cmd_vel:=turtle2/cmd_vel`` and ``_background_r:=150`` mean the same as in ROS. `Program.lines` keeps the
+lines that the original prints in its terminal; ``echo`` says where to print them. Source: turtlesim.md 1, 3; wiki.ros.org/Remapping
 Arguments.
 """
 
@@ -27,22 +27,21 @@ _FIRST = ("__ns", "__name")
 
 
 class Program:
-    """A running executable. ``node`` is its node, ``lines`` its log (the last 5,000 to 10,000 lines), ``alive`` until it ends.
+    """A running executable. ``node``: its node. ``lines``: the last lines of its log, at most `MOST_LINES`.
 
-    name, namespace: of the node, when ``arguments`` do not say otherwise. arguments: the words of a command line, or one string.
-    spins: see `graph.Node`. echo: ``True`` prints the log to stderr, a stream there, a function gets each line without its end.
-    A node of the same name is shut down first, as ROS does. A name that is none is a simple error.
+    ``name``, ``namespace``: of the node, unless ``arguments`` say otherwise. ``arguments``: the words of a command line, or one string.
+    ``spins``: see `graph.Node`. ``echo``: ``True`` prints the log to stderr; a stream, to the stream; a function gets each line
+    without its end. As in ROS, a node of the same name is shut down first. An illegal name is a simple error.
     """
 
     name = ""
     package = "turtlesim"
+    of_client = False
+    """Whether a client of another process has started it."""
 
     def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), spins: bool = False, echo: Echo = None):
         self.graph = graph.active()
-        naming = names.Naming(name or self.name, namespace)
-        words = names.split_arguments(arguments)
-        words.sort(key=_rank)
-        naming.apply_arguments(words, names.plain_value)
+        naming = naming_of(name or self.name, namespace, arguments)
         complaint = names.check_graph_name(naming.node_name)
         if complaint:
             conditions.error(SimpleError("~a", f"A node cannot be called {naming.node_name}. {complaint}"))
@@ -57,14 +56,15 @@ class Program:
 
     @property
     def alive(self) -> bool:
+        """Whether the program still runs."""
         return self.node.alive
 
     def shutdown(self) -> None:
-        """Leave the graph."""
+        """End the program: its node leaves the graph."""
         self.node.shutdown()
 
     def number(self, parameter: str, default: float) -> float:
-        """The value of a parameter as roscpp's ``param`` reads a number; ``default`` when it is not set or something else."""
+        """The value of a numeric parameter, as from roscpp's ``param``; ``default`` if it is not set or not a number."""
         try:
             value = self.graph.parameters.get(self.node.resolve(parameter))
         except KeyError:
@@ -72,7 +72,7 @@ class Program:
         return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else default
 
     def log(self, level: int, text: str) -> None:
-        """A log line as roscpp prints it, and a message on ``/rosout``; nothing when the node's logger is less talkative."""
+        """Print a log line in roscpp's form and publish it on ``/rosout``, if the node's logger allows ``level``."""
         if not self.loggers.enabled(level):
             return
         if len(text) > MOST_TEXT:
@@ -88,7 +88,16 @@ class Program:
             print(line, file=sys.stderr if self.echo is True else self.echo)
 
 
+def naming_of(name: str, namespace: str = "/", arguments: Words = ()) -> names.Naming:
+    """The `Naming` of a program that starts with the words ``arguments``; name, namespace: when these do not say otherwise."""
+    naming = names.Naming(name, namespace)
+    words = names.split_arguments(arguments)
+    words.sort(key=_rank)
+    naming.apply_arguments(words, names.plain_value)
+    return naming
+
+
 def _rank(word: str) -> int:
-    """To roscpp name space and name count before all other words of a command line."""
+    """The rank of a word on the command line: roscpp reads namespace and name before all others."""
     left = word.partition(":=")[0]
     return _FIRST.index(left) if left in _FIRST else len(_FIRST)

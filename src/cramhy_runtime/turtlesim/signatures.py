@@ -1,9 +1,9 @@
-"""What the simulator and its pictures speak of, by name. Only type checkers read this module: nothing imports it when a program runs."""
+"""Types of the arguments in this room. Only type checkers read this module: no code imports it when a program runs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TextIO, TypedDict
+from typing import Protocol, TextIO, TypedDict
 
 from .node import Turtlesim
 
@@ -13,16 +13,16 @@ Point = tuple[float, float]
 Stroke = tuple[float, float, float, float, Colour, int]
 """x1, y1, x2, y2, the colour and the width of the pen."""
 TimedStroke = tuple[int, float, float, float, float, Colour, int]
-"""The same after the tick in which it was drawn."""
+"""A stroke with the tick of its drawing in front."""
 Polyline = tuple[Colour, int, list[Point]]
 Sample = tuple[int, float, float, float]
 """Tick, x, y, heading."""
 Era = tuple[int, Colour, list[TimedStroke]]
-"""The tick of a clear, the background, and what was drawn until the next."""
+"""The tick of a clear, the background, and the strokes until the next clear."""
 Words = str | Iterable[str]
 """A command line: its words, or one string."""
 Echo = bool | TextIO | Callable[[str], object] | None
-"""Where a log is printed: True for stderr, a stream, or a function that gets each line."""
+"""Where to print a log: True for stderr, a stream, or a function of each line."""
 
 
 class Path(TypedDict):
@@ -41,3 +41,14 @@ class Shape(TypedDict):
 
 
 Observer = Callable[[Turtlesim, list[Stroke]], object]
+
+
+class Page(Protocol):
+    """The page of a session. url: its address, with the token. port: where it is. seen: whether a browser was opened for it."""
+
+    url: str
+    port: int
+    seen: bool
+
+
+Opener = Callable[[bool, bool], Page]

@@ -1,6 +1,6 @@
-"""The turtles' drawings in pixels: the vector paths of `drawing`, filled with Pillow, smooth at the edges.
+"""The turtles' drawings in pixels: the vector paths of `drawing`, filled with Pillow, with smooth edges.
 
-A sprite is painted eight times as large and made small again; that is done once per drawing and heading, to the degree.
+Each sprite is painted eight times as large, then reduced, once per drawing and whole degree of heading.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MARGIN = 0.6
 
 
 def outlines(data: str) -> list[list[Point]]:
-    """Path data as `drawing` writes them, as a list of polygons ``[(x, y), ...]``."""
+    """The polygons ``[(x, y), ...]`` of path data from `drawing`, as a list."""
     found: list[list[Any]] = []
     for command, numbers in re.findall(r"([MLCZ])([^MLCZ]*)", data):
         values = [float(number) for number in numbers.split()]
@@ -52,7 +52,7 @@ def _polygons(number: int) -> list[tuple[list[Point], str]]:
 
 @lru_cache(maxsize=1024)
 def sprite(number: int, degrees: int) -> Picture:
-    """The drawing ``number`` of a turtle whose heading is ``degrees``, as a square Pillow image with transparency."""
+    """The drawing ``number`` for a heading of ``degrees``, as a square Pillow image with transparency."""
     from PIL import Image, ImageDraw
 
     size = 2 * math.ceil(MARGIN * METRE)
@@ -66,9 +66,10 @@ def sprite(number: int, degrees: int) -> Picture:
 
 
 def put(image: Picture, number: int, x: float, y: float, heading: float) -> None:
-    """Paint a turtle on a Pillow image of the window; x and y in metres on the screen (y down), heading in radians.
+    """Paint a turtle on a Pillow image of the window.
 
-    What stands far outside, or nowhere (not a number), is not painted.
+    ``number``: of its drawing. ``x``, ``y``: in metres on the screen (y down). ``heading``: in radians. A turtle far outside, or with a
+    coordinate that is not a number, is not painted.
     """
     if not (abs(x) < 2 * SIZE and abs(y) < 2 * SIZE and math.isfinite(heading)):
         return

@@ -1,7 +1,7 @@
-"""Pictures of the window as it is now: paper and turtles in pixels, or as vectors.
+"""Pictures of the present window: paper and turtles in pixels, or as vectors.
 
-The PNG shows the paper pixel by pixel, as the colour sensors read it. The SVG shows the same lines as vectors, square caps and all, and
-may be printed at any size. Which kind of picture a file gets, pictures that move too, says `pictures`.
+The PNG shows the paper pixel by pixel, as the colour sensors read it. The SVG shows the same lines as vectors, with square caps, and
+can be printed at any size. `pictures` chooses the kind of picture by the ending of the file, also of moving ones.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ if TYPE_CHECKING:
 
 
 def still_png(simulator: Turtlesim, path: str) -> None:
-    """Write what the window shows as a PNG file of 500 by 500 pixels."""
+    """Write the window to ``path``, as a PNG file of 500 by 500 pixels. Errors: `OSError`."""
     with storage.writing(path) as file:
         save_image(picture(simulator), file, "PNG")
 
 
 def save_image(image: Picture, file: BinaryIO, kind: str, **options: Any) -> None:
-    """Write a Pillow image to the open ``file``. Errors: `OSError`, with its number.
+    """Write a Pillow image to the open ``file``. ``kind``, ``options``: as for Pillow's ``save``. Errors: `OSError`, with its number.
 
-    Pillow itself writes to the number of a file that has one, and its error then does not say why it could not.
+    Pillow itself would write to the file's descriptor, and its error would not say the reason.
     """
     image.save(_Sink(file), kind, **options)
 
 
 class _Sink:
-    """A file without a number."""
+    """A file without a descriptor."""
 
     def __init__(self, file: BinaryIO):
         self.write, self.flush, self.tell, self.seek = file.write, file.flush, file.tell, file.seek
 
 
 def picture(simulator: Turtlesim) -> Picture:
-    """What the window shows, as a Pillow image: the paper, and the turtles in the order of their names (turtlesim.md 9)."""
+    """The window as a Pillow image: the paper, and the turtles in the order of their names (turtlesim.md 9)."""
     from PIL import Image
 
     image = Image.frombytes("RGB", (SIZE, SIZE), simulator.canvas.rgb())
@@ -56,7 +56,10 @@ def picture(simulator: Turtlesim) -> Picture:
 
 
 def still_svg(simulator: Turtlesim, path: str) -> None:
-    """Write what the window shows as an SVG file; lines that lie within a fifth of a pixel of a straight one are made straight."""
+    """Write the window to ``path``, as an SVG file. Lines become straight if that moves them by at most a fifth of a pixel.
+
+    Errors: `OSError`.
+    """
     parts = [svg_head(f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"), svg_paper(simulator.canvas.background)]
     for colour, width, points in simulator.canvas.polylines():
         parts.append(svg_line(colour, width, points))
@@ -68,7 +71,7 @@ def still_svg(simulator: Turtlesim, path: str) -> None:
 
 
 def svg_head(title: str) -> str:
-    """The beginning of an SVG document of the window."""
+    """The beginning of an SVG document of the window, with ``title`` as plain text."""
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {SIZE} {SIZE}" width="{SIZE}" height="{SIZE}" role="img">\n'
         f"<title>{escape(title)}</title>"
@@ -76,11 +79,15 @@ def svg_head(title: str) -> str:
 
 
 def svg_paper(background: Colour) -> str:
+    """The paper as an SVG element, in the colour ``background``."""
     return f'<rect width="{SIZE}" height="{SIZE}" fill="{hexadecimal(background)}"/>'
 
 
 def svg_line(colour: Colour, width: int, points: Sequence[Any], more: str = "") -> str:
-    """A polyline of a pen; ``points`` in metres on the screen."""
+    """A polyline of a pen, as an SVG element.
+
+    ``width``: in pixels. ``points``: tuples that begin with x and y, in metres on the screen. ``more``: further attributes, as text.
+    """
     data = "M" + "L".join(f"{x * METRE:.1f} {y * METRE:.1f}" for x, y in (point[:2] for point in points))
     if len(points) == 2 and points[0][:2] == points[1][:2]:
         data += "h.01"  # a dot: renderers leave out a line without a length, caps and all
@@ -91,10 +98,11 @@ def svg_line(colour: Colour, width: int, points: Sequence[Any], more: str = "") 
 
 
 def svg_turtle(number: int) -> str:
-    """The drawing of a turtle that looks to the right, around the origin, in pixels."""
+    """The drawing ``number`` of a turtle as an SVG element, looking to the right, around the origin, in pixels."""
     paths = drawing.shapes()[number % DRAWINGS]["paths"]
     return f'<g transform="scale({METRE})">' + "".join(f'<path d="{path["d"]}" fill="{path["fill"]}"/>' for path in paths) + "</g>"
 
 
 def hexadecimal(colour: Colour) -> str:
+    """``colour`` as ``#rrggbb``."""
     return "#{:02x}{:02x}{:02x}".format(*colour)

@@ -1,8 +1,8 @@
-"""The ink on the paper as lines, for those who draw it themselves: the live page, and pictures without pixels.
+"""The ink on the paper as lines, for other painters: the live page, and pictures without pixels.
 
-A turtle that drives draws a line per tick, 62 a second. They are kept in arrays, 20 bytes each, and made few when somebody asks, or piece
-by piece: lines that continue one another become one polyline, and points of it are left out that lie within `TOLERANCE` of what is drawn
-without them, a fifth of a pixel. Lines of different turtles that cross within a few seconds may come in another order.
+A driving turtle draws a line per tick, 62 a second. `Ink` keeps them in arrays, 20 bytes each, and thins them out on demand or piece
+by piece. Connected lines become one polyline, and it leaves out points within `TOLERANCE`, a fifth of a pixel, of the line without
+them. If lines of different turtles cross within a few seconds, their order may change.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 P = TypeVar("P")
 TOLERANCE = 0.0045
-"""Metres that a polyline may be off: a fifth of a pixel."""
+"""The allowed error of a polyline, in metres: a fifth of a pixel."""
 MOST_LINES = 50_000
-"""Lines kept, a megabyte: thinned out piece by piece some hours of driving on paper that nobody clears, where every pixel has been painted
-ten times by then. Beyond that all are thinned out, and if that is not enough the oldest quarter is forgotten."""
+"""Number of lines to keep, a megabyte. Thinned out piece by piece, that is some hours of driving without a clear; every pixel has
+been painted ten times by then. Beyond it, all lines are thinned out, and if that is not enough, the oldest quarter is forgotten."""
 PIECE = 1000
-"""Lines that are thinned out together, which takes some milliseconds."""
+"""Number of lines to thin out together, which takes some milliseconds."""
 _TOGETHER = 512  # lines among which one may continue another
 _WINDOW = 48  # points that one straight piece of a polyline may leave out
 
 
 class Ink:
-    """Lines since the last clear, in the order in which they were drawn."""
+    """Lines since the last clear, in the order of drawing."""
 
     def __init__(self) -> None:
         self._ends = array("f")  # x1 y1 x2 y2 in metres on the screen, per line
@@ -46,7 +46,7 @@ class Ink:
         return self.first(len(self))
 
     def take(self, lines: Iterable[Stroke]) -> None:
-        """Add lines ``(x2, y2, x1, y1, colour, width)`` in metres on the screen, as `Canvas` keeps them, from 1 to 2."""
+        """Add lines ``(x2, y2, x1, y1, colour, width)`` from `Canvas`, in metres on the screen, drawn from 1 to 2."""
         ends, pens, table = self._ends, self._pens, self._table
         for x2, y2, x1, y1, colour, width in lines:
             if (x1 + y1 + x2 + y2) * 0.0 == 0.0:  # all are finite
@@ -56,7 +56,7 @@ class Ink:
             self._shorten()
 
     def take_thinned(self, lines: Sequence[Stroke]) -> None:
-        """Add lines as `take` does, thinned out in pieces: in hours that is a tenth of them."""
+        """Add lines as `take` does, thinned out in pieces. Over hours, a tenth of them remains."""
         for begin in range(0, len(lines), PIECE):
             piece = Ink()
             piece.take(lines[begin : begin + PIECE])
@@ -70,7 +70,7 @@ class Ink:
         return other
 
     def room_for(self, count: int) -> bool:
-        """Whether so many lines can be added without any line before them being changed."""
+        """Whether `Ink` can add ``count`` lines without changing the lines before."""
         return len(self) + count <= MOST_LINES
 
     def _shorten(self) -> None:
@@ -83,7 +83,7 @@ class Ink:
             del self._ends[: 4 * surplus], self._pens[:surplus]
 
     def polylines(self) -> list[Polyline]:
-        """[(colour, width, [(x, y), ...]), ...], metres on the screen (y down), thinned out."""
+        """[(colour, width, [(x, y), ...]), ...], in metres on the screen (y down), thinned out."""
         pens, found, ending = list(self._table), [], {}
         ends = self._ends
         for index, pen in enumerate(self._pens):
@@ -108,16 +108,18 @@ class Ink:
 
 
 def thinned(points: Sequence[Point], tolerance: float = TOLERANCE) -> list[Point]:
-    """The points of a polyline without those that may be left out: none of them is further than ``tolerance`` from its straight piece.
+    """The points of a polyline, without those within ``tolerance`` metres of the straight line between two others.
 
-    ``points``: tuples that begin with x and y; first and last are always there, and what else is in the tuples comes along.
+    ``points``: tuples that begin with x and y, in metres. The result has the same tuples, always with the first and the last.
     """
     return thinned_by(lambda begin, end: _straight(points, begin, end, tolerance), points)
 
 
 def thinned_by(fits: Callable[[int, int], bool], points: Sequence[P], window: int = _WINDOW) -> list[P]:
-    """The points, of any kind, without those that may be left out: ``fits(begin, end)`` says whether all between these two may be, which
-    are at the most ``window``."""
+    """The points, of any kind, without the unnecessary ones.
+
+    ``fits(begin, end)`` says whether all points between these two indices are unnecessary. ``window``: how many may be at most.
+    """
     if len(points) < 3:
         return list(points)
     kept, begin = [points[0]], 0
@@ -130,7 +132,7 @@ def thinned_by(fits: Callable[[int, int], bool], points: Sequence[P], window: in
 
 
 def _straight(points: Sequence[Point], begin: int, end: int, tolerance: float) -> bool:
-    """Whether all points between the two lie within ``tolerance`` of the straight piece from the one to the other."""
+    """Whether all points between the two indices are within ``tolerance`` of the straight line between the two points."""
     x, y = points[begin][:2]
     along_x, along_y = points[end][0] - x, points[end][1] - y
     length = math.hypot(along_x, along_y)

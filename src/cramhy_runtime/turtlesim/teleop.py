@@ -1,8 +1,8 @@
-"""The arrow keys: ``turtle_teleop_key``. Each key that counts publishes one command, and nothing stops the turtle but time.
+"""The arrow keys: ``turtle_teleop_key``. Each arrow key publishes one command. Only the end of the command's time stops the turtle.
 
-Keys are recognised by the last byte of what the terminal sends, so the capitals A to D work too. The scales are read once,
-from ``/scale_linear`` and ``/scale_angular``. `Teleop` is the program; a terminal prints `BANNER` and hands `Teleop.feed` the bytes that
-are typed, in any portions. Source: turtlesim.md 10.
+The last byte from the terminal decides which key it is, so the capitals A to D work too. The scales are read once, from
+``/scale_linear`` and ``/scale_angular``. `Teleop` is the program. A terminal prints `BANNER` and gives `Teleop.feed` the typed
+bytes, in any portions. Source: turtlesim.md 10.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ NAMED_KEYS = {"up": "A", "down": "B", "right": "C", "left": "D"}
 
 
 class Teleop(Program):
-    """The node ``/teleop_turtle``, which drives ``turtle``; its command line may send it to another (``turtle1/cmd_vel:=x/cmd_vel``)."""
+    """The node ``/teleop_turtle``, which drives ``turtle``. Other arguments: see `Program`.
+
+    The command line can choose another turtle (``turtle1/cmd_vel:=x/cmd_vel``).
+    """
 
     name = "teleop_turtle"
 
@@ -34,7 +37,10 @@ class Teleop(Program):
         self.angular = self.number("scale_angular", 2.0)
 
     def press(self, key: str) -> bool:
-        """One key: ``"up"``, ``"down"``, ``"left"``, ``"right"``, ``"q"``, or the byte it ends in. True when it moved the turtle."""
+        """Press one key: ``"up"``, ``"down"``, ``"left"``, ``"right"``, ``"q"``, or the last byte of the key.
+
+        Returns whether the turtle got a command. ``"q"`` ends the program.
+        """
         key = NAMED_KEYS.get(key, key)
         if key == "q":
             self.shutdown()
@@ -48,7 +54,7 @@ class Teleop(Program):
         return True
 
     def feed(self, data: bytes) -> bool:
-        """Bytes as the terminal sends them, escape sequences included. Whether the program still runs: ``q`` ends it."""
+        """Handle ``data``, bytes from the terminal with escape sequences. Returns whether the program still runs; ``q`` ends it."""
         for byte in data:
             self.press(chr(byte))
             if not self.alive:

@@ -1,9 +1,9 @@
-"""The turtles' world: where they are, how they move, what happens at the walls.
+"""The turtles' world: their places, moves and the walls.
 
-One tick is 16 ms, whatever the clock says: the heading turns first, then the turtle moves along the new heading (semi-implicit
-Euler), then it is held inside the walls. Positions are doubles, y counts down from the top as on the screen; what enters and
-leaves through messages is rounded to 32 bits. π is the constant of the original, 3.14159265, which decides on which side an
-angle of half a turn lands. A command counts for one second. Source: turtlesim.md 2, 4, 5, 6.
+One tick is always 16 ms, even if the clock differs. The heading turns first, then the turtle moves along the new heading
+(semi-implicit Euler), then the walls stop it. Positions are doubles, and y counts down from the top as on the screen; values in
+messages are rounded to 32 bits. π is the constant of the original, 3.14159265, which decides whether half a turn becomes positive
+or negative. A command lasts for one second. Source: turtlesim.md 2, 4, 5, 6.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ DEFAULT_PEN = (179, 184, 255)
 
 
 class Turtle:
-    """One turtle. x, y (down) in metres, heading in radians; ``warn(text)`` is called when it hits a wall.
+    """One turtle. Attributes ``x``, ``y``: in metres on the screen (y down). ``heading``: in radians.
 
-    ``segment`` is where the line of the last update begins, until `draw` has drawn it, or ``None``.
+    The argument ``y`` is in metres of the world (y up). ``number``: of its drawing. ``canvas``: the paper. ``warn(text)`` is called when
+    the turtle hits a wall. ``segment``: the beginning of the last update's line until `draw` has drawn it, or ``None``.
     """
 
     __slots__ = (
@@ -74,28 +75,31 @@ class Turtle:
         self.segment: tuple[float, float] | None = None
 
     def command(self, forward: float, sideways: float, turn: float, now: float) -> None:
-        """A velocity command received at the time ``now``; it replaces the one before."""
+        """Set the velocity: ``forward`` and ``sideways`` in m/s, ``turn`` in rad/s, at the time ``now`` in seconds."""
         self.forward, self.sideways, self.turn, self.commanded = forward, sideways, turn, now
         self.at_rest = False
 
     def teleport_absolute(self, x: float, y: float, heading: float) -> None:
-        """To (x, y) in world coordinates, at the next update."""
+        """Move to (x, y), in metres of the world (y up), with ``heading`` in radians, at the next update."""
         self.teleports.append((x, y, heading, True))
         self.at_rest = False
 
     def teleport_relative(self, linear: float, angular: float) -> None:
-        """Turn by ``angular``, then move by ``linear``, at the next update."""
+        """Turn by ``angular`` radians, then move by ``linear`` metres, at the next update."""
         self.teleports.append((linear, 0.0, angular, False))
         self.at_rest = False
 
     def set_pen(self, red: int, green: int, blue: int, width: int, off: object) -> None:
-        """With ``off`` the rest of the request does not count (turtlesim.md 7.1)."""
+        """Set colour (0 to 255 each) and width (pixels) of the pen, or switch it ``off``.
+
+        With ``off``, colour and width stay as they are (turtlesim.md 7.1).
+        """
         self.pen_on = not off
         if not off:
             self.pen_colour, self.pen_width = (red, green, blue), width or 1
 
     def update(self, now: float) -> None:
-        """One tick, up to the walls; the line of this move is drawn by `draw`, after the colour was sampled."""
+        """Move for one tick, up to the walls. `draw` draws the line later, after the colour was read. ``now``: in seconds."""
         if self.at_rest:
             return
         if self.teleports:
@@ -124,7 +128,7 @@ class Turtle:
             self.at_rest = True
 
     def draw(self) -> None:
-        """The line of the last update."""
+        """Draw the line of the last update, if the pen is on."""
         segment = self.segment
         if segment is not None:
             self.segment = None
@@ -132,7 +136,10 @@ class Turtle:
                 self._line(segment[0], segment[1], self.x, self.y)
 
     def pose(self) -> tuple[float, float, float, float, float]:
-        """(x, y up, heading, speed, turn) as they are published: rounded to 32 bits. The speed is never negative."""
+        """The published values (x, y up, heading, speed, turn), rounded to 32 bits. The speed is never negative.
+
+        Units: metres, radians, m/s, rad/s.
+        """
         if self._pose is None:
             speed = _sqrt(self.forward * self.forward + self.sideways * self.sideways)
             values = (self.x, EXTENT - self.y, self.heading, speed, self.turn)
@@ -143,7 +150,7 @@ class Turtle:
         return self._pose  # type: ignore[return-value]  # of five
 
     def colour(self) -> Colour:
-        """The colour of the paper under the centre of the turtle."""
+        """The colour (r, g, b) of the paper under the turtle's centre."""
         return self.canvas.pixel(self.x, self.y)
 
     def _teleport(self) -> None:
@@ -165,7 +172,7 @@ class Turtle:
 
 
 def _direction(heading: float) -> tuple[float, float]:
-    """Cosine and sine, as C++ has them: not a number where Python has an error."""
+    """Cosine and sine as in C++: not-a-number where Python raises an error."""
     try:
         return _cos(heading), _sin(heading)
     except ValueError:

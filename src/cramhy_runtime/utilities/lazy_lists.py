@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, one, truth
+from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import keyword
@@ -225,6 +225,7 @@ def lazy_cdr(ll):
 def lazy_elt(ll, index):
     """Element ``index``, counted from 0; ``nil`` past the end."""
     for _ in range(index):
+        kernel.checkpoint()
         ll = lazy_cdr(ll)
     return lazy_car(ll)
 
@@ -232,12 +233,15 @@ def lazy_elt(ll, index):
 def force_ll(ll):
     """Compute the whole list; returns it, a proper list now."""
     cell = ll
-    while isinstance(cell, Cons):
-        rest = cell.cdr
-        if rest.__class__ is not Cons and isinstance(rest, LazyTail):
-            rest = cell.cdr = rest.force(True)
-        cell = rest
-    return ll
+    while True:
+        for _ in STRETCH:
+            if not isinstance(cell, Cons):
+                return ll
+            rest = cell.cdr
+            if rest.__class__ is not Cons and isinstance(rest, LazyTail):
+                rest = cell.cdr = rest.force(True)
+            cell = rest
+        kernel.checkpoint()
 
 
 def lazy_list_p(lc):
@@ -245,6 +249,7 @@ def lazy_list_p(lc):
     if not isinstance(lc, Cons):
         return None
     while isinstance(lc, Cons):
+        kernel.checkpoint()
         lc = lc.cdr
         if isinstance(lc, LazyTail) and lc.generator is None:
             lc = lc.value
@@ -254,6 +259,7 @@ def lazy_list_p(lc):
 def elements(ll):
     """A Python iterator over the elements, forcing as it goes."""
     while isinstance(ll, Cons):
+        kernel.checkpoint()
         yield ll.car
         ll = lazy_cdr(ll)
 
@@ -276,6 +282,7 @@ def lazy_mapcan(fun, list_1, *more_lists):
 
     def step(lists):
         while not any(ll is None for ll in lists):
+            kernel.checkpoint()
             heads = [ll.car for ll in lists]
             part = one(function(*heads))
             if part is not None and part is not False:
@@ -305,6 +312,7 @@ def lazy_filter(pred, ll):
 
     def step(cell):
         while cell is not None:
+            kernel.checkpoint()
             result = all_values(function(cell.car))
             if result and truth(result[0]):
                 if len(result) > 1 and truth(result[1]):
@@ -347,6 +355,7 @@ def lazy_take(n, ll):
 def lazy_skip(n, ll):
     """The list without its first ``n`` elements. (The original drops one element whatever ``n`` is.)"""
     for _ in range(n):
+        kernel.checkpoint()
         ll = lazy_cdr(ll)
     return ll
 
@@ -356,6 +365,7 @@ def lazy_flatten(list_):
 
     def step(stack):
         while stack is not None:
+            kernel.checkpoint()
             cell, outer = stack
             if cell is None:
                 stack = outer
@@ -380,15 +390,11 @@ def lazy_dolist(list_, function):
     """Call ``function`` with each element in turn: the work of the macro ``lazy-dolist``."""
     for element in elements(list_):
         function(element)
-        kernel.checkpoint()
 
 
 def copy_lazy_list(src):
     """A copy of the computed part that shares the tail."""
-    cars = []
-    while isinstance(src, Cons):
-        cars.append(src.car)
-        src = src.cdr
+    cars, src = list_parts(src)
     for car in reversed(cars):
         src = Cons(car, src)
     return src

@@ -14,7 +14,7 @@ import itertools
 from cramhy_runtime.ground import equality
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, list_from, one, truth
+from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, conses, list_from, one, truth
 from cramhy_runtime.ground.functions import function_of
 
 from .lazy_lists import LazyTail, lazy_cdr
@@ -41,6 +41,7 @@ def same_atom(a, b):
 def equal(a, b):
     """CL ``equal`` on data that may contain lazy lists, which it forces."""
     while isinstance(a, Cons) and isinstance(b, Cons):
+        checkpoint()
         if a is b:
             return True
         if not equal(a.car, b.car):
@@ -110,6 +111,7 @@ def is_genvar(var):
 def entry(var, bdgs):
     """The pair for ``var`` in an association list, or ``None``."""
     while bdgs is not None:
+        checkpoint()
         pair = bdgs.car
         if pair is not None and pair.car is var:
             return pair
@@ -151,12 +153,12 @@ def substitute_vars(pat, bdgs):
                 return pat
         return pat if not isinstance(pat, Cons) else substitute_vars(pat, bdgs)
     cars, changed, cell = [], False, pat
-    while isinstance(cell, Cons):
-        car = cell.car
+    for each in conses(pat):
+        car = each.car
         value = substitute_vars(car, bdgs) if isinstance(car, (Cons, Symbol)) else car
         changed = changed or value is not car
         cars.append(value)
-        cell = cell.cdr
+        cell = each.cdr
         if variable(cell):
             value = substitute_vars(cell, bdgs)
             changed = changed or value is not cell
@@ -179,8 +181,10 @@ def variables_of(tree):
     """The variables of ``tree`` as a Python list, in order of first occurrence, ``?_`` included."""
     found, stack = {}, [tree]
     while stack:
+        checkpoint()
         item = stack.pop()
         while isinstance(item, Cons):
+            checkpoint()
             if isinstance(item.cdr, (Cons, Symbol)):
                 stack.append(item.cdr)
             item = item.car

@@ -17,7 +17,7 @@ from cramhy_runtime.ground.data import DoubleFloat, MultipleValues, Symbol, list
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import function_of, identity
-from cramhy_runtime.ground.generic_functions import protocol_function
+from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from cramhy_runtime.ground.packages import keyword
 
 from .symbols import sym

@@ -9,7 +9,7 @@ Where the parts are: `page` serves the files and opens the browser.
 
 
 def start(session=None, port=None, open_browser=True):
-    """Show the active session in a page; the `page.Page`, with ``url`` and ``close()``. See `page.start`."""
+    """Show the active session in a page, at any time; the `page.Page`, with ``url`` and ``close()``. See `page.start`."""
     from . import page
 
     return page.start(session, port, open_browser)

@@ -1,13 +1,13 @@
 """When a task of a plan stops in the debugger, and how it goes on from there.
 
-What no handler of a task takes comes to its root. As a rule it ends the task there and then, and its parent hears of it: cpl.md
-4.3 suggests this to whoever has no debugger at hand, so ``*debug-on-lisp-errors*`` is nil at first, where the original's is T.
-Set to T, an error stops its task with the whole stack still there, in front of the user, while all other tasks wait: the restart
+A condition that no handler of a task takes reaches the root of the task. As a rule it ends the task at once, and the parent gets the
+failure. cpl.md 4.3 suggests this for users without a debugger. So ``*debug-on-lisp-errors*`` is nil at first, where the original's is
+T. If it is T, an error stops its task in front of the user, with the whole stack still there, and all other tasks wait. The restart
 ``rethrow`` lets the error go on to the parent, ``teardown`` ends the task with the failure ``Aborted.``. ``*break-on-plan-failures*``
-names a type of failures that stop their task before any handler hears of them. Where nobody can be asked, in a script or under
-pytest, both go on as if they were nil.
+names a type of failures that stop their task before any handler sees them. In a script or under pytest there is no user to ask, and
+both variables count as nil.
 
-``(abort)`` in a task is its end as well, for every task has a restart of that name around everything else.
+``(abort)`` in a task ends the task, too: every task has a restart of that name around everything else.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ RETHROW, TEARDOWN, CONTINUE, ABORT = sym("CPL-IMPL::RETHROW"), sym("CPL-IMPL::TE
 
 
 def end_the_task(condition):
-    """The root of a task: ``condition``, an error that nobody took, ends it. Outside of tasks nothing happens."""
+    """End the current task with ``condition``, an error that no handler took, or stop it in the debugger. Outside of tasks do nothing."""
     task = current_task()
     if task is None:
         return
@@ -56,7 +56,7 @@ def end_the_task(condition):
 
 
 def abort_task():
-    """End the current task. No handler of it is asked; its parent gets the plan failure ``Aborted.``"""
+    """End the current task without asking its handlers. Its parent gets the plan failure ``Aborted.``"""
     aborted = SimplePlanFailure("Aborted.")
     aborted.signalled = True
     raise aborted

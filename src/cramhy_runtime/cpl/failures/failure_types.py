@@ -1,8 +1,8 @@
 """The conditions by which plans fail (cpl.md 4.1).
 
-A ``plan-failure`` is a serious condition but no error: ``ignore-errors`` and clauses for ``error`` let it pass, and in Python it
-is no `Exception`. An error that ends a branch reaches the parent in an envelope, which is a plan failure; a clause of
-``with-failure-handling`` for ``error`` looks inside. The policy conditions belong to neither family.
+A ``plan-failure`` is a serious condition and not an error: ``ignore-errors`` and clauses for ``error`` let it pass. In Python it is not
+an `Exception`. An error that ends a branch reaches the parent in an envelope, which is a plan failure; a clause of
+``with-failure-handling`` for ``error`` looks inside. Policy conditions are neither errors nor plan failures.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class SimplePlanFailure(SimpleCondition, PlanFailure):
 
 
 class CompositeFailure(PlanFailure):
-    """All attempts failed; ``failures`` (a Lisp list) says how."""
+    """All attempts failed. ``failures`` is a Lisp list of their failures."""
 
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::COMPOSITE-FAILURE"
     initargs = {"FAILURES": "failures"}
@@ -41,12 +41,12 @@ class CompositeFailure(PlanFailure):
 
     @property
     def exceptions(self) -> list[BaseException]:
-        """The failures as a Python list of what Python's ``except`` would see: errors without their envelopes."""
+        """The failures as a Python list, as Python's ``except`` would see each of them: errors without their envelopes."""
         return [python_exception(failure) for failure in self.failures or ()]
 
     @property
     def beside(self) -> list[tuple[str, BaseException]]:
-        """What to tell with it: each failure, and then the ``others``, of branches beside the one that it came from."""
+        """Pairs (label, failure) that a report shows with it: each failure, then the ``others``, failures of branches beside its own."""
         failures = list(self.failures or ())
         return [*((f"Failure {number} of {len(failures)}", opened(failure)) for number, failure in enumerate(failures, 1)), *self.others]
 
@@ -56,7 +56,7 @@ class CompositeFailure(PlanFailure):
 
 
 class CommonLispErrorEnvelope(PlanFailure):
-    """The error of a child task, on its way up."""
+    """A plan failure that holds the ``error`` of a child task on its way to the parent."""
 
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::COMMON-LISP-ERROR-ENVELOPE"
     initargs = {"ERROR": "error"}
@@ -64,12 +64,16 @@ class CommonLispErrorEnvelope(PlanFailure):
 
 
 class PolicyCondition(Condition):
+    """A condition about the policy ``name``."""
+
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-CONDITION"
     initargs = {"NAME": "name"}
     name: Name | None = None
 
 
 class PolicyNotFound(PolicyCondition):
+    """There is no policy called ``name``."""
+
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-NOT-FOUND"
 
     def report(self) -> str:
@@ -77,12 +81,16 @@ class PolicyNotFound(PolicyCondition):
 
 
 class PolicyFailure(PolicyCondition):
+    """A policy failed. ``parameters`` is a Lisp list of the forms or values that it was used with."""
+
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-FAILURE"
     initargs = {"NAME": "name", "PARAMETERS": "parameters"}
     parameters: object = None
 
 
 class PolicyInitFailed(PolicyFailure):
+    """The ``init`` clause of a policy did not return true, so its body was not run."""
+
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-INIT-FAILED"
 
     def report(self) -> str:
@@ -90,6 +98,8 @@ class PolicyInitFailed(PolicyFailure):
 
 
 class PolicyCheckConditionMet(PolicyFailure):
+    """The ``check`` clause of a policy returned true, so its body was evaporated."""
+
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY-CHECK-CONDITION-MET"
 
     def report(self) -> str:
@@ -108,7 +118,7 @@ def envelope(condition: Condition) -> PlanFailure:
 
 
 def opened(condition: BaseException) -> BaseException:
-    """What an envelope holds, with the envelope's place if it has none; any other condition is itself."""
+    """The error in an envelope, with the envelope's source place if it has none of its own. Another condition is returned as it is."""
     if not isinstance(condition, CommonLispErrorEnvelope):
         return condition
     problem = condition.error
@@ -118,7 +128,7 @@ def opened(condition: BaseException) -> BaseException:
 
 
 def python_exception(condition: BaseException) -> BaseException:
-    """What Python code sees of ``condition``: an envelope's error, and for an exception that Python raised that exception."""
+    """The exception that Python code sees for ``condition``: the error in an envelope, or the exception that Python itself raised."""
     error = opened(condition)
     if error is not condition:
         error.envelope = condition

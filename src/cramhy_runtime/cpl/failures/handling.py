@@ -1,11 +1,11 @@
 """Failing, and handling failures before anything unwinds.
 
-``fail`` offers its condition to the handlers of its task while the failing code's stack is still there; a handler may leave by a
-non-local exit, have the body tried again with ``retry``, or decline by returning. What nobody takes unwinds the task and is
-signalled once more, the same object, in the task that waits for it (`signal_failure`). Source: cpl.md section 4.
+``fail`` offers its condition to the handlers of its task while the failing code's stack is still there. A handler may leave by a
+non-local exit, have the body tried again with ``retry``, or decline by returning. If all decline, the task unwinds, and the same
+condition object is signalled again in the task that waits for it (`signal_failure`). Source: cpl.md section 4.
 
-An error in a task goes to its parent in an envelope, and ``top-level`` opens it; `debugging` says when the debugger comes first. A
-task that is being evaporated cannot be brought back by a handler that was there before: such handlers are passed over.
+An error in a task goes to its parent in an envelope, and ``top-level`` opens the envelope; `debugging` says when the debugger comes
+first. Handlers established before a task was evaporated cannot bring it back: they are passed over.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ T = TypeVar("T")
 def fail(*arguments: Any) -> NoReturn:
     """``(fail ...)``: fail with a text and its arguments, a condition class with initargs, or a condition object. Never returns.
 
-    Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.``
+    Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.`` Source: cpl.md 4.2.
     """
     fail_with_advice(None, *arguments)
 
 
 def fail_with_advice(advice: str | Callable[[], str] | None, *arguments: Any) -> NoReturn:
-    """`fail`, with a hint for whoever looks at the failure: a text, or a function that finds one out then."""
+    """`fail` with a hint for the user: ``advice`` is a text, or a function that makes the text when the failure is shown."""
     condition = _designated(*arguments) if arguments else SimplePlanFailure("Plan failure.")
     if advice is not None:
         condition.hint = advice
@@ -70,7 +70,7 @@ def _designated(datum: Any, *arguments: object) -> Any:
             rest = sym("REST")
             return error(
                 types.SimpleError("The assertion ~S failed with ~S = ~S.", lisp_list(sym("NULL"), rest), rest, list_from(arguments)),
-                hint="FAIL signals a condition object as it is. What it holds is given to MAKE-CONDITION, or to FAIL with a class.",
+                hint="FAIL signals a condition object as it is. Give its slots to MAKE-CONDITION, or to FAIL with a class.",
             )
         return datum
     if isinstance(datum, (str, type)) or is_symbol(datum) or datum.__class__.__name__ == "LispString":
@@ -86,7 +86,7 @@ def signal_failure(condition: BaseException) -> NoReturn:
 
 
 class _Again(BaseException):
-    """Unwinds to the ``with-failure-handling`` whose body is to be tried again, or that is to return ``values``."""
+    """Unwinds to a ``with-failure-handling`` form, which tries its body again or, with ``leave``, returns ``values``."""
 
     def __init__(self, form: Handling, values: Any = None, leave: bool = False):
         self.form, self.values, self.leave = form, values, leave
@@ -116,7 +116,7 @@ class Handling:
         raise _Again(self, value, True)
 
     def handle(self, condition: types.Condition) -> None:
-        """The handler of the form: try its clauses in order (cpl.md 4.5, points 4 and 5). Returns when all declined."""
+        """The handler of the form: try its clauses in order (cpl.md 4.5, points 4 and 5). Returns if all of them decline."""
         if self.task.cancelled_delivered and not self.ending:
             return
         clauses = self.clauses
@@ -138,9 +138,10 @@ class Handling:
 def with_failure_handling(clauses: Sequence[Clause], body: Callable[[Handling], T]) -> T:
     """``(with-failure-handling clauses body...)``: the values of ``body(retry)``, with ``clauses`` in force.
 
-    ``clauses`` is a list of (type specifier, handler) with ``handler(condition, retry)``; an ``(or ...)`` clause comes as one pair
-    per type. Handlers run before unwinding; one that returns declines, and the next matching clause or outer form has its turn.
-    ``retry()`` tries the body again. The block named nil for ``return`` is the compiler's; Python handlers call ``retry.leave``.
+    ``clauses`` is a list of (type specifier, handler), and each handler is called as ``handler(condition, retry)``. An ``(or ...)``
+    clause comes as one pair per type. Handlers run before unwinding. A handler that returns declines, and the next matching clause
+    or outer form is asked. ``retry()`` tries the body again, and ``retry.leave(value)`` returns from the form. In Lisp, ``(return value)``
+    leaves the compiler's block named nil. Source: cpl.md 4.5.
     """
     handling = Handling(clauses)
     if on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods:
@@ -162,9 +163,9 @@ def _attempts(handling: Handling, body: Callable[[Handling], T]) -> T:
 
 
 def observed(types: list[str], thunk: Callable[[], T], handling: Handling | None = None) -> T:
-    """The values of ``thunk``, with the hooks of a failure-handling form for ``types``, a list of names, around it.
+    """Call ``thunk`` between the hooks of a failure-handling form, and return its values. ``types`` is a list of names of conditions.
 
-    ``handling``, if given, keeps the id that the first hook gave. In the original ``top-level`` is such a form too.
+    ``handling``, if given, keeps the id that the first hook returned. In the original, ``top-level`` calls these hooks too.
     """
     run_id = on_with_failure_handling_begin.first(list_from(types))
     if handling is not None:
@@ -181,7 +182,7 @@ def _type_name(specifier: Any) -> str:
 
 
 def attempt(thunk: Callable[[], T]) -> tuple[T | None, PlanFailure | None]:
-    """Call ``thunk``: (its values, ``None``), or (``None``, the plan failure that ended it). Outer handlers do not see it."""
+    """Call ``thunk``. Returns (its values, ``None``), or (``None``, the plan failure that ended it), which outer handlers do not see."""
     me = kernel.current()
     ending = me.cancelled_delivered
     failed = _Failed()
@@ -216,13 +217,13 @@ def composite_failure(failures: Iterable[object]) -> NoReturn:
 
 
 def assert_no_returning(forms, thunk):
-    """Call ``thunk``; if it returns, that is an error, which shows ``forms``."""
+    """Call ``thunk``. If it returns, signal an error that shows ``forms`` (cpl.md 4.8)."""
     thunk()
     return error("Asserted~%  ~@<~A~:>~%not to return. But we did return.", forms)
 
 
 def assert_no_nlx(forms, thunk):
-    """The values of ``thunk``; leaving it by a non-local exit is an error, which shows ``forms``."""
+    """Call ``thunk`` and return its values. If it leaves by a non-local exit, signal an error that shows ``forms`` (cpl.md 4.8)."""
     try:
         return thunk()
     except (types.Condition, Exception, kernel.Cancelled, kernel.Abandoned, kernel.Interrupted):
@@ -232,8 +233,10 @@ def assert_no_nlx(forms, thunk):
 
 
 def composite_failures(failure):
+    """The failures in a ``composite-failure``, a Lisp list."""
     return failure.failures
 
 
 def envelop_error(failure):
+    """The error in the envelope ``failure``."""
     return failure.error

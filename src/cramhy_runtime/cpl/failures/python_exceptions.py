@@ -3,8 +3,8 @@
 Within the plan language an error of a branch travels in an envelope, which is a plan failure, so that ``try-in-order`` and handlers
 of ``plan-failure`` count it as one. Handlers run before anything unwinds, and they see it so. When all have declined and the stack
 unwinds into Python code, that code expects the exception that was raised: ``except ValueError`` around ``cpl.par(...)`` catches the
-``ValueError`` of a branch, with the traceback of the branch. The envelope is kept with the error: when the exception goes on into
-the next task it is the same envelope again, and Lisp code above sees no difference.
+``ValueError`` of a branch, with the traceback of the branch. The error keeps its envelope: when the exception goes on into the next
+task, it travels in the same envelope again, so Lisp code above sees no difference.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 def for_python(function: Callable[P, T]) -> Callable[P, T]:
-    """``function``, but what leaves it is what Python raised."""
+    """``function``, changed to raise the exceptions that Python code expects (see `python_exception`)."""
 
     @wraps(function)
     def call(*arguments: P.args, **keywords: P.kwargs) -> T:
@@ -40,7 +40,8 @@ def for_python(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def raise_in_python(condition: BaseException) -> NoReturn:
-    """Raise what Python code sees of ``condition``. Not to be called in an ``except`` clause, which would become its context."""
+    """Raise the exception that Python code sees for ``condition``. Do not call this in an ``except`` clause: that exception would become
+    the context of this one."""
     problem = python_exception(condition) if isinstance(condition, Condition) else condition
     problem.__traceback__ = _users_part(problem.__traceback__)
     note_asked(problem)  # the condition was signalled, or there would be none to raise

@@ -1,4 +1,4 @@
-"""Counters that say how often a plan may be tried again: ``with-retry-counters`` (cpl.md 4.6).
+"""Counters that say how often a plan may try again: ``with-retry-counters`` (cpl.md 4.6).
 
 A counter is an object in a lexical variable that the user cannot name; ``do-retry``, ``get-counter`` and ``reset-counter`` find the
 variable by the counter's name while they are expanded. So counters nest as variables do: an inner form sees the counters around
@@ -31,14 +31,14 @@ class RetryCounter:
         self.reset()
 
     def use(self) -> bool | None:
-        """``do-retry``: true, and one less left, as long as the counter is above zero; then nil."""
+        """``do-retry``: while the counter is above zero, take one from it and return true; then return nil."""
         if self.left > 0:
             self.left -= 1
             return True
         return None
 
     def reset(self) -> float:
-        """``reset-counter``: evaluate the initial-value form again and store its value, which is returned."""
+        """``reset-counter``: evaluate the initial-value form again, store its value and return it. Only real numbers are allowed."""
         left = one(self.initial())
         if isinstance(left, bool) or not isinstance(left, numbers.Real):
             return type_error(left, "REAL", "\nwhen setting a retry counter")
@@ -52,7 +52,7 @@ def counter_variable(name):
 
 
 def known_counter(name, environment):
-    """At expansion time: the variable of the counter ``name``; where there is none, an error that names those there are."""
+    """The variable of the counter ``name``, at expansion time. If there is none, signal an error that lists the counters around."""
     if is_symbol(name) and environment.variable(counter_variable(name)) is not None:
         return counter_variable(name)
     around = list_from([name for name, variable in _variables.items() if environment.variable(variable) is not None])

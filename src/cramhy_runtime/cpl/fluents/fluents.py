@@ -1,17 +1,17 @@
 """Fluents: cells whose changes others can observe, and nets of cells computed from cells.
 
-A fluent is CRAM's means of communication between branches: a robot's pose, a flag, "the goal is near". Changing one *pulses*
-it; a pulse wakes whoever waits, recomputes the nets built over it, and calls its callbacks, all before the assignment returns
-and all in the task that assigned. A net is made by applying an operator to a fluent, ``(< distance 0.5)``, and is a fluent
+A fluent is CRAM's means of communication between branches: a robot's pose, a flag, "the goal is near". Changing a fluent *pulses*
+it. A pulse wakes the tasks that wait for the fluent, recomputes the nets over it, and calls its callbacks. All of this happens in the
+task that assigns, before the assignment returns. An operator applied to a fluent, ``(< distance 0.5)``, makes a net, which is a fluent
 again; see ``operators.py``. Waiting is in ``tasks/waiting.py``.
 
-One task runs at a time, so there are no locks. Inputs hold their nets weakly: a net that nobody needs disappears, and its input
-forgets it at the next pulse. Methods that users define on ``value``, ``pulse`` and so on are entered by
-``languages/commonlisp/faces/cpl/user_methods.py``.
+One task runs at a time, so there are no locks. Inputs refer to their nets weakly: a net that is not used any more disappears, and its
+input forgets it at the next pulse. ``languages/commonlisp/faces/cpl/user_methods.py`` enters the methods that users define on ``value``,
+``pulse`` and so on.
 
-Source: cpl.md section 2. Repaired: a net whose first computation fails leaves nothing behind on its inputs; an error in one
-observer no longer keeps the others from being told; a net whose function lets other tasks run never keeps a value of the past;
-``fl-value-changed`` applies its key always.
+Source: cpl.md section 2. Repaired: a net whose first computation fails leaves nothing behind on its inputs. An error in one observer
+no longer keeps the pulse from the others. A net whose function lets other tasks run never keeps an old value. ``fl-value-changed``
+always applies its key.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from cramhy_runtime.ground import functions
 from cramhy_runtime.ground.source_places import circumstance, locate
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.ground.printing import prin1_to_string, princ_to_string
 from ..failures.failure_types import CompositeFailure
@@ -63,10 +63,10 @@ def when_class_made(function):
 
 
 class Fluent(Notation[T_co]):
-    """What all fluents share: a name, a pulse counter, callbacks, nets computed from it, and tasks that wait for it.
+    """The base of all fluents: a name, a pulse counter, callbacks, the nets computed from it, and the tasks that wait for it.
 
-    ``value`` reads (and may consume, see ``pulse_fluents.py``), ``peek`` reads without side effects. What Python's operators make of
-    fluents is in ``python_operators.py``; what type checkers know of that is in ``notation.pyi``.
+    ``value`` reads the fluent (and may consume a pulse, see ``pulse_fluents.py``); ``peek`` reads without side effects. Python's operators
+    on fluents are in ``python_operators.py``, and their types in ``notation.pyi``.
     """
 
     __slots__ = ("_name", "number", "pulses", "waiters", "callbacks", "nets", "sheltered", "__weakref__")
@@ -92,13 +92,13 @@ class Fluent(Notation[T_co]):
 
     @property
     def name(self) -> Name:
-        """A symbol or string; made up, ``FLUENT-<n>``, when none was given."""
+        """The name, a symbol or string. A fluent that was made without one is called ``FLUENT-<n>``."""
         if self._name is None:
             self._name = Symbol(f"{self.prefix}{self.number}")
         return self._name
 
     def read(self) -> T_co:
-        """For a class of a user that has no method for ``value``."""
+        """Signal that there is no method for ``value``: a class of a user has not defined one."""
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:VALUE", None, self)
 
     peek = read
@@ -106,7 +106,7 @@ class Fluent(Notation[T_co]):
         value = property(lambda self: self.read(), doc="The current value; reading may consume a pulse.")
 
     def pulse(self) -> None:
-        """Tell the observers. The value does not change by it; who waits for a value that is ``nil`` goes on waiting."""
+        """Tell the observers, without changing the value. Tasks go on waiting if the value is nil."""
         self.pulses += 1
         if self.waiters or self.nets or self.callbacks:
             self._notify(self.peek())
@@ -151,11 +151,11 @@ class Fluent(Notation[T_co]):
             raise problem
 
     def awaited(self) -> str:
-        """What a task that waits for it waits for, as text."""
+        """A text for reports: what a task that waits for this fluent waits for."""
         return f"the fluent {prin1_to_string(self)}"
 
     def attach(self, net: Dependent) -> None:
-        """Have ``net`` told of pulses, as long as somebody else holds it."""
+        """Tell ``net`` of pulses from now on, as long as something else refers to it."""
         if net.careful:
             self.sheltered = True
         nets = self.nets
@@ -168,6 +168,7 @@ class Fluent(Notation[T_co]):
         nets.append(ref(net))
 
     def living_nets(self) -> list[Dependent]:
+        """The nets over this fluent that are still in use."""
         return [net for net in (reference() for reference in self.nets) if net is not None]
 
     def __repr__(self):
@@ -180,7 +181,7 @@ def _call_back(function, value, name, fluent):
 
 
 def _graver(first, second):
-    """Which of two exceptions of observers goes on: an error before a mere exit, else the first. It takes the other error along."""
+    """Which of two exceptions of observers is raised: an error rather than an exit, else the first. The other error is noted in it."""
     if not isinstance(second, (Condition, Exception)):
         return first
     if not isinstance(first, (Condition, Exception)):
@@ -222,7 +223,7 @@ class ValueFluent(Fluent[T]):
     peek = read
 
     def stores(self, new: T) -> bool:
-        """Store ``new`` unless the test says that nothing changed; whether it did."""
+        """Store ``new`` without a pulse, unless the test says that nothing changed. Returns whether it was stored."""
         if truth(eql(self.stored, new)) if self.test is None else self._same(new):
             return False
         self.stored = new
@@ -245,7 +246,7 @@ class ValueFluent(Fluent[T]):
         return new
 
     def _same(self, new: T) -> bool:
-        """What the user's test says, of the value that is stored when it has said it: it may have let others assign."""
+        """The answer of the user's test. If other tasks assigned while it ran, the test is asked again, about the new value."""
         while True:
             old = self.stored
             same = truth(one(self.test(old, new)))
@@ -271,7 +272,7 @@ class Net(Fluent[T_co]):
     """A fluent computed by ``formula()`` from ``inputs``, its fluents.
 
     ``careful`` says that the formula calls a function of the user, which may let other tasks run. Then no request to end arrives
-    while the inputs tell this net of a pulse, and what was computed from values of the past does not count.
+    while the inputs tell this net of a pulse, and a value computed from old inputs is computed again.
     """
 
     __slots__ = ("formula", "inputs", "prefix", "careful")
@@ -305,7 +306,7 @@ class Net(Fluent[T_co]):
 
 
 class CachedNet(Net[T_co]):
-    """A net all of whose inputs are cacheable: computed when an input pulses, and pulsing only when its value changes."""
+    """A net whose inputs are all cacheable. It is computed when an input pulses, and it pulses only when its value changes."""
 
     __slots__ = ("cached", "turn")
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-CACHEABLE-FLUENT"
@@ -356,11 +357,11 @@ class CachedNet(Net[T_co]):
 
 
 peekers: set[kernel.Task[object]] = set()
-"""The tasks of the kernel that read without side effects now."""
+"""The tasks of the kernel that are reading without side effects."""
 
 
 def peeking(thunk: Callable[[], A]) -> A:
-    """Call ``thunk``; whatever it reads, through functions of the user too, it does not consume."""
+    """Call ``thunk`` and return its value. Reading consumes nothing meanwhile, also in functions of the user."""
     me = kernel.current()
     if me in peekers:
         return thunk()
@@ -372,7 +373,7 @@ def peeking(thunk: Callable[[], A]) -> A:
 
 
 class FunctionNamed:
-    """Calls whatever function a symbol has at the time."""
+    """Calls the function that a symbol has at the time of the call."""
 
     __slots__ = ("symbol",)
 
@@ -384,11 +385,12 @@ class FunctionNamed:
 
 
 def function_of(designator: Any) -> Callable[..., Any]:
-    """The function that a function or symbol stands for; of a symbol it is always the present one."""
+    """The function that a function or symbol stands for. A symbol is looked up again at each call."""
     return FunctionNamed(designator) if isinstance(designator, Symbol) else functions.function_of(designator)
 
 
 def is_cacheable(fluent: object) -> bool:
+    """Whether nets may keep a value computed from ``fluent``: reading it has no side effects, and it pulses when it changes."""
     return isinstance(fluent, (ValueFluent, CachedNet))
 
 
@@ -397,7 +399,7 @@ def value(fluent: Fluent[A]) -> A: ...
 @overload
 def value(fluent: A) -> A: ...
 def value(fluent: Any) -> Any:
-    """``(value x)``: the value of a fluent; any other object is its own value."""
+    """``(value x)``: the value of a fluent. Any other object is its own value. Reading may consume a pulse. Source: cpl.md 2.3."""
     kind = fluent.__class__
     if kind is ValueFluent or kind is CachedNet:  # the commonest by far
         return fluent.read()
@@ -409,19 +411,19 @@ def peek_value(fluent: Fluent[A]) -> A: ...
 @overload
 def peek_value(fluent: A) -> A: ...
 def peek_value(fluent: Any) -> Any:
-    """``(peek-value x)``: as `value`, consuming nothing."""
+    """``(peek-value x)``: as `value`, but it consumes nothing. Source: cpl.md 2.4."""
     return fluent.peek() if isinstance(fluent, Fluent) else fluent
 
 
 def set_value(new, fluent):
-    """``(setf (value fluent) new)``: assign a value fluent; returns the value."""
+    """``(setf (value fluent) new)``: assign ``new`` to a value fluent. Returns ``new``. For other fluents there is no such method."""
     if isinstance(fluent, ValueFluent):
         return fluent.set(new)
     return no_applicable_method("(COMMON-LISP:SETF CRAM-LANGUAGE-IMPLEMENTATION:VALUE)", 1, new, fluent)
 
 
 def pulse(fluent: Fluent[object]) -> None:
-    """``(pulse fluent)``: tell its observers, though nothing changed. Returns nil."""
+    """``(pulse fluent)``: tell the observers of ``fluent``, though its value did not change. Returns nil. Source: cpl.md 2.5."""
     if not isinstance(fluent, Fluent):
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:PULSE", None, fluent)
     fluent.pulse()
@@ -433,19 +435,19 @@ _OF_VALUE_FLUENTS = {NAME, VALUE, TEST}
 
 
 tracing_options: WeakKeyDictionary[Fluent[object], tuple[bool, float | None]] = WeakKeyDictionary()
-"""Fluent → what ``:allow-tracing`` and ``:max-tracing-freq`` said of it, for those that were made with such an option."""
+"""Fluent → its options ``:allow-tracing`` and ``:max-tracing-freq``, for fluents that were made with one of them."""
 
 
 _living: Cell[dict[ref[Fluent[object]], None]] = Cell({}, fresh=True)  # a weak reference to each fluent that somebody made, in order
 
 
 def living_fluents() -> list[Fluent[object]]:
-    """The fluents that were made by ``make-fluent`` and that somebody holds, the oldest first."""
+    """The fluents that ``make-fluent`` made and that are still in use, the oldest first."""
     return [fluent for reference in list(_living.value) if (fluent := reference()) is not None]
 
 
 def announce(fluent: F, allow_tracing: bool = True, max_tracing_freq: float | None = None) -> F:
-    """Run the hook for a new fluent; returns the fluent."""
+    """Run ``on-make-fluent-hook`` for a new fluent, and return the fluent. ``max_tracing_freq`` is in 1/s."""
     known = _living.value
     known[ref(fluent, known.pop)] = None
     if max_tracing_freq is not None or allow_tracing is not True:
@@ -485,7 +487,13 @@ def make_fluent(
     max_tracing_freq: Any = None,
     **others: Any,
 ) -> Any:
-    """A new fluent, by default a value fluent with ``value``; ``test`` says which assignments change nothing (``eql``)."""
+    """A new fluent, by default a `ValueFluent` with ``value``.
+
+    name: a string or symbol; without one the fluent is called ``FLUENT-<n>``. test: a function of the old and the new value. When it
+    returns true, the assignment changes nothing and the fluent does not pulse; the default is ``eql``. allow_tracing, max_tracing_freq
+    (1/s): advice for tracers. class_: a class of fluents; all other arguments are its initargs. An initarg that the class does not know
+    is an error. Source: cpl.md 2.2.
+    """
     if class_ is None and not others:
         return announce(ValueFluent(name, value, test), allow_tracing, max_tracing_freq)
     initargs = {CLASS: class_, NAME: name, VALUE: value, TEST: test}
@@ -495,7 +503,7 @@ def make_fluent(
 
 
 def fluent_from_initargs(*initargs):
-    """``(make-fluent :name name :value value :test test)``: a new fluent; with ``:class`` all other arguments are its initargs."""
+    """``(make-fluent :name name :value value :test test)``: a new fluent. With ``:class``, all other arguments are its initargs."""
     if len(initargs) % 2:
         return program_error("odd number of &KEY arguments")
     given = {}
@@ -527,7 +535,10 @@ def _fluent_made(given, allow_tracing, max_tracing_freq):
 
 
 def register_update_callback(fluent: Fluent[object], name: Hashable, function: C) -> C:
-    """Call ``function`` with the value at every pulse of ``fluent``. A ``name`` that is taken is an error."""
+    """Call ``function`` with the value at every pulse of ``fluent``, in the task that pulses it. Returns ``function``.
+
+    ``name`` identifies the callback; a name that is taken is an error. Source: cpl.md 2.6.
+    """
     if not isinstance(fluent, Fluent):
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REGISTER-UPDATE-CALLBACK", 1, fluent, name, function)
     callbacks = fluent.callbacks
@@ -540,7 +551,7 @@ def register_update_callback(fluent: Fluent[object], name: Hashable, function: C
 
 
 def get_update_callback(fluent, name):
-    """Two values: the callback registered under ``name`` (a net counts under its own name) and whether there is one."""
+    """Two values: the callback registered under ``name``, and whether there is one. A net over ``fluent`` counts under its own name."""
     if not isinstance(fluent, Fluent):
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:GET-UPDATE-CALLBACK", 1, fluent, name)
     if fluent.callbacks and name in fluent.callbacks:
@@ -553,7 +564,7 @@ def get_update_callback(fluent, name):
 
 
 def remove_update_callback(fluent: Fluent[object], name: Hashable) -> bool | None:
-    """``True`` if there was a callback ``name`` and it is gone now, else nil."""
+    """Remove the callback ``name``, or the net of that name. Returns ``True`` if there was one, else nil. Source: cpl.md 2.6."""
     if not isinstance(fluent, Fluent):
         return no_applicable_method("CRAM-LANGUAGE-IMPLEMENTATION:REMOVE-UPDATE-CALLBACK", 1, fluent, name)
     if fluent.callbacks and name in fluent.callbacks:
@@ -565,6 +576,6 @@ def remove_update_callback(fluent: Fluent[object], name: Hashable) -> bool | Non
 
 
 def check_fluent(fluent: object) -> None:
-    """Signal the type error of an operator that takes a fluent only."""
+    """Signal a type error if ``fluent`` is not a fluent."""
     if not isinstance(fluent, Fluent):
         error(SimpleTypeError("The value of FLUENT is ~S, which is not of type FLUENT.", fluent, datum=fluent, expected_type="FLUENT"))

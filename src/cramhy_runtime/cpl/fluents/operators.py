@@ -1,11 +1,11 @@
 """Operators that understand fluents: on plain values they are Common Lisp's, on a fluent they make a net.
 
-An operator looks at its direct arguments only. None of them a fluent: it computes at once. At least one: it returns a net that
-recomputes the operation whenever an argument pulses, cached if all fluent arguments are cacheable. ``fl-and`` and ``fl-or``
-read their arguments from left to right and stop early, which matters when reading consumes. Source: cpl.md 2.7 to 2.9, 2.12.
+An operator looks at its direct arguments only. If none of them is a fluent, it computes at once. Otherwise it returns a net, which
+computes the operation again whenever an argument pulses, and keeps the value if all fluent arguments are cacheable. ``fl-and`` and
+``fl-or`` read their arguments from left to right and stop early, which matters when reading consumes. Source: cpl.md 2.7 to 2.9, 2.12.
 
 ``fl-apply`` keeps the original's results: it does not spread its last argument but hands the function a *list* of values.
-Repaired: called with that list alone, it follows the fluents in it.
+Repaired: when it is called with that list alone, it follows the fluents in the list.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _TESTS = frozenset((lt, gt, same_number))
 
 
 def net(operator: str, formula: Callable[[], A], arguments: Sequence[object], careful: bool = False) -> Net[A]:
-    """The net for ``formula`` over those of ``arguments`` that are fluents; ``careful``: it calls a function of the user."""
+    """The net of ``formula`` over the fluents among ``arguments``. ``careful`` says that ``formula`` calls a function of the user."""
     inputs = tuple(dict.fromkeys(argument for argument in arguments if isinstance(argument, Fluent)))
     kind = CachedNet if all(map(is_cacheable, inputs)) else Net
     return announce(kind(operator, formula, inputs, careful))
@@ -138,7 +138,7 @@ def fl_not(argument: Fluent[object]) -> Fluent[bool | None]: ...
 @overload
 def fl_not(argument: object) -> object: ...
 def fl_not(argument: object) -> object:
-    """``(not x)``, or a net that is true while the fluent ``argument`` is not."""
+    """``(not x)``; for a fluent, a net that is true while the value of the fluent is not."""
     if isinstance(argument, Fluent):
         return net("FL-NOT", lambda: None if truth(argument.read()) else True, (argument,))
     return None if truth(argument) else True
@@ -149,7 +149,7 @@ def fl_and(first: Fluent[object], /, *more: object) -> Fluent[object]: ...
 @overload
 def fl_and(*arguments: object) -> object: ...
 def fl_and(*arguments: object) -> object:
-    """The last value if all are true, else nil; a net if there is a fluent. ``(fl-and)`` is true."""
+    """The last value if all are true, else nil; a net of that if there is a fluent. ``(fl-and)`` is true."""
 
     def formula() -> Any:
         result: Any = True
@@ -167,7 +167,7 @@ def fl_or(first: Fluent[object], /, *more: object) -> Fluent[object]: ...
 @overload
 def fl_or(*arguments: object) -> object: ...
 def fl_or(*arguments: object) -> object:
-    """The first true value, or nil; a net if there is a fluent. Later fluents are not read, hence not consumed."""
+    """The first true value, or nil; a net of that if there is a fluent. The fluents after it are not read, so they are not consumed."""
 
     def formula() -> Any:
         for argument in arguments:
@@ -190,7 +190,7 @@ def fl_funcall(function: Callable[..., T], first: Fluent[object], /, *more: obje
 @overload
 def fl_funcall(function: Callable[..., T], *arguments: object) -> T: ...
 def fl_funcall(function: Any, *arguments: Any) -> Any:
-    """Call ``function`` on the values of ``arguments``, at once or in a net. Lists are not searched for fluents."""
+    """The result of ``function`` on the values of ``arguments``; a net of it if there is a fluent. Lists are not searched for fluents."""
     function = function_of(function)
     for argument in arguments:
         if isinstance(argument, Fluent):
@@ -201,7 +201,10 @@ def fl_funcall(function: Any, *arguments: Any) -> Any:
 
 
 def fl_apply(function: Callable[..., T], argument: object, *more: object) -> Net[T]:
-    """A net of ``function`` on the values of the leading arguments and, last, a *list* of the values in the last argument."""
+    """A net that calls ``function`` with the values of the leading arguments and, last, a *list* of the values in the last argument.
+
+    A last argument that is not a list is a type error. Source: cpl.md 2.7.
+    """
     function = function_of(function)
     *leading, last = argument, *more
     if last is not None and not isinstance(last, (Cons, list, tuple)):
@@ -218,7 +221,12 @@ _MISSED = {keyword(mode): mode for mode in (NEVER, ONCE, ALWAYS)}
 
 
 def fl_pulsed(fluent: Fluent[object], *, handle_missed_pulses: Missed | Keyword | None = None) -> PulseFluent:
-    """A fluent of its own that is true while ``fluent`` has pulses that were not consumed; modes :never, :once, :always."""
+    """A new fluent that is true while it has not consumed all pulses of ``fluent``. Reading it consumes.
+
+    handle_missed_pulses: "NEVER" forgets the pulses before now, "ONCE" (the default) counts all missed pulses as one, "ALWAYS" counts
+    each; Lisp's keywords of these names do as well, and anything else is an error. An argument that is not a fluent is a type error.
+    Source: cpl.md 2.8.
+    """
     check_fluent(fluent)
     if handle_missed_pulses is None:
         return announce(PulseFluent(fluent))
@@ -234,7 +242,11 @@ pulsed = fl_pulsed
 def fl_value_changed(
     fluent: Fluent[T], *, test: Callable[[K, K], object] | None = None, key: Callable[[T], K] | None = None
 ) -> ChangeFluent:
-    """A net that is true once after each time that the value of ``fluent`` (as ``key`` sees it) has changed under ``test``."""
+    """A net that is true once after each change of the value of ``fluent``.
+
+    key: a function that is applied to the value first. test: a function of two values, true if they are the same (``eql``). An argument
+    that is not a fluent is a type error. Source: cpl.md 2.9.
+    """
     check_fluent(fluent)
     return announce(ChangeFluent(fluent, function_of(eql if test is None else test), function_of(identity if key is None else key)))
 
@@ -243,7 +255,7 @@ _parameters = {}
 
 
 def define_cpl_parameter(name, initial=None):
-    """``(def-cpl-parameter name initial)``: a place with a hidden fluent, so that access is observed like a fluent's."""
+    """``(def-cpl-parameter name initial)``: define a place with a hidden fluent, which nets can observe. Returns ``name``."""
     _parameters[name] = make_fluent(name=name, value=initial)
     return name
 

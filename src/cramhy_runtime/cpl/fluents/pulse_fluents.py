@@ -1,8 +1,8 @@
-"""Fluents that are true once for what has happened: ``pulsed``, for pulses, and ``fl-value-changed``, for changes.
+"""Fluents that are true once after something happened: ``pulsed`` after a pulse, ``fl-value-changed`` after a change.
 
 Reading one may change it: the read that sees a pulse or a change consumes it, so every consumer needs a fluent of its own. Peeking
-consumes nothing. What was missed before the creation, and how often a pulse counts, is the mode of a pulse fluent. Source: cpl.md 2.8
-and 2.9.
+consumes nothing. The mode of a pulse fluent says whether pulses before its creation count, and how often a pulse counts. Source:
+cpl.md 2.8 and 2.9.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ NEVER, ONCE, ALWAYS = "NEVER", "ONCE", "ALWAYS"
 class PulseFluent(Fluent[bool | None]):
     """True while there are pulses of its parent that have not been consumed; reading it consumes (cpl.md 2.8).
 
-    ``missed`` says what becomes of pulses that nobody saw: NEVER forgets those before its creation, ONCE joins them to one,
-    ALWAYS keeps each.
+    ``missed`` says what becomes of pulses that were not read: NEVER forgets those before its creation, ONCE counts all as one,
+    ALWAYS counts each.
     """
 
     __slots__ = ("parent", "missed", "seen", "processed")
@@ -58,7 +58,7 @@ class PulseFluent(Fluent[bool | None]):
 
 
 class ChangeFluent(Net[bool | None]):
-    """True when its parent's value is not what it was at the last reading (``fl-value-changed``)."""
+    """True when its parent's value has changed since the last reading (``fl-value-changed``)."""
 
     __slots__ = ("parent", "test", "key", "remembered")
 

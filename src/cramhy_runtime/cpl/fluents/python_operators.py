@@ -2,9 +2,9 @@
 
 ``< <= > >= + - * /`` and ``abs`` make nets computed by Python's operators; ``& | ~`` are ``fl-and``, ``fl-or`` and ``fl-not``.
 
-Three things are not overloaded, on purpose. ``==`` keeps meaning "the same fluent", so that fluents can stand in sets and be keys
-(`fl_eql` compares values). ``and``, ``or``, ``not`` and ``1 < f < 3`` cannot be: they ask for the truth of a fluent *now*, which a
-fluent refuses to give, since in ``if distance < 0.5:`` the net would always count as true. Read ``.value``, or wait.
+Some operators are not overloaded, on purpose. ``==`` still means "the same fluent", so fluents can be elements of sets and keys
+(`fl_eql` compares values). ``and``, ``or``, ``not`` and ``1 < f < 3`` cannot be overloaded: they ask for the truth of a fluent *now*.
+That is an error, since in ``if distance < 0.5:`` the net would always count as true. Read ``.value``, or wait.
 """
 
 from __future__ import annotations

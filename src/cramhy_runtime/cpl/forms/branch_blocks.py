@@ -4,13 +4,13 @@
         left = branches.start(turn_wheel, "left", speed=2.0)
         branches.start(watch_bumper)
 
-The body runs in the task that entered the block, beside the branches; it is no branch itself. At its end the block waits until the
-form is decided, exactly as the form of that name does, by the same code (``tasks/branches.py``). If it is decided earlier, by a failure
-of a branch of ``par`` or the first end of one of ``pursue``, the body is ended at its next waiting point. If the body leaves by
-an exception or is evaporated, the branches end first. In all cases the branches are dead when the block is left.
+The body runs in the task that entered the block, beside the branches; it is not a branch itself. At the end of the body the block waits
+until the form is decided, as the form of that name does, with the same code (``tasks/branches.py``). If a failure of a branch of
+``par``, or the first end of a branch of ``pursue``, decides the form earlier, the body ends at its next waiting point. If the body
+leaves by an exception or is evaporated, the branches end first. In all cases the branches are dead when the block is left.
 
-trio calls this a nursery. Different here: a failure is raised as itself, not in a group; only one can be the reason why a form
-failed, and its siblings were evaporated for it.
+trio calls this a nursery. Different from trio, a failure is raised as itself and not in a group: only one failure can be the reason
+why a form failed, and its siblings were evaporated for it.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class _Watched(Branches):
 
 
 class BranchBlock(Block):
-    """A block with branches. ``tasks`` are they, in the order in which they started; ``result`` is the form's, when it is over."""
+    """A ``with`` block with branches. After the block, ``result`` is the result of the form."""
 
     __slots__ = ("branches", "result")
     late_failures_count = True
@@ -62,19 +62,20 @@ class BranchBlock(Block):
         self.result: Any = None
 
     def decided(self, branches: Branches) -> object:
-        """Whether it is decided while the body may still start branches."""
+        """Whether the form is decided while the body may still start branches."""
         raise NotImplementedError
 
     def ready(self, branches: Branches) -> object:
-        """Whether it is decided now that no more branches come."""
+        """Whether the form is decided when no more branches come."""
         raise NotImplementedError
 
     def choose(self, branches: Branches) -> tuple[Any, Any]:
-        """Its result and failure."""
+        """The result and the failure of the form; the failure is ``None`` on success."""
         raise NotImplementedError
 
     @property
     def tasks(self) -> list[Task[object]]:
+        """The tasks of the branches, in the order in which they were started."""
         return list(self.branches.tasks)
 
     def __enter__(self) -> Self:
@@ -83,9 +84,10 @@ class BranchBlock(Block):
         return self
 
     def start(self, function: Callable[P, T], /, *arguments: P.args, **keywords: P.kwargs) -> Task[T]:
-        """Start ``function(*arguments, **keywords)`` as a branch; its task. It runs when the current task waits.
+        """Start ``function(*arguments, **keywords)`` as a branch and return its task. The branch runs when the current task waits.
 
-        Only the task that entered the block starts branches in it: a branch that starts branches opens a block of its own.
+        Only the task that entered the block may start branches, and only within the block; anything else is an error. A branch that
+        starts branches opens a block of its own.
         """
         if self.branches is None or self.over:
             error(
@@ -142,7 +144,7 @@ def _name(function: Any) -> str | None:
 
 
 class ParBlock(BranchBlock):
-    """``with par() as branches:`` is left when all branches have ended; if one fails the others are ended, and it is raised here."""
+    """``with par() as branches:`` ends when all branches have ended. If one fails, it ends the others and raises that failure."""
 
     __slots__ = ()
     form = "PAR"
@@ -163,7 +165,7 @@ class ParBlock(BranchBlock):
 
 
 class RaceBlock(BranchBlock):
-    """``with pursue() as race:`` is left when one branch has ended; ``race.result`` is its result. The others are evaporated."""
+    """``with pursue() as race:`` ends when one branch has ended. ``race.result`` is its result. The other branches are evaporated."""
 
     __slots__ = ()
     form = "PURSUE"
@@ -188,7 +190,8 @@ class RaceBlock(BranchBlock):
 
 
 class TryAllBlock(RaceBlock):
-    """``with try_all() as attempts:`` is left when one branch succeeds; if all fail, with a composite failure."""
+    """``with try_all() as attempts:`` ends when one branch succeeds; ``attempts.result`` is its result. If all fail, it raises a
+    `CompositeFailure`."""
 
     __slots__ = ()
     form = "TRY-ALL"
@@ -205,7 +208,7 @@ class TryAllBlock(RaceBlock):
 
 
 class BesideBlock(RaceBlock):
-    """Branches that watch the body: the end of one ends it, and its end ends them. Policies are made of this."""
+    """Branches that watch the body. The end of a branch ends the body, and the end of the body ends the branches. Policies use it."""
 
     __slots__ = ()
 

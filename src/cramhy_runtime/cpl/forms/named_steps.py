@@ -1,7 +1,7 @@
 """Steps of a plan that have a name: plan functions and tags for Python.
 
 ``@plan_function`` is ``def-cram-function``: each call is a task of its own, at a place in the task tree that says who called it.
-``tag("grasp")`` is a ``(:tag grasp ...)``: its task exists before it runs, so that others can order it, watch it or suspend it.
+``tag("grasp")`` is a ``(:tag grasp ...)``: its task exists before it runs, so other steps can be ordered by it, watch it or suspend it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ def _symbol(name: str) -> Symbol:
 
 
 def plan_function(function: Callable[P, T]) -> Callable[P, T]:
-    """A decorator: each call of ``function`` runs in a task of its own, below the caller's in the task tree. For use in plans."""
+    """A decorator: each call of ``function`` runs in a task of its own, below the caller's in the task tree.
+
+    Such a function can be called in plans only; elsewhere it is a type error. Source: cpl.md 8.1.
+    """
     symbol = _symbol(function.__name__)
 
     @for_python
@@ -40,7 +43,7 @@ def plan_function(function: Callable[P, T]) -> Callable[P, T]:
 
 
 class Tag:
-    """A named step; ``task`` is its task, created and not started until `run`. Made by `tag`, inside of a plan."""
+    """A named step, made by `tag` inside of a plan. ``task`` is its task, which exists at once and runs in `run`."""
 
     def __init__(self, name: str):
         self.name = name
@@ -48,11 +51,11 @@ class Tag:
 
     @for_python
     def run(self, function: Callable[[*Arguments], T], *arguments: *Arguments) -> T:
-        """Run ``function(*arguments)`` as this step and wait for it: what it returns. Another run is a new task."""
+        """Run ``function(*arguments)`` as this step, wait for it and return its result. A second run is a new task."""
         self.task = prepare_tag(self.task)
         return execute_tag(self.task, partial(function, *arguments) if arguments else function)
 
 
 def tag(name: str) -> Tag:
-    """A step called ``name`` below the current place in the task tree."""
+    """A step called ``name`` below the current place in the task tree. Outside of a plan it is an error. Source: cpl.md 7.1."""
     return Tag(name)

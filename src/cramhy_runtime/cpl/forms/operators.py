@@ -1,11 +1,11 @@
-"""The control operators: ``top-level``, ``seq``, ``par``, ``pursue``, ``try-all``, ``partial-order`` and their kin.
+"""The control operators: ``top-level``, ``seq``, ``par``, ``pursue``, ``try-all``, ``partial-order`` and related ones.
 
-Each takes its branches as functions of no arguments and passes all values through. Which branch's values a form returns, and
-which failure it fails with, is decided by *position* (cpl.md section 6): ``par`` returns the first form's values, ``pursue`` those
-of the last form that is done, ``try-all`` those of the first; a failure is that of the last failed form. A branch that somebody
-else evaporated counts as done, without values; in the original ``pursue`` signals an assertion then.
+Each takes its branches as functions of no arguments and passes all values through. The *position* of a branch decides whose values a
+form returns and with which failure it fails (cpl.md section 6): ``par`` returns the values of the first form, ``pursue`` those of the
+last form that is done, ``try-all`` those of the first form that is done. A form fails with the failure of the last failed form. A
+branch that another task evaporated counts as done, without values; in the original, ``pursue`` signals an assertion then.
 
-What all parallel forms have in common is in ``tasks/branches.py``.
+The common part of all parallel forms is in ``tasks/branches.py``.
 """
 
 from __future__ import annotations
@@ -52,16 +52,19 @@ T = TypeVar("T")
 
 
 def top_level(body: Thunk[T]) -> T:
-    """``(top-level body...)``: run ``body`` as the root of a plan and wait for it: its values.
+    """``(top-level body...)``: run ``body`` as the root of a plan, wait for it and return its values.
 
-    A plan failure that leaves it is signalled here as itself, an error of any branch as that error. When this returns or unwinds,
-    every task below is dead. Inside a task it is an error.
+    A plan failure that leaves ``body`` is signalled here as it is, an error of a branch without its envelope. When this returns or
+    unwinds, every task of the plan is dead. Inside a plan it is an error. Source: cpl.md 5.1, 5.2.
     """
     return named_top_level(body)
 
 
 def named_top_level(body: Thunk[T], name: Name | None = None) -> T:
-    """``(named-top-level (:name name) body...)``: as `top_level`, with a task tree that is kept under ``name``."""
+    """``(named-top-level (:name name) body...)``: as `top_level`, with a task tree that is kept under ``name``.
+
+    If a top-level of that name is running already, it is an error. Source: cpl.md 5.1.
+    """
     me = kernel.current()
     if me.owner is not None:
         error(
@@ -99,7 +102,7 @@ _running = per_image({})
 
 
 def _cleared_tree(name: Any) -> TaskTreeNode:
-    """The tree for a new run of ``name``; its last run keeps what it did in it."""
+    """The tree for a new run of ``name``, cleared. The record of the last run keeps the codes that were in it."""
     tree, before = get_top_level_task_tree(name), finished_plans.by_name.get(name)
     if getattr(before, "tree", None) is tree:
         before.codes = {}
@@ -108,7 +111,7 @@ def _cleared_tree(name: Any) -> TaskTreeNode:
 
 
 def _observed_top_level(body: Thunk[T], name: Any, tree: TaskTreeNode) -> T:
-    """Run ``body`` with what the hooks of cpl.md 5.1 want before and after it."""
+    """Run ``body`` between the hooks of cpl.md 5.1, with the variables bound that a hook gives."""
     run_id = on_preparing_named_top_level.first(name)
     pairs = []
     for bound in on_top_level_setup_hook(name, tree):
@@ -155,14 +158,17 @@ def _run_top_level(body: Thunk[T], name: Any, tree: TaskTreeNode) -> T:
 
 
 def any_failed_or_all_dead(branches: Branches) -> object:
+    """``par`` is decided."""
     return branches.failed or not branches.living
 
 
 def any_dead(branches: Branches) -> object:
+    """``pursue`` is decided."""
     return branches.failed or branches.done
 
 
 def any_done_or_all_dead(branches: Branches) -> object:
+    """``try-all`` is decided."""
     return branches.done or not branches.living
 
 
@@ -170,11 +176,13 @@ def any_done_or_all_dead(branches: Branches) -> object:
 
 
 def first_values(branches: Branches) -> tuple[Any, Any]:
+    """The values and the failure of ``par``."""
     failure = branches.last_failure() if branches.failed else None
     return branches.tasks[0].result, failure
 
 
 def winner(branches: Branches) -> tuple[Any, Any]:
+    """The values and the failure of ``pursue``."""
     if branches.failed:
         return None, branches.last_failure()
     for task in reversed(branches.tasks):
@@ -184,6 +192,7 @@ def winner(branches: Branches) -> tuple[Any, Any]:
 
 
 def first_success(branches: Branches) -> tuple[Any, Any]:
+    """The values and the failure of ``try-all``."""
     for task in branches.tasks:
         if task.status in DONE:
             return task.result, None
@@ -201,7 +210,7 @@ def seq(first: Thunk[object], second: Thunk[object], third: Thunk[T], /) -> T: .
 @overload
 def seq(*thunks: Thunk[object]) -> object: ...
 def seq(*thunks: Thunk[object]) -> object:
-    """``(seq form...)``: one after the other; values of the last."""
+    """``(seq form...)``: call the thunks one after the other. Returns the values of the last. Source: cpl.md 6.1."""
     result = None
     for thunk in thunks:
         result = thunk()
@@ -209,28 +218,44 @@ def seq(*thunks: Thunk[object]) -> object:
 
 
 def par(*thunks: Thunk[Any]) -> Any:
-    """``(par form...)``: all at once, until all have ended; values of the first form. One fails: the others are ended, it fails."""
+    """``(par form...)``: run all branches at once until all have ended. Returns the values of the first form.
+
+    If a branch fails, the others are evaporated, and the form fails with that failure. Without branches it is an error. Source: cpl.md 6.2.
+    """
     return run_forms("PAR", thunks, any_failed_or_all_dead, first_values)
 
 
 def pursue(*thunks: Thunk[T]) -> T:
-    """``(pursue form...)``: all at once, until one has ended; its values. The others are evaporated, and dead when this returns."""
+    """``(pursue form...)``: run all branches at once until one has ended. Returns its values, or fails with its failure.
+
+    The other branches are evaporated, and dead when this returns. Without branches it is an error. Source: cpl.md 6.3.
+    """
     return run_forms("PURSUE", thunks, any_dead, winner)
 
 
 def try_all(*thunks: Thunk[T]) -> T:
-    """``(try-all form...)``: all at once, until one succeeds. All fail: a composite failure, failures of the last form first."""
+    """``(try-all form...)``: run all branches at once until one succeeds. Returns its values.
+
+    If all fail, the form fails with a composite failure, the failure of the last form first. Without branches it is an error. Source:
+    cpl.md 6.4.
+    """
     return run_forms("TRY-ALL", thunks, any_done_or_all_dead, first_success, late_failures_count=False)
 
 
 def try_in_order(*thunks: Thunk[T]) -> T:
-    """``(try-in-order form...)``: one after the other until one succeeds. All fail: a composite failure, in order."""
+    """``(try-in-order form...)``: run one form after the other until one succeeds. Returns its values.
+
+    If all fail, it fails with a composite failure, in the order of the forms. Source: cpl.md 6.5.
+    """
     inside_plan("TRY-IN-ORDER")
     return _try(thunks)
 
 
 def try_each_in_order(elements: Cons | None, body: Callable[[Any], T]) -> T:
-    """``(try-each-in-order (variable list) body...)``: ``body(element)`` for one after the other until one succeeds."""
+    """``(try-each-in-order (variable list) body...)``: call ``body(element)`` for one element after the other until a call succeeds.
+
+    Returns its values. If all fail, it fails with a composite failure. Source: cpl.md 6.6.
+    """
     inside_plan("TRY-EACH-IN-ORDER")
     return _try((lambda element=element: body(element)) for element in _list(elements))
 
@@ -249,9 +274,9 @@ def _try(thunks):
 
 
 def par_loop(elements: Any, body: Callable[[Any], T]) -> T:
-    """``(par-loop (variable list) body...)``: ``body(element)`` for all elements at once; values for the first element.
+    """``(par-loop (variable list) body...)``: call ``body(element)`` for all elements at once. Returns the values for the first element.
 
-    As in the original an empty list runs the body once, with nil.
+    Failures are as in `par`. As in the original, an empty list runs the body once, with nil. Source: cpl.md 6.8.
     """
     inside_plan("PAR-LOOP")
     elements = list(_list(elements)) or [None]
@@ -270,8 +295,9 @@ def _list(elements: Any) -> Any:
 def partial_order(steps: Sequence[Thunk[T]], orderings: Any) -> T:
     """``(partial-order (step...) (:order before after)...)``: as `par`, with ``after`` starting its body only when ``before`` is dead.
 
-    ``orderings`` is a list of pairs (before, after), or a function that gives it: tasks, or for ``before`` a value fluent, which
-    counts when it has been pulsed. A ring of orderings is an error, before any step starts (``orderings.py``).
+    ``orderings`` is a list of pairs (before, after), or a function that returns one. Both are tasks; ``before`` may be a value fluent,
+    and then ``after`` starts when the fluent has been pulsed. A ring of orderings is an error, before any step starts
+    (``orderings.py``). Source: cpl.md 6.7.
     """
     inside_plan("PARTIAL-ORDER")
     apply_orderings(orderings)
@@ -279,27 +305,27 @@ def partial_order(steps: Sequence[Thunk[T]], orderings: Any) -> T:
 
 
 def with_task(body: Thunk[T], name: object = "WITH-TASK", cls: type[Task[object]] | None = None) -> T:
-    """``(with-task (:name name) body...)``: run ``body`` in a new child task and wait for it."""
+    """``(with-task (:name name) body...)``: run ``body`` in a new child task, wait for it and return its values. Source: cpl.md 6.10."""
     inside_plan("WITH-TASK")
     return run_one((cls or Task)(thread_fun=body, name=lambda: f"[{name}]", run_thread=None))
 
 
 def with_parallel_childs(name, thunks, watcher):
-    """The general parallel form: ``watcher(running, done, failed)`` is called each time that a child's status has changed.
+    """The general parallel form: it calls ``watcher(running, done, failed)`` each time that a child's status has changed.
 
-    The three are Lisp lists of tasks, last form first. The watcher leaves the form by ``(return ...)``, a non-local exit; if it
-    never does, the form goes on when all children are dead, and waits for ever.
+    The arguments are Lisp lists of tasks, last form first. The watcher leaves the form by ``(return ...)``, a non-local exit. If it
+    never does, the form waits for ever, even when all children are dead. Source: cpl.md 6.9.
     """
     inside_plan(name or "WITH-PARALLEL-CHILDS")
     return watch(branch_tasks(name or "WITH-PARALLEL-CHILDS", thunks), watcher)
 
 
 def unwind_and_teardown(*, reason="Manual teardown."):
-    """``(unwind-and-teardown)``: end the current task here; it unwinds, and is evaporated."""
+    """``(unwind-and-teardown)``: evaporate the current task, which unwinds from here."""
     evaporate(inside_plan("UNWIND-AND-TEARDOWN"), reason=reason)
 
 
 def mapcar_clean(function, first, *more):
-    """``(mapcar-clean function list...)``: the results of ``mapcar`` without the nils. Repaired: works with several lists."""
+    """``(mapcar-clean function list...)``: the results of ``mapcar`` without the nils. Repaired: it works with several lists."""
     results = (one(function(*arguments)) for arguments in zip(*(_list(lst) for lst in (first, *more)), strict=False))
     return list_from([result for result in results if truth(result)])

@@ -1,9 +1,9 @@
 """Orderings: which step of ``partial-order`` waits for which (cpl.md 6.7).
 
-An ordering (before, after) makes the task ``after`` start its body only when ``before`` is dead, in whatever way, or, if it is a
-value fluent, has been pulsed. Steps that wait for each other in a ring would wait for ever, as they do in the original; here
-such orderings are refused, all together, before one of them is in force. What cannot be seen beforehand, a step that waits for the
-step it is a part of, or for a fluent that nobody pulses, the kernel reports as a deadlock when it happens.
+An ordering (before, after) makes the task ``after`` start its body only when ``before`` is dead, in any way. If ``before`` is a value
+fluent, it must have been pulsed. Steps that wait for each other in a ring would wait for ever, as they do in the original. Here such
+orderings are an error, and then none of them is in force. Some mistakes cannot be seen beforehand, such as a step that waits for the
+step it is a part of, or for a fluent that never pulses: the kernel reports them as a deadlock when they happen.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ HOW_TO_NAME = "In (:ORDER before after) a step is a task: the name of a tag in t
 
 
 def apply_orderings(orderings):
-    """Put ``orderings`` in force, a list of pairs (before, after) or a function that gives it; all or, in case of an error, none."""
+    """Put ``orderings`` in force: a list of pairs (before, after), or a function that returns one. After an error none is in force."""
     if callable(orderings):
         orderings = handler_bind([(types.UnboundVariable, _advise)], orderings)
     for before, after in orderings:
@@ -92,7 +92,7 @@ def _way_back(start, waits_for):
 
 
 def step_name(task):
-    """The user's name of a step: that of its tag or plan function, else the task's."""
+    """The user's name of a step: the name of its tag or plan function, or else of its task."""
     part = task.path.car if task.path is not None else None
     if part is None:
         return task.name

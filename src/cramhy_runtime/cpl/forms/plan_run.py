@@ -1,12 +1,12 @@
 """Starting plans from Python: ``run(main)`` and ``with plan():``.
 
-Both make a plan of what is in them: a task at the root, below which all others are dead when it ends. ``run`` is ``top-level`` for
-a script: it starts a kernel, runs the function as a plan, stops the kernel, and gives back what the function returned or raised. In
-a ``with plan():`` block the plan is the block itself, which suits tests and notebooks.
+Both make a plan: a task at the root, and when it ends all tasks below it are dead. ``run`` is ``top-level`` for a script: it starts a
+kernel, runs the function as a plan, stops the kernel, and returns the function's result or raises its failure. In a ``with plan():``
+block the plan is the block itself, which suits tests and notebooks.
 
-Options (``clock``, ``backend``, ``seed``, ``time_limit``: see `kernel.start`) are for a kernel of its own; one that is active
-already, of a session, is put aside meanwhile. Without options an active kernel is used, and left running: a plan in a session
-sees the session's fluents, process modules and turtle; a test sees what its fixtures started.
+With an option (``clock``, ``backend``, ``seed``, ``time_limit``: see `kernel.start`) the plan gets a kernel of its own, and a kernel that
+is active already, such as a session's, is put aside meanwhile. Without options the plan uses the active kernel and leaves it running:
+a plan in a session sees the session's fluents, process modules and turtle; a test sees what its fixtures started.
 """
 
 from __future__ import annotations
@@ -46,7 +46,12 @@ def run(
     seed: Seed | None = None,
     time_limit: float | None = None,
 ) -> T:
-    """Run ``main(*arguments)`` as a plan: what it returns. What it fails with is raised here, when all its tasks are dead."""
+    """Run ``main(*arguments)`` as a plan and return its result. Its failure is raised here, when all its tasks are dead.
+
+    clock: "virtual" or "wall", or a clock. backend: "threads" or "greenlet", or a back end. seed: decides the order of tasks and random
+    numbers. time_limit: seconds of the kernel's clock, after which the plan ends with `TimeLimit`. Inside a plan it is an error. An
+    interrupt becomes ``KeyboardInterrupt``.
+    """
     with _kernel(clock, backend, seed, time_limit):
         return top_level(lambda: main(*arguments))
 
@@ -59,7 +64,10 @@ def plan(
     seed: Seed | None = None,
     time_limit: float | None = None,
 ) -> Iterator[ToplevelTask[None]]:
-    """``with cpl.plan(clock="wall"):`` the block is a plan. Its tasks are dead when it is left; it gives the task at the root."""
+    """``with cpl.plan(clock="wall") as root:`` makes the block a plan. Its tasks are dead when the block is left.
+
+    ``root`` is the task at the root. The options, errors and failures are those of `run`.
+    """
     with _kernel(clock, backend, seed, time_limit):
         task: ToplevelTask[None] = ToplevelTask(name=lambda: "[TOP-LEVEL]")
         me = kernel.current()
@@ -96,10 +104,10 @@ def _end(children: list[AbstractTask[object]]) -> None:
 
 @contextmanager
 def _kernel(clock: object, backend: object, seed: object, time_limit: float | None) -> Iterator[None]:
-    """The kernel for a plan; an interrupt that ends the plan is Python's KeyboardInterrupt outside of it."""
+    """The kernel for a plan. An interrupt that ends the plan becomes Python's KeyboardInterrupt outside of it."""
     active = kernel.active()
     if active is not None and current_task() is not None:
-        error("A plan was started inside of a plan. Call its function as it is: what runs in a plan is a part of it.")
+        error("A plan was started inside of a plan. Call its function as it is: it then runs as a part of this plan.")
     given = {"clock": clock, "backend": backend, "seed": seed, "time_limit": time_limit}
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     try:

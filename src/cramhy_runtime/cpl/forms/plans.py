@@ -1,9 +1,8 @@
 """Plan functions and goals: functions that run as tasks of their own, at a place in the task tree.
 
-A plan function is called like any function; each call is a node ``(name)`` below the caller's path and a new task, whose values
-or failure the caller gets. A goal is a plan function with several bodies, chosen by matching its arguments against patterns, in
-the order of their definition. Source: cpl.md section 8. A call outside of ``top-level`` is a type error, as in the original, that
-says so.
+A plan function is called like any function. Each call is a node ``(name)`` below the caller's path and a new task, whose values or
+failure the caller gets. A goal is a plan function with several bodies: the first body whose pattern matches the arguments runs.
+Source: cpl.md section 8. A call outside of ``top-level`` is a type error, as in the original, and the error says so.
 """
 
 from __future__ import annotations
@@ -25,23 +24,23 @@ GOAL = sym("CPL-IMPL::GOAL")
 TOP_LEVEL = sym("CPL-IMPL::TOP-LEVEL")
 REPLACEABLE_FUNCTION = sym("CPL-IMPL::REPLACEABLE-FUNCTION")
 PROPERTIES = {name: sym(f"CPL-IMPL::{name}") for name in ("PLAN-TYPE", "PLAN-LAMBDA-LIST", "PLAN-SEXP")}
-"""What the property list of a plan function's name tells: ``:plan`` or ``:top-level-plan``, its lambda list, its body."""
+"""The properties of a plan function's name: its kind (``:plan`` or ``:top-level-plan``), its lambda list, its body."""
 
 _expressions = per_image({})  # name of a plan function → (lambda list, what is recorded at the nodes of its calls)
 _goals = per_image({})
 
 
 def call_cram_function(name, function, arguments):
-    """A call of the plan function ``name``: ``function(*arguments)`` in a new task at ``(name)`` below the current path.
+    """Call the plan function ``name``: ``function(*arguments)`` in a new task at ``(name)`` below the current path. Returns its values.
 
-    ``arguments`` is a Python sequence; a wrong number of them is an error of the new task.
+    ``arguments`` is a Python sequence. A wrong number of arguments is an error of the new task.
     """
     lambda_list, sexp = _expressions.get(name, _UNKNOWN)
     return replaceable_function(name, lambda_list, list_from(arguments), lisp_list(name), function, sexp)
 
 
 def call_top_level_cram_function(name, function, arguments):
-    """As `call_cram_function`, inside a top-level called ``name``; the tree is kept under that name."""
+    """As `call_cram_function`, inside a top-level called ``name``, whose tree is kept under that name."""
     lambda_list, sexp = _expressions.get(name, _UNKNOWN)
     return named_top_level(
         lambda: replaceable_function(name, lambda_list, list_from(arguments), lisp_list(TOP_LEVEL, name), function, sexp), name
@@ -52,9 +51,9 @@ _UNKNOWN = (None, None)
 
 
 def define_plan(name, kind, lambda_list=None, body=None):
-    """Note on the symbol ``name``, whose function was just defined, that it is a plan: ``kind`` is "PLAN" or "TOP-LEVEL-PLAN".
+    """Note on the property list of the symbol ``name`` that its function, just defined, is a plan. Returns ``name``.
 
-    Returns ``name``. The property list tells it, so that programs that look at plans find it there.
+    ``kind`` is "PLAN" or "TOP-LEVEL-PLAN". Programs that inspect plans read the property list.
     """
     for indicator, value in (("PLAN-SEXP", body), ("PLAN-LAMBDA-LIST", lambda_list), ("PLAN-TYPE", keyword(kind))):
         cell = _property_cell(name, PROPERTIES[indicator])
@@ -70,7 +69,7 @@ def define_plan(name, kind, lambda_list=None, body=None):
 
 
 def plan_property(name, indicator):
-    """The property ``indicator`` (see `PROPERTIES`) of the plan function ``name``; nil if it is none."""
+    """The property ``indicator`` (see `PROPERTIES`) of the plan function ``name``; nil if ``name`` is not a plan function."""
     cell = _property_cell(name, PROPERTIES[indicator]) if isinstance(name, Symbol) else None
     return cell.car if cell is not None else None
 
@@ -85,7 +84,7 @@ def _property_cell(symbol, indicator):
 
 
 class GoalBody:
-    """One body of a goal: the calls that it is for, the function of the bindings, the doc string."""
+    """One body of a goal: the pattern of the calls that it is for, a function of the bindings, and the doc string."""
 
     __slots__ = ("pattern", "variables", "function", "documentation", "sexp")
 
@@ -94,7 +93,7 @@ class GoalBody:
         self.variables = patterns.vars_in(pattern)
 
     def match(self, arguments):
-        """The bindings under which the pattern is ``arguments``, and whether there are any."""
+        """The bindings under which the pattern equals ``arguments``, and whether it matches."""
         return all_values(patterns.pat_match(self.pattern, arguments))
 
     def values(self, bindings):
@@ -111,20 +110,20 @@ class Goal:
 
 
 def declare_goal(name):
-    """Forget all bodies of the goal ``name``; what ``declare-goal`` does when it has defined the function."""
+    """Forget all bodies of the goal ``name``. ``declare-goal`` calls this when it has defined the function."""
     _goals[name] = Goal()
     return name
 
 
 def register_goal(name, pattern, goal_fun, doc_string=None):
-    """``(register-goal name pattern goal-fun)``: add a body for calls that match ``pattern``; ``goal_fun`` takes the bindings."""
+    """``(register-goal name pattern goal-fun)``: add a body for calls that match ``pattern``. ``goal_fun`` takes the bindings."""
     return define_goal(name, pattern, goal_fun, doc_string)
 
 
 def define_goal(name, pattern, function, documentation=None, sexp=None):
-    """What ``def-goal`` does. A pattern equal to a known one replaces that in its place, with a style warning.
+    """Add a body to the goal ``name``, for ``def-goal``. A body with an equal pattern is replaced in its place, with a style warning.
 
-    ``function`` takes the list of bindings. ``sexp``: the form that is recorded at the nodes of its calls.
+    ``function`` takes the list of bindings. ``sexp`` is the form that the nodes of its calls record.
     """
     bodies = _goals.setdefault(name, Goal()).bodies
     body = GoalBody(pattern, function, documentation, sexp)
@@ -138,7 +137,10 @@ def define_goal(name, pattern, function, documentation=None, sexp=None):
 
 
 def call_goal(name, arguments):
-    """Run the first body of the goal ``name`` whose pattern matches ``arguments`` (a Lisp list), in a new task: its values."""
+    """Run the first body of the goal ``name`` whose pattern matches ``arguments`` (a Lisp list), in a new task. Returns its values.
+
+    If no pattern matches, it is an error. Source: cpl.md 8.5.
+    """
     for body in bodies_of(name):
         bindings, matched = body.match(arguments)
         if matched:
@@ -168,7 +170,7 @@ def bodies_of(name):
 
 
 def describe_goal(goal):
-    """The doc string of the body whose pattern equals that of ``goal`` = ``(name . pattern)`` but for variable names, or nil."""
+    """The doc string of the body of ``goal``, a list ``(name . pattern)``, or nil. The names of variables may differ."""
     if not isinstance(goal, Cons):
         return type_error(goal, "CONS", "\n(A goal is a list (name argument...), as in (describe-goal '(at ?x)).)")
     same = patterns.patterns_eq

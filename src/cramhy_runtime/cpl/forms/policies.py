@@ -1,12 +1,12 @@
 """Policies: a condition that is watched while a body runs, and what to do when it is met.
 
-A policy has four optional clauses: ``init`` must give true or nothing starts; ``check`` is called again and again beside the body;
-when it is met the body is evaporated, ``recover`` runs, and the form fails with ``policy-check-condition-met``; ``clean-up`` runs
-at every end. Source: cpl.md section 9. Repaired: a policy without ``check`` just runs its body, where the original kills it; a
-failing ``recover`` does not skip ``clean-up``; the conditions reach handlers in parent tasks, as errors do.
+A policy has four optional clauses. If ``init`` does not return true, the body does not start. ``check`` is called again and again beside
+the body; when it returns true, the body is evaporated, ``recover`` runs, and the form fails with ``policy-check-condition-met``.
+``clean-up`` runs at every end. Source: cpl.md section 9. Repaired: a policy without ``check`` just runs its body, where the original kills
+it. A failing ``recover`` does not skip ``clean-up``. The conditions reach handlers in parent tasks, as errors do.
 
-A clause is a function of the use's `Store` and the policy's parameters; the macro makes the local functions ``policy-get`` and
-``policy-setf`` from the store.
+Each clause is a function of a `Store`, made for each use of the policy, and of the policy's parameters. The macro makes the local
+functions ``policy-get`` and ``policy-setf`` from the store.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _named: dict[Any, Policy] = per_image({})
 
 
 class Policy:
-    """A policy; ``init``, ``check``, ``recover`` and ``clean_up`` are functions or ``None``, ``parameters`` a Lisp list of names."""
+    """A policy. ``init``, ``check``, ``recover`` and ``clean_up`` are functions or ``None``; ``parameters`` is a Lisp list of names."""
 
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::POLICY"
 
@@ -59,15 +59,17 @@ class Policy:
 
 
 class Store:
-    """The small memory that the clauses of one use of a policy share."""
+    """Values that the clauses of one use of a policy share."""
 
     def __init__(self) -> None:
         self.values: dict[Hashable, Any] = {}
 
     def get(self, symbol: Hashable) -> Any:
+        """The value stored under ``symbol``, or nil."""
         return self.values.get(symbol)
 
     def set(self, symbol: Hashable, value: T) -> T:
+        """Store ``value`` under ``symbol``, and return it."""
         self.values[symbol] = value
         return value
 
@@ -82,12 +84,17 @@ def make_policy(
     recover: Clause | None = None,
     clean_up: Clause | None = None,
 ) -> Policy:
-    """A policy object of four functions: of the `Store` of the use that they share, and the policy's parameters."""
+    """A new policy. Each clause is a function of a `Store`, which the clauses of one use share, and of the policy's parameters.
+
+    name: a string or symbol. parameters: a Lisp list of their names; left out, the functions check their arguments themselves.
+    init: if it does not return true, the body is not run. check: called every 0.01 s beside the body; when it returns true, the body is
+    evaporated. recover: called after that. clean_up: called at every end. Source: cpl.md 9.1.
+    """
     return Policy(name, parameters, description, init, check, recover, clean_up)
 
 
 def define_policy(name, parameters=UNSUPPLIED, description=None, **clauses):
-    """Make a policy, keep it under ``name`` and in the variable ``name``; returns it."""
+    """Make a policy, keep it under ``name`` and in the variable ``name``, and return it."""
     policy = _named[name] = make_policy(name, parameters, description, **clauses)
     redefined(name)
     name.special = True
@@ -96,7 +103,7 @@ def define_policy(name, parameters=UNSUPPLIED, description=None, **clauses):
 
 
 def named_policy(name):
-    """The policy called ``name``; it is a failure ``policy-not-found`` if there is none."""
+    """The policy called ``name``. If there is none, fail with ``policy-not-found``."""
     policy = _named.get(name)
     if policy is not None:
         return policy
@@ -106,7 +113,7 @@ def named_policy(name):
 
 
 def _check_use(policy, count):
-    """What ``with-policy`` is given must be a policy, and as many parameters as it has."""
+    """Signal an error unless ``policy`` is a policy with ``count`` parameters."""
     if not isinstance(policy, Policy):
         error(types.TypeError_(policy, sym("CPL-IMPL::POLICY")), hint="WITH-POLICY takes a policy, WITH-NAMED-POLICY the name of one.")
     names = [symbol_name(name) for name in python_list(policy.parameters) if is_symbol(name)]
@@ -118,17 +125,18 @@ def _check_use(policy, count):
 
 
 def with_policy(policy, arguments, body, forms=None):
-    """``(with-policy policy (form...) body...)``: values of ``body()`` under ``policy``; for the arguments see `in_force`."""
+    """``(with-policy policy (form...) body...)``: call ``body()`` under ``policy`` and return its values. See `in_force`."""
     with in_force(policy, arguments, forms) as check:
         return body() if check is None else pursue(check, body)
 
 
 @contextmanager
 def in_force(policy: Policy, arguments: Callable[[], Any], forms: Any = None) -> Iterator[Thunk[object] | None]:
-    """The block runs under ``policy``, beside the function that it gets: that of the check, which returns when it is met.
+    """``with in_force(policy, arguments) as check:`` runs the block under ``policy``.
 
-    ``arguments()`` evaluates the parameter forms to a Python sequence, again at each call of a clause; ``forms`` are the forms
-    themselves, a Lisp list, which the conditions show.
+    ``check`` is a function that returns when the policy's check is met; the block runs it beside its own work. It is ``None`` if the
+    policy has no check. ``arguments()`` evaluates the parameter forms to a Python sequence, again at each call of a clause. ``forms``
+    are the forms themselves, a Lisp list, which the conditions show.
     """
     inside_plan("PURSUE")
     if forms is None:
@@ -166,7 +174,10 @@ def in_force(policy: Policy, arguments: Callable[[], Any], forms: Any = None) ->
 
 
 def with_policies(policies, body):
-    """``(with-policies ((policy (form...))...) body...)``: nested, the first outermost; ``policies``: (policy, arguments, forms)."""
+    """``(with-policies ((policy (form...))...) body...)``: nested `with_policy`, the first policy outermost.
+
+    ``policies`` is a list of (policy, arguments, forms).
+    """
     if not policies:
         return body()
     (policy, arguments, forms), *rest = policies

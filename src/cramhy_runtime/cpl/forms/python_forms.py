@@ -1,11 +1,11 @@
-"""The plan forms as Python calls them: functions over callables, and without branches ``with`` blocks.
+"""The plan forms for Python: functions that take callables, or, without branches, ``with`` blocks.
 
-    cpl.pursue(drive, watch)                     the form: its value
+    cpl.pursue(drive, watch)                     the form, which returns a value
     with cpl.pursue() as race: race.start(drive)  the same as a block
 
-They are the functions of ``operators.py`` and its neighbours, and add what Python expects: any iterable where Lisp has lists, and
-outside the exception that Python code raised (``failures/python_exceptions.py``). A branch is any callable of no arguments; several
-Lisp values are a tuple, no values (a branch that somebody evaporated) the empty tuple.
+They call the functions of ``operators.py`` and its neighbours, and add what Python expects: they take any iterable where Lisp has
+lists, and they raise the exceptions that Python code raised (``failures/python_exceptions.py``). A branch is any callable of no
+arguments. Several Lisp values are a tuple; no values, of a branch that another task evaporated, are the empty tuple.
 """
 
 from __future__ import annotations
@@ -44,9 +44,10 @@ def par() -> ParBlock: ...
 def par(first: Thunk[T], /, *branches: Thunk[object]) -> T: ...
 @for_python
 def par(*branches: Thunk[object]) -> object:
-    """All branches at once, until all have ended; the value of the first. One fails: the others are ended, and it is raised.
+    """Run all branches at once until all have ended. Returns the result of the first.
 
-    Without branches: the beginning of ``with par() as branches:``, see `ParBlock`.
+    If a branch fails, the others are evaporated, and its failure is raised. Without branches it returns a `ParBlock`, for
+    ``with par() as branches:``. Outside of a plan it is an error. Source: cpl.md 6.2.
     """
     return operators.par(*branches) if branches else ParBlock()
 
@@ -57,9 +58,10 @@ def pursue() -> RaceBlock: ...
 def pursue(first: Thunk[T], /, *branches: Thunk[S]) -> T | S: ...
 @for_python
 def pursue(*branches: Thunk[object]) -> object:
-    """All branches at once, until one has ended; its value. The others are evaporated, and dead when this returns.
+    """Run all branches at once until one has ended. Returns its result, or raises its failure.
 
-    Without branches: the beginning of ``with pursue() as race:``, see `RaceBlock`.
+    The other branches are evaporated, and dead when this returns. Without branches it returns a `RaceBlock`, for
+    ``with pursue() as race:``. Outside of a plan it is an error. Source: cpl.md 6.3.
     """
     return operators.pursue(*branches) if branches else RaceBlock()
 
@@ -70,9 +72,9 @@ def try_all() -> TryAllBlock: ...
 def try_all(first: Thunk[T], /, *branches: Thunk[S]) -> T | S: ...
 @for_python
 def try_all(*branches: Thunk[object]) -> object:
-    """All branches at once, until one succeeds; its value. All fail: `CompositeFailure`.
+    """Run all branches at once until one succeeds. Returns its result; raises `CompositeFailure` if all fail.
 
-    Without branches: the beginning of ``with try_all() as attempts:``, see `TryAllBlock`.
+    Without branches it returns a `TryAllBlock`, for ``with try_all() as attempts:``. Outside of a plan it is an error. Source: cpl.md 6.4.
     """
     return operators.try_all(*branches) if branches else TryAllBlock()
 
@@ -83,19 +85,25 @@ def try_in_order(first: Thunk[T], /, *branches: Thunk[S]) -> T | S: ...
 def try_in_order(*branches: Thunk[T]) -> T: ...
 @for_python
 def try_in_order(*branches: Thunk[object]) -> object:
-    """One after the other, until one succeeds; its value. All fail: `CompositeFailure`."""
+    """Call one branch after the other until one succeeds. Returns its result; raises `CompositeFailure` if all fail (cpl.md 6.5)."""
     return operators.try_in_order(*branches)
 
 
 @for_python
 def try_each_in_order(elements: Iterable[S], function: Callable[[S], T]) -> T:
-    """``function(element)`` for one element after the other, until one call succeeds; its value. All fail: `CompositeFailure`."""
+    """Call ``function(element)`` for one element after the other until a call succeeds. Returns its result.
+
+    Raises `CompositeFailure` if all calls fail. Source: cpl.md 6.6.
+    """
     return operators.try_each_in_order(_lisp_list(elements), function)
 
 
 @for_python
 def par_loop(elements: Iterable[S], function: Callable[[S], T]) -> T | None:
-    """``function(element)`` for all elements at once, as `par`; the value for the first. Nothing is done for an empty iterable."""
+    """Call ``function(element)`` for all elements at once, as `par` does. Returns the result for the first element.
+
+    An empty iterable gives ``None``. Source: cpl.md 6.8.
+    """
     elements = _lisp_list(elements, empty=())
     return operators.par_loop(elements, function) if elements != () else None
 
@@ -108,7 +116,10 @@ def _lisp_list(elements: Any, empty: Any = None) -> Any:
 
 @for_python
 def partial_order(steps: Sequence[Thunk[T]], orderings: Iterable[Ordering]) -> T:
-    """As `par`, with ``after`` starting only when ``before`` is dead, for each (before, after) of ``orderings``: tasks or tags."""
+    """As `par`, but for each (before, after) of ``orderings``, ``after`` starts only when ``before`` is dead.
+
+    Both are tasks or tags; ``before`` may be a value fluent, which must be pulsed. A ring of orderings is an error. Source: cpl.md 6.7.
+    """
 
     def task(step: Any) -> Any:
         return step.task if isinstance(step, Tag) else step
@@ -118,13 +129,13 @@ def partial_order(steps: Sequence[Thunk[T]], orderings: Iterable[Ordering]) -> T
 
 @for_python
 def with_task(body: Thunk[T], name: str = "WITH-TASK") -> T:
-    """Run ``body`` in a child task called ``name`` and wait for it: what it returns."""
+    """Run ``body`` in a child task called ``name``, wait for it and return its result. Source: cpl.md 6.10."""
     return operators.with_task(body, name)
 
 
 @for_python
 def join_task(task: AbstractTask[T]) -> T:
-    """Wait until ``task`` is dead: what it returned; what it failed with is raised."""
+    """Wait until ``task`` is dead. Returns its result or raises its failure; the result of an evaporated task is ``()`` (cpl.md 3.8)."""
     return task.join()
 
 
@@ -163,9 +174,9 @@ def whenever(fluent: Fluent[T | None]) -> Iterator[T]: ...
 @overload
 def whenever(fluent: Fluent[object], body: Thunk[object]) -> NoReturn: ...
 def whenever(fluent: Fluent[object], body: Thunk[object] | None = None) -> Iterator[Any]:
-    """``for value in whenever(fluent):`` runs its body each time that the fluent is true; ``break`` is the way out.
+    """``for value in whenever(fluent):`` runs its body each time that the fluent is true; ``break`` ends it. Source: cpl.md 2.11.
 
-    With ``body``, a function, it is called for ever.
+    With ``body``, a function of no arguments, `whenever` calls it each time, and never returns.
     """
     return _values(fluent) if body is None else waiting.whenever(fluent, body)
 
@@ -181,7 +192,7 @@ def without_scheduling() -> AbstractContextManager[None]: ...
 @overload
 def without_scheduling(body: Thunk[T]) -> T: ...
 def without_scheduling(body: Thunk[object] | None = None) -> object:
-    """``with without_scheduling():`` requests to suspend or evaporate this task wait until the block is over."""
+    """``with without_scheduling():`` delays requests to suspend or evaporate this task until the block is over. Source: cpl.md 3.6."""
     return suspension.undisturbed() if body is None else suspension.without_scheduling(body)
 
 
@@ -199,19 +210,20 @@ def on_suspension(handler: Thunk[object]) -> AbstractContextManager[None]: ...
 @overload
 def on_suspension(handler: Thunk[object], body: Thunk[T]) -> T: ...
 def on_suspension(handler: Thunk[object], body: Thunk[object] | None = None) -> object:
-    """``with on_suspension(stop_motors):`` whenever this task is suspended meanwhile, ``handler()`` runs in it first."""
+    """``with on_suspension(stop_motors):`` calls the function in this task before each suspension within the block (cpl.md 3.10)."""
     return suspension.handler_for_suspension(handler) if body is None else suspension.on_suspension(handler, body)
 
 
 def task_suspended(task: K) -> AbstractContextManager[K]:
-    """``with task_suspended(task):`` it stands still while the block runs, and goes on afterwards in any case."""
+    """``with task_suspended(task):`` suspends ``task`` while the block runs, and wakes it on every exit. Source: cpl.md 3.12."""
     return suspension.task_suspended(task)
 
 
 def policy(policy: policies.Policy, *arguments: object) -> AbstractContextManager[None]:
-    """``with cpl.policy(a_policy, argument):`` the block under that policy.
+    """``with cpl.policy(a_policy, argument):`` runs the block under that policy.
 
-    When the policy's check is met, the block is ended, and the form fails with `PolicyCheckConditionMet`.
+    When the policy's check is met, the block ends and raises `PolicyCheckConditionMet`. If its init clause does not return true, the
+    block does not run: `PolicyInitFailed`. Source: cpl.md 9.2.
     """
     return _under(policy, arguments)
 

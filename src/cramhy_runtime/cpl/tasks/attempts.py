@@ -1,8 +1,8 @@
 """Handling failures in Python: ``handling``, whose handlers run before anything unwinds, and ``attempts``, a loop with an end.
 
-Python's ``except`` runs when the stack of what failed is gone. A handler of the plan language runs on top of that stack, can look at
-what cleanup would destroy, and decides: try again (``retry()``), leave with a value (``retry.leave(value)``), or return, which
-declines, and the next handler further out is asked. What nobody takes unwinds, and is then an ordinary exception for ``except``.
+Python's ``except`` runs when the stack of the failing code is gone. A handler of the plan language runs on top of that stack, and can
+look at things that cleanup would destroy. It tries again (``retry()``), leaves with a value (``retry.leave(value)``), or returns, which
+declines: then the next handler further out is asked. A failure that all decline unwinds, and is then an ordinary exception.
 
 A ``with`` body cannot run twice, so trying again is either a decorated function or a loop over ``attempts``.
 """
@@ -37,10 +37,11 @@ def handling(handlers: Mapping[Kinds, Handler]) -> Callable[[Callable[P, T]], Ca
 @overload
 def handling(handlers: Mapping[K, Handler]) -> Callable[[Callable[P, T]], Callable[P, T]]: ...
 def handling(handlers: Mapping[Any, Handler]) -> Callable[[Callable[P, T]], Callable[P, T]]:
-    """A decorator: calls of the function have ``handlers`` in force, a mapping from failure classes to ``handler(failure, retry)``.
+    """A decorator: ``handlers``, a mapping from failure classes to ``handler(failure, retry)``, handle failures of the function's calls.
 
-    Classes are those of plan failures and of ordinary exceptions. An exception of a branch is an envelope for handlers of `PlanFailure`
-    (its ``error``), and itself for handlers of its own class, which come first. Handlers of one mapping are asked in its order.
+    A key is a class of plan failures or of ordinary exceptions, or a tuple of them; other classes are an error. Handlers of `PlanFailure`
+    get an exception of a branch in an envelope, whose ``error`` it is; handlers of its own class get the exception itself, and come
+    first. Otherwise the handlers are asked in the order of the mapping. Source: cpl.md 4.5.
     """
     clauses = [
         (_specifier(cls), _handler(cls, handler))
@@ -65,7 +66,7 @@ def _specifier(cls: type[BaseException]) -> type:
         return condition_class(cls)
     return error(
         f"There can be no handler for {cls.__name__}: handlers are for plan failures and for exceptions under Exception. "
-        "What ends tasks and programs is for `finally`."
+        "Use `finally` for what must happen when a task or a program ends."
     )
 
 
@@ -76,7 +77,7 @@ def _handler(cls: type[BaseException], handler: Handler) -> Handler:
 
 
 class Attempt:
-    """One turn of `attempts`; ``number`` counts from 1, ``failure`` is what it failed with."""
+    """One turn of `attempts`. ``number`` counts from 1; ``failure`` is the failure of this turn, or ``None``."""
 
     def __init__(self, number: int, last: bool, kinds: Kinds):
         self.number, self.last, self.kinds = number, last, kinds
@@ -100,8 +101,8 @@ class Attempt:
 def attempts(count: int, *, on: Kinds = PlanFailure, pause: float = 0) -> Iterator[Attempt]:
     """``for attempt in cpl.attempts(3): with attempt: ...`` runs the block until it does not fail, ``count`` times at most.
 
-    ``on`` says which failures are worth another attempt, by default plan failures; ``pause`` is the time in between, in seconds.
-    The failure of the last attempt is raised.
+    on: the failures after which it tries again, by default plan failures. pause: the time between two attempts, in seconds.
+    The failure of the last attempt is raised. A ``count`` below 1 is an error.
     """
     if count < 1:
         error(f"attempts({count}) would try nothing. Ask for one attempt at least.")

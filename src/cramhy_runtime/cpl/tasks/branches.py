@@ -1,13 +1,13 @@
 """The branches of one parallel form, and the task that waits for them.
 
-``par``, ``pursue``, ``try-all`` and the rest start one task per branch and differ only in when they have seen enough (`ready`)
-and in what they make of it (`choose`). The branches keep count themselves, so the waiting task is woken once, when there is
-something to decide, and not at the end of each of a thousand branches.
+``par``, ``pursue``, ``try-all`` and the rest start one task per branch. They differ only in when the form is decided (`ready`) and in
+its result (`choose`). The branches are counted as they end, so the waiting task is woken once, when the form is decided, and not at
+the end of each of a thousand branches.
 
-Law 1 is kept in one place, `run`: however the waiting ends, by a decision, a failure, an evaporation or an interrupt, the living
-branches are evaporated and their death is awaited before anything else happens. A failure that a branch ends with *while* it is
-being evaporated is not lost: it takes the place of the evaporation (cpl.md 3.7). The original has a wrapper task and a watcher
-around this (6, 6.9), and does not wait when the form fails.
+`run` keeps law 1 for all of them: when the wait ends, by a decision, a failure, an evaporation or an interrupt, it evaporates the living
+branches and waits for their death before anything else happens. A failure of a branch *while* it is being evaporated is not lost: it
+takes the place of the evaporation (cpl.md 3.7). The original has a wrapper task and a watcher around this (6, 6.9), and does not wait
+when the form fails.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 class Branches:
-    """A set of tasks started together. ``living``, ``failed`` and ``done`` count them."""
+    """A set of tasks started together. ``living``, ``failed`` and ``done`` are numbers of tasks."""
 
     __slots__ = ("form", "tasks", "living", "failed", "done", "waiter", "ready")
 
@@ -64,7 +64,7 @@ class Branches:
         task.execute()
 
     def ended(self, task: Task[object]) -> None:
-        """A branch is dead. The waiting task is woken if that decides the matter."""
+        """Count ``task``, a branch that is dead now. Wakes the waiting task if that decides the form."""
         self.living -= 1
         if task.status is FAILED:
             self.failed += 1
@@ -74,7 +74,7 @@ class Branches:
             self.waiter.kernel.unpark(self.waiter)
 
     def wait(self, ready: Ready) -> None:
-        """Wait until ``ready(self)``, and all branches have started, however early one of them decides the matter (invariant 97)."""
+        """Wait until ``ready(self)``, and until all branches have started, however early one of them decides the form (invariant 97)."""
         self.waiter = kernel.current()
         self.ready = ready
         while not ready(self):
@@ -86,7 +86,7 @@ class Branches:
         return f"the branches of {self.form.upper()}: " + ", ".join(task.name for task in self.tasks if task.alive)
 
     def end(self) -> Sequence[Task[object]]:
-        """Evaporate the living branches and wait until they are dead; returns those that failed meanwhile."""
+        """Evaporate the living branches and wait until they are dead. Returns those that failed meanwhile."""
         if not self.living:
             return ()
         self.waiter = None
@@ -95,7 +95,7 @@ class Branches:
         return [task for task in living if task.status is FAILED]
 
     def abort(self, exception: BaseException) -> NoReturn:
-        """Whoever waits is leaving with ``exception``: end the branches, then raise it, or what a branch failed with meanwhile."""
+        """End the branches because the waiting task leaves with ``exception``. Raises it, or the failure of a branch meanwhile."""
         late = self.end()
         if late and isinstance(exception, kernel.Cancelled):
             raise self.last_failure() from None
@@ -103,7 +103,10 @@ class Branches:
         raise exception
 
     def finish(self, values: Any, failure: Any, late_failures_count: bool = True) -> Any:
-        """It is decided: end the branches that are left, and return ``values`` or signal ``failure``."""
+        """End the branches that are left when the form is decided, and return ``values`` or signal ``failure``.
+
+        ``late_failures_count``: a branch that fails while it is ended makes the form fail.
+        """
         if self.living:
             late = self.end()
             if failure is None and late and late_failures_count:
@@ -125,8 +128,10 @@ class Branches:
 
 
 def run(form: str, tasks: list[Task[object]], ready: Ready, choose: Choice, late_failures_count: bool = True) -> Any:
-    """Start ``tasks`` as children of the current one, wait until ``ready(branches)``, end the rest, and return what
-    ``choose(branches)`` returned at that moment: (values, failure), failure ``None`` on success."""
+    """Start ``tasks`` as children of the current task, wait until ``ready(branches)``, and end the rest.
+
+    Then ``choose(branches)`` gives (values, failure), with failure ``None`` on success: returns the values or signals the failure.
+    """
     if active_tags:
         log(form, "branches: ~d", len(tasks))
     branches = Branches(form, tasks)
@@ -141,7 +146,7 @@ def run(form: str, tasks: list[Task[object]], ready: Ready, choose: Choice, late
 
 
 def _note_beside(failure: PlanFailure, tasks: Sequence[Task[object]]) -> None:
-    """Keep the failures of the other ``tasks`` with the one that the form fails with, so that the user is told of them (law 3)."""
+    """Keep the failures of the other ``tasks`` with ``failure``, with which the form fails, so that the user hears of them (law 3)."""
     known = [*getattr(failure, "beside", ())]
     seen = {id(opened(failure)), *(id(other) for _, other in known)}
     known += [
@@ -151,7 +156,7 @@ def _note_beside(failure: PlanFailure, tasks: Sequence[Task[object]]) -> None:
 
 
 def _warn_of_lost(tasks: Sequence[Task[object]]) -> None:
-    """Tell of ``tasks``, which failed when nobody can take their failure any more: while they were ended for another reason."""
+    """Warn of the failures of ``tasks`` that no form can take any more: they failed while they were ended for another reason."""
     for task in tasks:
         if isinstance(task.result, PlanFailure):
             warning = SimpleWarning("~a failed while it was ended: ~a", task.name, opened(task.result))
@@ -160,7 +165,7 @@ def _warn_of_lost(tasks: Sequence[Task[object]]) -> None:
 
 
 def branch_tasks(form: str, thunks: Sequence[Thunk[Any]]) -> list[Task[object]]:
-    """A new task per thunk, named after its position: ``[PAR-CHILD-#1/2]-7``."""
+    """A new task for each thunk, named after its position: ``[PAR-CHILD-#1/2]-7``."""
     count = len(thunks)
     return [Task(thunk, partial(_branch_name, form, index, count)) for index, thunk in enumerate(thunks, 1)]
 
@@ -170,7 +175,7 @@ def _branch_name(form: str, index: int, count: int) -> str:
 
 
 def run_forms(form: str, thunks: Sequence[Thunk[Any]], ready: Ready, choose: Choice, late_failures_count: bool = True) -> Any:
-    """`run` for a plan form with one branch per thunk; the errors of cpl.md 5.3 and of a form without branches."""
+    """`run` for a plan form with one branch per thunk. Outside of a plan (cpl.md 5.3) and without branches it is an error."""
     inside_plan(form)
     if not thunks:
         error(
@@ -181,14 +186,16 @@ def run_forms(form: str, thunks: Sequence[Thunk[Any]], ready: Ready, choose: Cho
 
 
 def run_one(task: AbstractTask[object], form: str | None = None) -> Any:
-    """Start ``task`` as a child of the current one and wait for it: its values, or its failure is signalled here."""
+    """Start ``task`` as a child of the current task and wait for it. Returns its values or signals its failure."""
     return run(form or str(task.name), [task], nobody_lives, only_values)
 
 
 def nobody_lives(branches: Branches) -> bool:
+    """Whether all branches are dead."""
     return not branches.living
 
 
 def only_values(branches):
+    """The values and the failure of the only branch."""
     task = branches.tasks[0]
     return (None, task.result) if task.status is FAILED else (task.result, None)

@@ -1,12 +1,12 @@
-"""Errands: work that a task does for somebody else, one after the other, as if each had a task of its own.
+"""Errands: pieces of work that a task does for others, one after the other, as if each had a task of its own.
 
-A process module is one task for its whole life and runs its body once per request. A new task per request would cost two more changes of
-stack and the making of a stack, half of the time of a short request. So the body is a piece of the module's task, and an errand
-keeps apart what belongs to the piece: it starts with the dynamic bindings of a new task, so that handlers, restarts and specials of the
-module are not seen in it, and with an empty path; what it fails with is its result; a non-local exit cannot leave it; tasks and
-threads that it started and did not wait for are ended when it ends (law 1).
+A process module is one task for its whole life and runs its body once per request. A new task per request would cost two more switches
+of the stack and a new stack, half of the time of a short request. So the body is a piece of the module's task, and an errand separates
+this piece from the rest. It starts with the dynamic bindings of a new task, so it does not see handlers, restarts and specials of the
+module, and with an empty path. Its failure is its result, and a non-local exit cannot leave it. When it ends, tasks and threads that it
+started and did not wait for are ended (law 1).
 
-`Errand.end` evaporates the piece, by the means of `Block`: cleanup runs once, undisturbed (law 2). Other than a ``with`` block it can also
+`Errand.end` evaporates the piece, as a `Block` does: cleanup runs once, undisturbed (law 2). Unlike a ``with`` block, an errand can also
 be ended while its task is suspended, as a task can; the task is suspended again afterwards.
 """
 
@@ -27,7 +27,7 @@ _PASSING = (kernel.Cancelled, kernel.Abandoned, kernel.Interrupted, KeyboardInte
 
 
 class Errand(Block):
-    """One piece of work; `run` it once. ``end`` may be called at any time, and by any task."""
+    """One piece of work. `run` it once. Any task may call ``end`` at any time."""
 
     __slots__ = ("children", "threads", "unclaimed", "limit")
     form = "ERRAND"
@@ -37,9 +37,9 @@ class Errand(Block):
             super().remind()
 
     def run(self, body: Any, *arguments: Any) -> tuple[Any, Any]:
-        """Call ``body(*arguments)``: the status and result that a task with this body would have had.
+        """Call ``body(*arguments)``. Returns the status and result that a task with this body would have had.
 
-        What ends the whole task, or the program, passes. One that was ended before it is run does not call ``body``.
+        Exceptions that end the whole task, or the program, pass. An errand that was ended before it is run does not call ``body``.
         """
         if self.asked:
             return EVAPORATED, NO_VALUES

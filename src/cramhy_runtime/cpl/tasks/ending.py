@@ -1,14 +1,14 @@
-"""How tasks are made to end, and cleanup that does not.
+"""How tasks are ended, and how cleanup that does not end is ended.
 
-Whoever started tasks waits here for their death (law 1), shielded: a request to end itself waits too. That is how a wait which
-never ends, in the cleanup form of one task, holds up the whole tree. In the original it does so for ever (cpl.md 3.7). Repaired:
-such a wait, and never a computation, is ended, the rest of its cleanup form is left out, and the outer cleanup forms run,
+A task that started others waits here for their death (law 1). It is shielded meanwhile: a request to end it waits too. So a wait that
+never ends, in the cleanup form of one task, stops the whole tree. In the original it does so for ever (cpl.md 3.7). Repaired: such a
+wait (never a computation) is ended, the rest of its cleanup form is left out, and the outer cleanup forms run,
 
 * when a program says ``(evaporate task)`` a second time; the requests that forms make to their branches do not count;
 * when the cleanup has taken longer than ``*cleanup-time-limit*`` seconds of the kernel's clock, with a warning;
 * when the kernel finds that nothing can happen any more, or its time limit is reached (`close_plan`), with a warning.
 
-A task that is itself only waiting for the death of others is not disturbed: the request goes to those (`awaiting_death`).
+A task that only waits for the death of others is not disturbed: the request goes to those others (`awaiting_death`).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class awaiting_death(shield):  # noqa: N801 (reads as a statement)
 
 
 def end_tasks(tasks: list[Any], reason: str | None = None) -> None:
-    """Evaporate ``tasks`` and wait until they are dead; a request to end the current task waits for that too."""
+    """Evaporate ``tasks`` and wait until they are dead. A request to end the current task waits for that too."""
     if active_tags and tasks:
         log("TEARDOWN", "~@[~a ~]~{~a~^, ~:_~}", reason, list_from([task.name for task in tasks]))
     for task in tasks:
@@ -78,9 +78,9 @@ def end_tasks(tasks: list[Any], reason: str | None = None) -> None:
 
 
 def end_waits(task: AbstractTask[object], because: str | None = None) -> bool:
-    """End the wait that the cleanup of ``task``, or of tasks whose death it awaits, is stuck in; returns whether there was one.
+    """End the wait in the cleanup of ``task``, or of the tasks whose death it awaits. Returns whether there was one.
 
-    ``because``, a clause such as "Nothing can bring that about", makes a warning of it in the task that waits.
+    With ``because``, a clause such as "Nothing can bring that about", the task that waits signals a warning.
     """
     if task.awaited is not None:
         others = task.awaited() if callable(task.awaited) else task.awaited
@@ -113,8 +113,8 @@ def end_waits(task: AbstractTask[object], because: str | None = None) -> bool:
 class CleanupLimit:
     """Ends the waits of a cleanup when ``seconds`` are over, and again after as many more.
 
-    ``block`` is the `kernel.cleanup` it belongs to; ``None`` stands for all that a task does after it was asked to end outside of
-    such blocks, as a plan in Python does in ``finally``.
+    ``block`` is the `kernel.cleanup` block that it limits. ``None`` stands for everything that a task does outside of such blocks after
+    it was asked to end, as in ``finally`` in a plan in Python.
     """
 
     __slots__ = ("task", "seconds", "block", "timer")
@@ -134,16 +134,17 @@ class CleanupLimit:
         self._look_after(self.seconds if ended else LATER)
 
     def go_on(self):
-        """It looked in vain while the task waited for others to die; that is over."""
+        """Look again after ``seconds``, if the timer ran out while the task waited for others to die. That wait is over."""
         if not self.timer.active:
             self._look_after(self.seconds)
 
     def end(self):
+        """End nothing any more."""
         self.timer.cancel()
 
 
 def limit_cleanup(task: AbstractTask[object], block: cleanup | None = None) -> CleanupLimit | None:
-    """A `CleanupLimit` for the cleanup that ``task``, the current one, begins; ``None`` if no limit is set."""
+    """A `CleanupLimit` for the cleanup that ``task``, the current task, begins; ``None`` if no limit is set."""
     seconds = _limit.value
     if seconds is None or not isinstance(seconds, Real) or not 0 <= seconds < float("inf"):
         return None
@@ -168,7 +169,11 @@ CLEANUP_TIME_LIMIT = inherit(define_task_state("CPL-IMPL", "*CLEANUP-TIME-LIMIT*
 
 
 def cleanup_time_limit(seconds: float | None) -> binding:
-    """``with cleanup_time_limit(5.0):`` binds ``*cleanup-time-limit*``, in seconds of the kernel's clock, for plans that start within."""
+    """``with cleanup_time_limit(5.0):`` limits the cleanup of plans that start in the block, in seconds of the kernel's clock.
+
+    It binds ``*cleanup-time-limit*``. ``None`` means that there is no limit. When the time is over, waits in the cleanup are ended, with
+    a warning.
+    """
     return binding(CLEANUP_TIME_LIMIT, seconds)
 
 
@@ -176,7 +181,7 @@ def cleanup_time_limit(seconds: float | None) -> binding:
 
 
 def close_plan(task: AbstractTask[object], reason: str | None) -> None:
-    """Evaporate the root ``task`` and return when it is dead, whatever its cleanup waits for. For who started it, outside of it."""
+    """Evaporate the root ``task`` and return when it is dead, whatever its cleanup waits for. Its starter calls this, outside of it."""
     for _ in range(PATIENCE):
         try:
             return end_tasks([task], reason)

@@ -1,9 +1,9 @@
-"""``with-parallel-childs``: the parallel form whose end the program decides itself (cpl.md 6.9).
+"""``with-parallel-childs``: the parallel form whose end the program itself decides (cpl.md 6.9).
 
-The watcher runs in the task of the form each time that the status of a child may have changed: once for each child that has a
-change it was not called for yet, so with children that start together it looks several times at one picture, as in the original.
-Its first look is when all children run and none has begun its body. Law 1 holds here too: whatever ends the form, the living
-children are evaporated and awaited.
+The watcher runs in the task of the form when the status of a child may have changed. It is called once for each child with a change that
+it has not been called for. So when children start together it sees the same statuses several times, as in the original. Its first call
+comes when all children run and none has begun its body. Law 1 holds here too: when the form ends, in any way, the living children are
+evaporated, and the form waits for their death.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Where a task of a plan waits, and obeys requests to suspend it.
 
-`pause` is the one way to wait in this room. A task that was asked to suspend obeys there, and at the end of its body: it leaves
+`pause` is the only way to wait in this room. A task that was asked to suspend itself obeys there, and at the end of its body: it leaves
 ``retry-after-suspension``, runs its ``on-suspension`` forms, suspends its children and waits for that, becomes ``:suspended``, and
-goes on when it is woken (cpl.md 3.5). Who may ask, and how often, is in ``suspension.py``.
+goes on when it is woken (cpl.md 3.5). The requests are in ``suspension.py``.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..statuses import CREATED, DEAD, RUNNING, SUSPENDED
 
 
 pause = kernel.park
-"""``pause(why, until=None)`` waits; the kernel calls `obey` there when it was asked to (`request`)."""
+"""``pause(why, until=None)`` waits. The kernel calls `obey` there after a `request`."""
 
 
 class Unwind(BaseException):
@@ -26,7 +26,7 @@ class Unwind(BaseException):
 
 
 def request(task):
-    """Ask ``task`` to suspend itself at its next waiting point; one that is not started yet, at its first."""
+    """Ask ``task`` to suspend itself at its next waiting point, or at its first if it is not started yet."""
     if task.status in DEAD or task.held:
         return
     task.held = True
@@ -37,7 +37,7 @@ def request(task):
 
 
 def release(task):
-    """Let ``task`` go on."""
+    """Wake ``task``, or take back a request to suspend it."""
     if task.held:
         task.held = False
         if task.status is SUSPENDED:
@@ -47,7 +47,7 @@ def release(task):
 
 
 def obey(task):
-    """Suspend the current task, which is ``task``, if that is still wanted; returns after the wake-up."""
+    """Suspend the current task, which is ``task``, if that is still wanted. Returns after the wake-up."""
     if task.unschedulable or task.comes_down:
         return
     while task.held:

@@ -5,9 +5,9 @@ of its body. The order is that of cpl.md 3.5: leave ``retry-after-suspension``, 
 and wait for that, then become ``:suspended``. Waking goes down the tree first as well.
 
 Repaired: both requests are idempotent. Suspending a suspended task and waking a running one do nothing, where the original kills
-the task; one wake-up undoes any number of suspensions. Neither waits for a task that is dead, or that nobody has started yet: that
-one obeys when it is started. ``with-task-suspended`` on a dead task runs its body at once; on one that is not started it waits, since
-its body may rely on the status, and takes the request back when it is left before.
+the task. One wake-up undoes any number of suspensions. Neither request waits for a task that is dead or not started yet; the latter
+obeys when it is started. ``with-task-suspended`` on a dead task runs its body at once. On a task that is not started it waits, since
+its body may rely on the status, and takes the request back if it is left before.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, TypeVar
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..current import current_task, inside_plan
 from .pausing import AT_REST, Unwind, obey, request
 from .tasks import AbstractTask, check_reason
@@ -34,7 +34,7 @@ suspend: Request = generic(
     "CPL-IMPL::SUSPEND",
     "(task &key reason sync)",
     documentation="""
-Suspend ``task`` and all below it; with ``sync`` (the default) wait until it is suspended or dead.""",
+Suspend ``task`` and all tasks below it. With ``sync`` (the default) wait until it is suspended or dead.""",
 )
 
 
@@ -48,7 +48,7 @@ wake_up: Request = generic(
     "CPL-IMPL::WAKE-UP",
     "(task &key reason sync)",
     documentation="""
-Let ``task`` and all below it go on; with ``sync`` (the default) wait until it is running or dead.""",
+Let ``task`` and all tasks below it go on. With ``sync`` (the default) wait until it is running or dead.""",
 )
 
 
@@ -60,7 +60,7 @@ def _wake_up(task, *, reason=None, sync=True):
 
 @contextmanager
 def handler_for_suspension(handler: Thunk[object]) -> Iterator[None]:
-    """While the block runs, ``handler()`` runs first in the task whenever it is suspended. Innermost first."""
+    """While the block runs, the current task calls ``handler()`` before each suspension; the innermost handler comes first."""
     task = current_task()
     if task is None:
         yield
@@ -76,13 +76,13 @@ def handler_for_suspension(handler: Thunk[object]) -> Iterator[None]:
 
 
 def on_suspension(handler: Thunk[object], body: Thunk[T]) -> T:
-    """``(on-suspension form body...)``: values of ``body()`` within `handler_for_suspension`."""
+    """``(on-suspension form body...)``: call ``body()`` within `handler_for_suspension`, and return its values."""
     with handler_for_suspension(handler):
         return body()
 
 
 def retry_after_suspension(body: Thunk[T]) -> T:
-    """Values of ``body()``. A suspension unwinds it, the task is suspended outside of it, and after wake-up it starts again."""
+    """Call ``body()`` and return its values. A suspension unwinds it, and after the wake-up it starts again. Source: cpl.md 3.11."""
     task = current_task()
     if task is None or task.retry_level:
         return body()
@@ -100,7 +100,7 @@ def retry_after_suspension(body: Thunk[T]) -> T:
 
 @contextmanager
 def task_suspended(task: K, reason: str | None = None) -> Iterator[K]:
-    """While the block runs ``task`` is suspended; it is woken again on every exit."""
+    """Suspend ``task`` while the block runs, and wake it on every exit. Outside of a plan it is an error."""
     inside_plan("WITH-TASK-SUSPENDED")
     try:
         suspend(task, reason=reason)
@@ -114,14 +114,14 @@ def task_suspended(task: K, reason: str | None = None) -> Iterator[K]:
 
 
 def with_task_suspended(task: AbstractTask[object], body: Thunk[T], reason: str | None = None) -> T:
-    """``(with-task-suspended (task) body...)``: values of ``body()`` within `task_suspended`."""
+    """``(with-task-suspended (task) body...)``: call ``body()`` within `task_suspended`, and return its values. Source: cpl.md 3.12."""
     with task_suspended(task, reason):
         return body()
 
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Requests to suspend or evaporate the task wait until the block is over."""
+    """Delay requests to suspend or evaporate the current task until the block is over."""
     task = current_task()
     if task is None:
         with kernel.shield():
@@ -140,13 +140,13 @@ def undisturbed() -> Iterator[None]:
 
 
 def without_scheduling(body: Thunk[T]) -> T:
-    """``(without-scheduling body...)``: values of ``body()``, `undisturbed`."""
+    """``(without-scheduling body...)``: call ``body()`` `undisturbed`, and return its values. Source: cpl.md 3.6."""
     with undisturbed():
         return body()
 
 
 def with_scheduling(body: Thunk[T]) -> T:
-    """``(with-scheduling body...)``: values of ``body()``, `disturbable`."""
+    """Call ``body()`` `disturbable`, and return its values. Source: cpl.md 3.6."""
     with disturbable():
         return body()
 

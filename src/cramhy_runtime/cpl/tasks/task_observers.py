@@ -1,7 +1,7 @@
-"""Following a plan: hearing of each task in it that starts.
+"""Following a plan: functions that are called with each task of it that starts.
 
 A task keeps itself in the ``record`` of its parent, if that has one (``*record-task-tree*``). A plan that is followed has a `Followed`
-there, which calls functions besides. So nothing is asked, and nothing paid, in plans that nobody follows.
+there, which also calls functions. So a plan without followers pays nothing.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .tasks import RECORD
 class Followed(list):
     """The ``record`` of a plan that is followed: it calls each of ``followers`` with a task that is about to start.
 
-    ``keep``: whether it also is what records are as a rule, the list of all tasks.
+    ``keep`` says whether it also keeps the list of all tasks, as other records do.
     """
 
     def __init__(self, tasks, keep):
@@ -29,7 +29,7 @@ class Followed(list):
 
 
 def follow(root, follower):
-    """Call ``follower`` with each task of the plan at whose root ``root`` is that starts from now on; never twice for one follower."""
+    """Call ``follower`` with each task that starts from now on in the plan with the root ``root``. A follower is entered only once."""
     before = root.record
     if not isinstance(before, Followed):
         root.record = Followed(before or (), before is not None or truth(RECORD.value))
@@ -42,6 +42,6 @@ def follow(root, follower):
 
 
 def unfollow(root, follower):
-    """Call ``follower`` no more."""
+    """Stop calling ``follower``."""
     if isinstance(root.record, Followed) and follower in root.record.followers:
         root.record.followers.remove(follower)

@@ -1,4 +1,4 @@
-"""What can be asked of a task: its status, what came of it, and its place among the others (cpl.md 3.2).
+"""Questions about a task: its status, its result, and its place among the others (cpl.md 3.2).
 
 None of this waits, and none of it changes anything; a dead task answers as well as a living one.
 """
@@ -6,19 +6,19 @@ None of this waits, and none of it changes anything; a dead task answers as well
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import list_from, truth
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..fluents.operators import fl_funcall
 from ..statuses import ALIVE, DEAD, DONE, FAILED, status_list
 from .tasks import AbstractTask, saved_tasks
 
-status = generic("CPL-IMPL::STATUS", "(task)", documentation="The fluent of its status; callbacks on it see each change in order.")
+status = generic("CPL-IMPL::STATUS", "(task)", documentation="The fluent of its status. Callbacks on it see each change in order.")
 status.method(AbstractTask)(lambda task: task.status_fluent)
 
 result = generic(
     "CPL-IMPL::RESULT",
     "(task)",
     documentation="""
-Its values when it succeeded, the condition when it failed, no values otherwise.""",
+Its values if it succeeded, the condition if it failed, otherwise no values.""",
 )
 
 
@@ -33,7 +33,7 @@ task_path.method(AbstractTask)(lambda task: task.path)
 
 
 def task_alive(task):
-    """A fluent that is true while the task is not dead; the true value is a list tail, as ``member`` gives it."""
+    """A fluent that is true while the task is not dead. The true value is the tail of a list, as ``member`` returns it."""
     return _status_net(task, ALIVE)
 
 
@@ -47,7 +47,7 @@ def _status_net(task, statuses):
 
 
 def task_running_p(task):
-    """True while the task is alive, created and suspended included."""
+    """True while the task is alive, also when it is created or suspended."""
     return True if _now(task) in ALIVE else None
 
 
@@ -74,20 +74,22 @@ def _now(task):
 
 
 def child_tasks(task):
-    """Its living children, newest first (a Lisp list)."""
+    """The living children of ``task``, newest first (a Lisp list)."""
     return list_from(list(reversed(task.children)))
 
 
 def parent_task(task):
+    """The parent of ``task``; nil for the root of a plan."""
     return task.parent
 
 
 def task_constraints(task):
+    """The fluents that must be true before ``task`` starts its body (a Lisp list)."""
     return list_from(task.constraints or [])
 
 
 def list_saved_tasks():
-    """The tasks executed while ``*save-tasks*`` was true, in order of execution; ``*tasks*`` is the same list."""
+    """The tasks executed while ``*save-tasks*`` was true, in order of execution. ``*tasks*`` is the same list."""
     return list_from(saved_tasks)
 
 

@@ -3,13 +3,13 @@
 A task is one thread of control of a plan with a place in the tree: it has one parent, a status that can be observed, and a
 result. Under each lies a task of the kernel. Every branch of ``par``, every tag and every call of a plan function is one.
 
-Laws kept here: a task is dead only when its children are (law 1), and its cleanup forms run after that (law 2), because every
+Laws kept here: a task is dead only when its children are dead (law 1), and its cleanup forms run after that (law 2), because every
 form that starts tasks waits for their death before it returns or lets an exception pass. A failure of a task becomes its result
-and reaches the task that waits for it (law 3). Source: cpl.md section 3. Repaired: children are awaited on failure and
-evaporation too, in which the original only tells them to end; a cleanup form of the parent cannot be overrun by a child.
+and reaches the task that waits for it (law 3). Source: cpl.md section 3. Repaired: a task waits for its children also when it fails or
+evaporates, where the original only tells them to end. A child cannot overrun a cleanup form of its parent.
 
-How a task parks and obeys is in ``pausing.py``, who may ask it to in ``suspension.py``, how cleanup is brought to an end in
-``ending.py``; how parallel forms wait and decide is in ``branches.py``, and what can be asked of a task in ``task_readers.py``.
+Parking and obeying are in ``pausing.py``, requests to suspend in ``suspension.py``, the end of cleanup in ``ending.py``, parallel forms
+in ``branches.py``, and questions about a task in ``task_readers.py``.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from cramhy_runtime.ground.conditions import error, from_python, type_error
 from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import locate
-from cramhy_runtime.ground.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.looking_on import only_looked_at
 from ..current import current_task
 from .ending import end_tasks, end_waits, limit_cleanup
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T", covariant=True, default=Any)
 DEEPEST = 1000
-"""How many levels of tasks below a top-level there may be. A plan that nests deeper has lost its end."""
+"""The greatest number of levels of tasks below a top-level. A plan that nests deeper probably starts itself without end."""
 
 _count = itertools.count(1)
 SAVE_TASKS = inherit(sym("CPL-IMPL::*SAVE-TASKS*"), None)
@@ -63,10 +63,10 @@ recorded = per_image(deque(maxlen=10))
 
 
 class AbstractTask(Generic[T]):
-    """What `Task` and `ToplevelTask` share: ``body`` is called without arguments in a task of its own once `execute` has started it.
+    """The base of `Task` and `ToplevelTask`. `execute` starts it; then it calls ``body`` without arguments.
 
-    ``path`` is its place in the task tree; ``constraints`` are fluents that must all be true before the body starts.
-    ``ended``, if set, is called with the task when it is dead. From Lisp, ``(make-instance 'task :thread-fun f)`` also starts it,
+    ``path`` is its place in the task tree. ``constraints`` are fluents that must all be true before the body starts.
+    ``ended``, if set, is called with the task when it is dead. In Lisp, ``(make-instance 'task :thread-fun f)`` also starts it,
     unless ``:run-thread nil`` is given (cpl.md 3.1).
     """
 
@@ -99,13 +99,13 @@ class AbstractTask(Generic[T]):
     __class_getitem__ = subscripted
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::ABSTRACT-TASK"
     threads: tuple[kernel.Task[object], ...] | list[kernel.Task[object]] = ()
-    """The kernel's tasks that its body spawned by ``cut:spawn-thread``."""
+    """The kernel's tasks that its body started with ``cut:spawn-thread``."""
     predecessors: tuple[AbstractTask[object], ...] | list[AbstractTask[object]] = ()
     """The tasks that it waits for before it starts its body (``forms/orderings.py``)."""
     record: list[AbstractTask[object]] | None = None
     """The list of all tasks of its plan, dead ones too, if they are recorded (``tree/tree_report.py``)."""
     awaited = None
-    """The tasks whose death it waits for, or a function that returns them, while it does (``ending.py``)."""
+    """While it waits for the death of tasks: these tasks, or a function that returns them (``ending.py``)."""
     claimed = False  # somebody asked what became of it
     unclaimed: tuple[AbstractTask[object], ...] = ()
     """Tasks below it that failed while no form waited for them."""
@@ -152,7 +152,7 @@ class AbstractTask(Generic[T]):
 
     @property
     def name(self) -> str:
-        """Its name, a string. Names given as functions are made when somebody asks, unless that only looks on."""
+        """Its name, a string. A name given as a function is made when it is first asked for, unless the caller only looks on."""
         name = self._name
         if name.__class__ is not str and only_looked_at():
             return self.plain_name
@@ -164,21 +164,23 @@ class AbstractTask(Generic[T]):
 
     @property
     def plain_name(self) -> str:
-        """Its name; without the number if nobody has asked for it yet, so that who only looks on, or reports, changes no name."""
+        """Its name, without the number if `name` has not been asked for yet. So a report does not change the numbers of names."""
         name = self._name
         return name() if callable(name) else name or "UNKNOWN"
 
     @property
     def alive(self) -> bool:
+        """True until the task is dead."""
         return self.status not in DEAD
 
     @property
     def dead(self) -> bool:
+        """True when the task has succeeded, failed or was evaporated."""
         return self.status in DEAD
 
     @property
     def comes_down(self) -> bool:
-        """True once it unwinds because it was asked to end: whatever its status says, it runs its cleanup, and then it is dead."""
+        """True once it unwinds because it was asked to end. It runs its cleanup, whatever its status is, and then it is dead."""
         return self.kernel_task is not None and self.kernel_task.cancelled_delivered
 
     @property
@@ -188,14 +190,14 @@ class AbstractTask(Generic[T]):
 
     @property
     def status_fluent(self) -> ValueFluent[Keyword]:
-        """The fluent of its status, made when first asked for; callbacks on it see each transition in order."""
+        """The fluent of its status, made when it is first asked for. Callbacks on it see each change in order."""
         fluent = self._status_fluent
         if fluent is None:
             fluent = self._status_fluent = make_fluent(name=Symbol(f"{self.name}-STATUS{next(_count)}"), value=self.status)
         return fluent
 
     def change_status(self, new: Keyword) -> None:
-        """Go to the status ``new``; what cpl.md 3.2 does not allow is an error."""
+        """Go to the status ``new``. A change that cpl.md 3.2 does not allow is an error."""
         if new not in NEXT.get(self.status, ()):
             error("Invalid status transition from ~S to ~S.", self.status, new)
         if active_tags:
@@ -207,16 +209,16 @@ class AbstractTask(Generic[T]):
             self.tell_observers()
 
     def tell_observers(self) -> None:
-        """Call the functions ``observers`` with the task: of those who wait in `park_until`, and of who follows the plan."""
+        """Call the functions in ``observers`` with the task. Tasks that wait in `park_until`, and followers of the plan, put them there."""
         for observe in self.observers or ():
             observe(self)
 
     # ------------------------------------------------------------------------------------------------------------- life
 
     def execute(self) -> Self:
-        """Start the task as a child of the current one. It runs when the current task parks.
+        """Start the task as a child of the current task, and return it. It runs when the current task parks.
 
-        One that was evaporated before is dead already, and stays so.
+        A task that was evaporated before stays dead. Starting a task twice, or one without a body, is an error. Source: cpl.md 3.3.
         """
         if self.status is EVAPORATED and self.unexecuted:
             self.started_at = self.ended_at
@@ -264,7 +266,7 @@ class AbstractTask(Generic[T]):
         return self.name
 
     def described(self) -> str:
-        """What waits for it waits for, as text."""
+        """A text for reports: what a task that waits for this one waits for."""
         return f"the plan {self.name}"
 
     def _live(self, bindings: Any) -> None:
@@ -297,13 +299,13 @@ class AbstractTask(Generic[T]):
         self._die(status, result)
 
     def tell_unclaimed(self, tasks: Iterable[AbstractTask[object]]) -> None:
-        """``tasks``, which the body made, failed, and it never asked what became of them: the user is told (law 3)."""
+        """Tell the user of failed ``tasks`` that the body made, if the body never asked for their results (law 3)."""
         for task in tasks:
             if not task.claimed and task._status_fluent is None:
                 kernel.unhandled(task, opened(task.result))
 
     def end_threads(self, threads: Iterable[kernel.Task[object]]) -> None:
-        """End ``threads``, which the body left running, and wait for that. Errors of theirs are reported by the kernel."""
+        """End ``threads``, which the body left running, and wait for that. The kernel reports their errors."""
         for thread in threads:
             thread.cancel(f"the end of {self.name}")
         with kernel.shield():
@@ -311,7 +313,7 @@ class AbstractTask(Generic[T]):
                 thread.join(lambda thread=thread: f"the cleanup of the thread {thread.name}", claim=False)
 
     def _refused(self, exception: BaseException) -> None:
-        """The system gives no stack for it: it fails before its first step."""
+        """The system gives no stack for the task, so it fails before its first step."""
         if self.status is CREATED:
             self.change_status(RUNNING)
             alive = len(kernel.active().tasks)
@@ -372,9 +374,9 @@ class AbstractTask(Generic[T]):
             self.parent.unclaimed = (*self.parent.unclaimed, self)
 
     def evaporate(self, reason: str | None = None) -> None:
-        """Ask the task to end; it unwinds from its next waiting point or checkpoint, and nobody waits for that here.
+        """Ask the task to end, without waiting for that. It unwinds from its next waiting point or checkpoint.
 
-        Asked a second time, it ends the wait that the cleanup of the task, or of one below it, is stuck in.
+        A second such request ends the wait in which the cleanup of the task, or of a task below it, is stuck. Source: cpl.md 3.7.
         """
         self.ask_to_end(reason)
         if self.asked_to_end:
@@ -382,7 +384,7 @@ class AbstractTask(Generic[T]):
         self.asked_to_end = True
 
     def ask_to_end(self, reason: str | None = None) -> None:
-        """The request of a form to its branches: like `evaporate`, however often, but it disturbs no cleanup."""
+        """Ask the task to end, as a form asks its branches: like `evaporate`, but a repeated request does not disturb cleanup."""
         if self.status in DEAD:
             return
         if active_tags:
@@ -396,7 +398,7 @@ class AbstractTask(Generic[T]):
         kernel_task.cancel(lambda: self._begin_to_end(reason))
 
     def _begin_to_end(self, reason: str | None) -> kernel.Cancelled:
-        """The request to end is delivered, in the task itself: what it raises. Cleanup begins after that."""
+        """The exception for a request to end that arrives in the task itself. Cleanup begins after it is raised."""
         if kernel.current() is self.kernel_task:
             if active_tags:
                 log("RECEIVE-EVENT", EVENT, "EVAPORATE", reason)
@@ -407,7 +409,7 @@ class AbstractTask(Generic[T]):
         return kernel.Cancelled(reason)
 
     def suspend(self, reason: str | None = None, sync: bool | None = True) -> None:
-        """Ask the task, and all below it, to stand still; with ``sync`` wait until they do."""
+        """Ask the task, and all tasks below it, to stand still. With ``sync`` wait until they do. Source: cpl.md 3.5."""
         if active_tags:
             log_sending("SUSPEND", self, reason)
         request(self)
@@ -418,7 +420,7 @@ class AbstractTask(Generic[T]):
             self.park_until(AT_REST, lambda: f"the suspension of {self.name}", lambda: not self.held or self.unexecuted)
 
     def wake_up(self, reason: str | None = None, sync: bool | None = True) -> None:
-        """Let the task, and all below it, go on; with ``sync`` wait until they do."""
+        """Let the task, and all tasks below it, go on. With ``sync`` wait until they do. Source: cpl.md 3.5."""
         if active_tags:
             log_sending("WAKEUP", self, reason)
         release(self)
@@ -426,7 +428,10 @@ class AbstractTask(Generic[T]):
             self.park_until(AWAKE, lambda: f"the wake-up of {self.name}", lambda: self.held or self.comes_down)
 
     def join(self) -> T:
-        """Wait until the task is dead: its values; for a failed one its condition is signalled here; evaporated: no values."""
+        """Wait until the task is dead. Returns its values, signals its failure, or returns no values if it was evaporated.
+
+        Joining the current task is an error. Source: cpl.md 3.8.
+        """
         if self is current_task():
             error("Cannot join current task.")
         if active_tags:
@@ -438,7 +443,10 @@ class AbstractTask(Generic[T]):
         return self.result
 
     def park_until(self, statuses: tuple[Keyword, ...], why: Callable[[], str], given_up: Callable[[], bool] | None = None) -> None:
-        """Wait until its status is among ``statuses``, or until ``given_up()``. To be called in another task."""
+        """Wait until its status is among ``statuses``, or until ``given_up()`` is true. Call this in another task.
+
+        ``why()`` is a text for reports: what the current task waits for.
+        """
         me = kernel.current()
 
         def look_again(task):
@@ -482,7 +490,7 @@ class ToplevelTask(AbstractTask[T]):
 
 
 def current_task_or_dummy() -> AbstractTask[object]:
-    """``(current-task)``: as `current_task`; outside of plans a fresh dummy, as in the original."""
+    """``(current-task)``: as `current_task`. Outside of plans it is a new dummy, as in the original."""
     task = current_task()
     if task is None:
         task = ToplevelTask(name=str(kernel.current().name))
@@ -494,7 +502,7 @@ def current_task_or_dummy() -> AbstractTask[object]:
 
 
 def execute(task: AbstractTask[object]) -> None:
-    """``(execute task)``: start ``task`` as a child of the current task; a toplevel task, which has no parent, outside of plans."""
+    """``(execute task)``: start ``task`` as a child of the current task. A toplevel task, which has no parent, starts outside of plans."""
     if isinstance(task, ToplevelTask) and current_task() is not None:
         error(
             types.SimpleError("top-level calls cannot be nested."),
@@ -504,6 +512,7 @@ def execute(task: AbstractTask[object]) -> None:
 
 
 def check_reason(reason: object) -> None:
+    """Signal a type error unless ``reason`` is a string or nil."""
     if reason is not None and not isinstance(reason, str):
         type_error(reason, "(OR NULL STRING)")
 
@@ -512,9 +521,9 @@ evaporate: Request = generic(
     "CPL-IMPL::EVAPORATE",
     "(task &key reason sync)",
     documentation="""
-Ask ``task`` to end and, with ``sync`` (the default), wait until it is dead. Evaporation is no condition: no handler catches it.
+Ask ``task`` to end and, with ``sync`` (the default), wait until it is dead. Evaporation is not a condition: no handler catches it.
 
-A second such request ends the wait that the cleanup of the task, or of a task below it, is stuck in.""",
+A second such request ends the wait in which the cleanup of the task, or of a task below it, is stuck.""",
 )
 
 
@@ -533,7 +542,7 @@ join_task = generic(
     "CPL-IMPL::JOIN-TASK",
     "(task)",
     documentation="""
-Wait until ``task`` is dead: its values; for a failed one its condition is signalled here; evaporated: no values.""",
+Wait until ``task`` is dead. Returns its values, signals its failure, or returns no values if it was evaporated.""",
 )
 
 

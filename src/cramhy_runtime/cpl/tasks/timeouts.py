@@ -1,12 +1,12 @@
 """Blocks: pieces of a task that can be ended while the task lives on, written as ``with`` statements.
 
 A form of the plan language gets its body as a function and runs it as a branch, which can be evaporated. The body of a Python
-``with`` statement runs in the task that entered it. To end it, a `BlockEnded` is raised in that task at its next waiting point, and
-stops at the block: an evaporation of a piece of a task, which keeps the rules of evaporation. It is delivered once; cleanup in the
-block is not disturbed by anything that ends later, not even by a request to end the whole task, which waits until the block is
-left; a suspension comes first, and the block ends after the wake-up; blocks around it that are ended meanwhile end after it.
+``with`` statement runs in the task that entered it. To end the body, a `BlockEnded` is raised in that task at its next waiting point,
+and stops at the block. It evaporates a piece of a task, and keeps the rules of evaporation. It is delivered once. Nothing that ends
+later disturbs cleanup in the block; even a request to end the whole task waits until the block is left. A suspension comes first,
+and the block ends after the wake-up. Blocks around it that are ended meanwhile end after it.
 
-trio calls this a cancel scope. ``timeout`` and ``move_on_after`` are blocks; so are the forms with branches in
+trio calls this a cancel scope. ``timeout`` and ``move_on_after`` are blocks, and so are the forms with branches in
 ``forms/branch_blocks.py``.
 """
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class BlockEnded(kernel.Cancelled):
-    """Unwinds to the `Block` that was ended. Like an evaporation it is no `Exception`, and nobody needs to catch it."""
+    """Unwinds to the `Block` that was ended. Like an evaporation it is not an `Exception`, and user code need not catch it."""
 
     def __init__(self, block: Block):
         super().__init__(f"the block {block.form} has ended")
@@ -37,7 +37,7 @@ class BlockEnded(kernel.Cancelled):
 
 
 class Block:
-    """A ``with`` block that `end` ends. A block is entered once."""
+    """A ``with`` block that `end` ends. A block can be entered once only."""
 
     __slots__ = ("task", "kernel_task", "asked", "delivered", "over", "level")
     form = "BLOCK"
@@ -61,13 +61,13 @@ class Block:
         return self
 
     def end(self) -> None:
-        """Ask the block to end: it unwinds from the next waiting point of its body. Any task may ask, and timers."""
+        """Ask the block to end. It unwinds from the next waiting point of its body. Any task, and any timer, may ask."""
         if not (self.asked or self.over):
             self.asked = True
             self.remind()
 
     def remind(self) -> None:
-        """Let it end now if it was asked to, and could not."""
+        """Let the block end now if it was asked to end earlier and could not."""
         if self.asked and not self.delivered and not self.over:
             self.kernel_task.interject(self._unwind)
 
@@ -83,12 +83,12 @@ class Block:
         raise BlockEnded(self)
 
     def ended_by(self, exception: BaseException | None) -> bool:
-        """The block is being left with ``exception``, and can be ended no more: whether that is how it was ended."""
+        """Note that the block is left with ``exception``, so it cannot be ended any more. Returns whether `end` ended it."""
         self.over = True
         return isinstance(exception, BlockEnded) and exception.block is self
 
     def leave(self) -> None:
-        """The block is left, and whatever belongs to it is dead."""
+        """Note that the block is left, and that everything in it is dead."""
         me = self.kernel_task
         me.local.blocks.remove(self)
         if self.delivered and not self.level[0]:
@@ -98,12 +98,12 @@ class Block:
 
 
 def level(me: kernel.Task[object]) -> tuple[bool, int]:
-    """What of the kernel's task ``me`` is unwinding: the whole, and how many of its blocks."""
+    """(Whether the whole task ``me`` of the kernel is unwinding, how many of its blocks are)."""
     return me.cancelled_delivered, sum(block.delivered for block in me.local.blocks)
 
 
 class TimedOut(PlanFailure):
-    """The time of a ``with cpl.timeout(seconds):`` block was over; ``seconds`` says how much it was."""
+    """The time of a ``with cpl.timeout(seconds):`` block was over. ``seconds`` is its limit."""
 
     lisp_name = "CRAMHY::TIMED-OUT"
     initargs = {"SECONDS": "seconds"}
@@ -114,7 +114,7 @@ class TimedOut(PlanFailure):
 
 
 class Timeout(Block):
-    """See `timeout` and `move_on_after`. ``expired`` tells afterwards whether the time was over."""
+    """The block of `timeout` and `move_on_after`. Afterwards, ``expired`` says whether the time was over."""
 
     __slots__ = ("seconds", "failing", "expired", "timer")
     form = "TIMEOUT"
@@ -148,16 +148,22 @@ class Timeout(Block):
 if TYPE_CHECKING:
 
     class MovingOn(Timeout):
-        """What `move_on_after` gives. Other than `timeout` it may leave out the rest of its body without an exception."""
+        """The block of `move_on_after`. Unlike `timeout` it may leave out the rest of its body without an exception."""
 
         def __exit__(self, kind: object, exception: BaseException | None, traceback: object) -> bool: ...
 
 
 def timeout(seconds: float) -> Timeout:
-    """``with cpl.timeout(seconds):`` ends its body after ``seconds`` and fails with `TimedOut`. Cleanup in the body runs first."""
+    """``with cpl.timeout(seconds):`` ends its body after ``seconds`` of the kernel's clock and raises `TimedOut`.
+
+    Cleanup in the body runs first. Infinity means no limit. Outside of a plan it is an error.
+    """
     return Timeout(seconds, True)
 
 
 def move_on_after(seconds: float) -> MovingOn:
-    """``with cpl.move_on_after(seconds) as limit:`` ends its body after ``seconds`` and goes on; see ``limit.expired``."""
+    """``with cpl.move_on_after(seconds) as limit:`` ends its body after ``seconds`` of the kernel's clock and goes on after the block.
+
+    ``limit.expired`` says whether the time was over. Infinity means no limit. Outside of a plan it is an error.
+    """
     return Timeout(seconds, False)  # type: ignore[return-value]

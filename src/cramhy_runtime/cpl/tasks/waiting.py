@@ -1,9 +1,9 @@
 """Waiting: for a fluent to become true, again and again, or for time to pass.
 
-A value that is true on the first look is returned at once. Otherwise the task parks at the fluent; a pulse that leaves the value
-false does not even wake it. On suspension it waits on afterwards and looks again, so a value that was true only meanwhile is
-missed, and one that is true at wake-up is seen. Source: cpl.md 2.10, 2.11, 3.9. Repaired: the timed wait keeps its time however
-often the fluent pulses, and can be evaporated and suspended like the untimed one.
+If the value is true at first, it is returned at once. Otherwise the task parks at the fluent; a pulse that leaves the value false does
+not even wake it. After a suspension the task looks again and goes on waiting. So it misses a value that was true only meanwhile, and
+sees one that is true at the wake-up. Source: cpl.md 2.10, 2.11, 3.9. Repaired: the timed wait keeps its time however often the fluent
+pulses, and can be evaporated and suspended like the untimed one.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ user_wait: Cell[Callable[..., Any] | None] = Cell(None)
 
 
 def wait_through(generic):
-    """Let `wait_for` call the function ``generic`` from now on, which has methods of users."""
+    """Let `wait_for` call ``generic`` from now on, a generic function with methods of users."""
     user_wait.value = generic
 
 
@@ -41,9 +41,9 @@ def wait_for(fluent: Fluent[T | None], *, timeout: None = None) -> T: ...
 @overload
 def wait_for(fluent: Fluent[T | None], *, timeout: float | None) -> T | None: ...
 def wait_for(fluent: Any, *, timeout: float | None = None, **ignored: Any) -> Any:
-    """Wait until the value of ``fluent`` is true and return it; after ``timeout`` seconds give up and return nil.
+    """Wait until the value of ``fluent`` is true and return it. After ``timeout`` seconds of the kernel's clock return nil.
 
-    Any other object is returned if it is true; nil is an error. A timeout of 0 only tests.
+    A timeout of 0 only tests. An object that is not a fluent is returned if it is true; nil is an error. Source: cpl.md 2.10.
     """
     generic = user_wait.value
     if generic is not None:
@@ -57,7 +57,7 @@ def wait_for(fluent: Any, *, timeout: float | None = None, **ignored: Any) -> An
 
 
 def plain_wait_for(fluent, *, timeout=None, **ignored):
-    """Wait until the value of a fluent is true, at most ``timeout`` seconds; anything else that is true is returned."""
+    """`wait_for` without methods of users."""
     if not isinstance(fluent, Fluent):
         return fluent if truth(fluent) else error("wait-for called with nil argument.")
     value = fluent.read()
@@ -91,7 +91,7 @@ def _wait(fluent: Fluent[object], timeout: float | None) -> Any:
 
 
 def in_seconds(time: Any) -> float:
-    """A Lisp real as seconds of the kernel's clock; anything else is a type-error."""
+    """``time``, a Lisp real, as seconds of the kernel's clock. Other objects are a type error."""
     if isinstance(time, bool) or not (isinstance(time, (int, float)) or is_ratio(time)):
         return type_error(time, "REAL")
     try:
@@ -101,7 +101,10 @@ def in_seconds(time: Any) -> float:
 
 
 def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
-    """Wait for ``fluent``, call ``body``, and so on for ever; ``(return ...)``, the compiler's block, is the way out."""
+    """Wait for ``fluent`` and call ``body``, again and again. In Lisp, ``(return ...)`` leaves it, through the compiler's block.
+
+    Source: cpl.md 2.11.
+    """
     while True:
         wait_for(fluent)
         body()
@@ -109,7 +112,7 @@ def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
 
 
 def sleep_star(seconds: float) -> None:
-    """Sleep for ``seconds`` of the kernel's clock; returns nil. Time spent suspended counts as slept."""
+    """Sleep for ``seconds``, any real, of the kernel's clock. Returns nil. Time spent suspended counts as slept. Source: cpl.md 3.9."""
     length = in_seconds(seconds)
     if not length > 0:
         kernel.yield_()

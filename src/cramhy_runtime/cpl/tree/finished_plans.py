@@ -1,11 +1,11 @@
-"""The plans that ended: the newest, and the newest of each name. Episodes are made of these when somebody asks (room ``episodes``).
+"""The plans that ended: the newest, and the newest of each name. The room ``episodes`` makes episodes of them on demand.
 
 A plan that ends leaves its task here, with the tree of what ran, until the next one ends; that costs two assignments. When the plan
 of a name runs again, it clears and reuses its tree, so the earlier run keeps the codes that were in it.
 
-``observers`` are for whoever wants to follow plans while they run: objects with functions ``begins(task, name)``, ``beside(task)`` for
-the root of tasks that run beside a plan, ``made(task)`` for a task that is made long before it is executed, and ``ended(task, name)``.
-Nobody observes unless asked to. How each task of a plan is heard of stands in ``chronicle/plans.py``.
+``observers`` follow plans while they run. They are objects with functions ``begins(task, name)``, ``beside(task)`` for the root of tasks
+that run beside a plan, ``made(task)`` for a task that is made long before it is executed, and ``ended(task, name)``. At first there are
+none. ``chronicle/plans.py`` shows how to follow each task of a plan.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cramhy_runtime.kernel.images import Cell, per_image
 
 observers = Cell((), fresh=True)
 by_name = per_image({})
-"""Name → the task at the root of the plan of that name that ended last; ``None`` → of a plan without a name."""
+"""Name → the root task of the plan of that name that ended last. ``None`` stands for plans without a name."""
 newest = Cell(None, fresh=True)
 
 
@@ -25,18 +25,18 @@ def observe(observer):
 
 
 def observe_no_more(observer):
-    """Do not tell ``observer`` any more."""
+    """Stop telling ``observer``."""
     observers.value = tuple(other for other in observers.value if other is not observer)
 
 
 def made(task):
-    """``task`` was made; it may be executed later."""
+    """Tell the observers that ``task`` was made. It may be executed later."""
     for observer in observers.value:
         observer.made(task)
 
 
 def begins(task, name):
-    """The plan at whose root ``task`` is is about to run."""
+    """Tell the observers that the plan with the root ``task`` is about to run."""
     if name is not None:
         task.plan_name = name
     for observer in observers.value:
@@ -44,19 +44,19 @@ def begins(task, name):
 
 
 def beside(task):
-    """The root ``task`` of a tree of tasks that is no plan, but runs beside one, is about to run."""
+    """Tell the observers that ``task`` is about to run, the root of a tree of tasks that is not a plan but runs beside one."""
     for observer in observers.value:
         observer.beside(task)
 
 
 def ended(task, name):
-    """The plan at whose root ``task`` is is over."""
+    """Keep the plan with the root ``task``, and tell the observers that it is over."""
     newest.value = by_name[name] = task
     for observer in observers.value:
         observer.ended(task, name)
 
 
 def forget():
-    """Let go of all plans that ended."""
+    """Forget all plans that ended."""
     newest.value = None
     by_name.clear()

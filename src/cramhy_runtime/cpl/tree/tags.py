@@ -1,4 +1,4 @@
-"""Tags: naming a step of a plan, so that others can order it, watch it or suspend it.
+"""Tags: names for steps of a plan, so that other steps can be ordered by them, watch them or suspend them.
 
 ``(with-tags ... (:tag grasp form...) ...)`` binds a variable ``grasp`` to a task that is created now and executed when control
 reaches the tag; executing it again makes a new task at the next iteration path and assigns it to the variable. Source: cpl.md 7.1.
@@ -6,7 +6,7 @@ reaches the tag; executing it again makes a new task at the next iteration path 
 The macro finds the names by walking through its body with all macros expanded (``languages/commonlisp/faces/cpl/walker.py``), binds
 each by `make_tag_task`, and compiles ``(:tag name form...)`` to
 ``(progn (setq name (prepare-tag name)) (execute-tag name (lambda () form...) '(:tag ...)))``.
-Tags of a ``with-tags`` inside belong to that one alone; in the original the outer one makes tasks for them too, which never run.
+The tags of an inner ``with-tags`` belong to that form alone. In the original the outer one makes tasks for them too, which never run.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ TAGGED = sym("CPL-IMPL::TAGGED")
 
 
 def enter_with_tags() -> Any:
-    """The check of ``with-tags``; returns the path that the tags go below."""
+    """Signal an error outside of a plan. Returns the path below which the tags of ``with-tags`` go."""
     inside_plan("WITH-TAGS")
     return current_path()
 
 
 def make_tag_task(name: Symbol, path: Any = None) -> Task[object]:
-    """The task of the tag ``name``, not executed yet, at ``((tagged name) . path)``; the default is the current path."""
+    """A task for the tag ``name``, not executed yet, at ``((tagged name) . path)``. The default is the current path."""
     path = enter_with_tags() if path is None else path
     return make_task(name=lambda: f"[TAG-{name.name}]", path=Cons(lisp_list(TAGGED, name), path))
 
 
 def prepare_tag(task: Task[object]) -> Task[object]:
-    """``task`` if it was not executed yet, else a new task at the next iteration path."""
+    """``task`` if it was not executed yet, or else a new task at the next iteration path."""
     if task.unexecuted:
         return task
     part = task.path.car
@@ -52,7 +52,7 @@ def prepare_tag(task: Task[object]) -> Task[object]:
 
 
 def execute_tag(task: Task[object], body: Callable[..., T], sexp: Any = None) -> T:
-    """Run ``body`` as ``task`` and wait for it: its values; its failure is signalled here. ``sexp``: the tag's whole form."""
+    """Run ``body`` as ``task`` and wait for it. Returns its values or signals its failure. ``sexp`` is the tag's whole form."""
     code = task.code
     if code is None:
         task.body = body
@@ -72,12 +72,12 @@ def execute_tag(task: Task[object], body: Callable[..., T], sexp: Any = None) ->
 
 
 def is_tag_name(name):
-    """Whether ``name`` can name a tag, and so be a variable."""
+    """Whether ``name`` can be the name of a tag, that is, of a variable."""
     return isinstance(name, Symbol) and not name.constant
 
 
 def check_tag(form, within):
-    """At expansion time: signal what is wrong with the tag ``form``; ``within``: whether a ``with-tags`` is around it."""
+    """Signal a compile-time error if the tag ``form`` is wrong. ``within`` says whether a ``with-tags`` is around it."""
     name = form.cdr.car if isinstance(form.cdr, Cons) else None
     if not is_tag_name(name):
         error(CompileError("~S is no tag: it is written (:tag name form...), and the name is a symbol that can be a variable.", form))

@@ -1,8 +1,8 @@
 """The task tree: where in a plan each task belongs.
 
 A path is a Lisp list of parts, the deepest first: ``((tagged a) (drive-home) (top-level lecture))``. A node of the tree stands for a
-path; it holds the code that runs there and the task that ran it last, so that a plan can be looked at after, and during, its run,
-and a step can be replaced for the next run. Repetition of a part goes to sibling nodes ``(a :call 2)``. Source: cpl.md section 7.
+path. It holds the code that runs there and the task that ran it last. So users can look at a plan during and after its run, and
+replace a step for the next run. Repetitions of a part go to sibling nodes ``(a :call 2)``. Source: cpl.md section 7.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _named_trees = per_image({})
 
 
 class Code:
-    """What runs at a node: the form ``sexp``, the ``function`` made from it, the ``task`` that runs it, and its ``parameters``.
+    """The code of a node: the form ``sexp``, the ``function`` made from it, the ``task`` that runs it, and its ``parameters``.
 
-    ``called_with``: the arguments of the goal that runs here, whose values for the pattern's variables are the parameters.
+    For a goal, ``called_with`` are the arguments of the call, and the parameters are the values of the pattern's variables.
     """
 
     __slots__ = ("sexp", "function", "task", "parameters", "called_with")
@@ -61,11 +61,12 @@ class TaskTreeNode:
 
     @property
     def effective_code(self):
+        """The code that runs here: the newest replacement, or else the node's own."""
         return self.replacements[0] if self.replacements else self.code
 
     @property
     def code_replacements(self):
-        """The codes that replace its own, a Lisp list, the newest first."""
+        """The codes that replace the node's own, a Lisp list, the newest first."""
         return list_from(self.replacements)
 
     @code_replacements.setter
@@ -82,7 +83,7 @@ class TaskTreeNode:
         self.children = {_key(pair.car): pair.cdr for pair in reversed(python_list(alist))}
 
     def child(self, part, make=True):
-        """The node below this one for the path part ``part`` (a Lisp list), made if there is none and ``make``."""
+        """The child node for the path part ``part`` (a Lisp list). If there is none, it is made, or with ``make`` false ``None``."""
         key = _key(part)
         node = self.children.get(key)
         if node is None and make:
@@ -103,7 +104,7 @@ def _key(part):
 
 
 def ensure_node(path, tree):
-    """The node for ``path`` below ``tree``, with all nodes above it made as needed."""
+    """The node for ``path`` below ``tree``. It and the nodes above it are made as needed."""
     node = tree
     for part in reversed(parts_of(path)):
         node = node.child(part)
@@ -111,7 +112,7 @@ def ensure_node(path, tree):
 
 
 def task_tree_node(path, node=None):
-    """``(task-tree-node path)``: the node of a path, or nil."""
+    """``(task-tree-node path)``: the node of a path below ``node`` (default: the tree of the current plan), or nil."""
     node = node or current_tree()
     if node is not None and not isinstance(node, TaskTreeNode):
         return type_error(node, "TASK-TREE-NODE")
@@ -123,11 +124,13 @@ def task_tree_node(path, node=None):
 
 
 def current_tree():
+    """The task tree of the plan that runs, or nil."""
     task = current_task()
     return task.tree if task is not None else None
 
 
 def current_path():
+    """The path of the current task, or nil."""
     task = current_task()
     return task.path if task is not None else None
 
@@ -178,9 +181,10 @@ def _taken(node):
 
 
 def make_task(*, name=None, sexp=None, function=None, path=None, parameters=None):
-    """The task, not executed yet, of the node for ``path`` (default: the current path), made if necessary.
+    """The task of the node for ``path`` (default: the current path), not executed yet. It is made if necessary.
 
-    When the node's task has run already, that of the next iteration path. A replacement of the node's code takes its place.
+    If the node's task has run already, it is the task of the next iteration path. A replacement of the node's code is used instead of
+    the code. An empty path is an error. Source: cpl.md 7.5.
     """
     path = path or current_path()
     if not parts_of(path):
@@ -217,7 +221,7 @@ def _task_of(node, name=None, sexp=None, function=None, parameters=None, called_
 
 
 def task_at(path):
-    """``(task path)``: the task of an absolute path; it can be named before its code is known."""
+    """``(task path)``: the task of an absolute path. Its code need not be known yet."""
     return make_task(path=path)
 
 
@@ -238,10 +242,10 @@ def with_task_tree_node(
     log_pattern=None,
     called_with=None,
 ):
-    """Run ``function(*parameters)`` in a new task at ``path_part`` below the current path, and wait for it: its values.
+    """Run ``function(*parameters)`` in a new task at ``path_part`` below the current path, and wait for it. Returns its values.
 
-    ``parameters`` is a Lisp list. ``name`` may be a function that makes the name when it is asked for. ``sexp`` and
-    ``called_with`` are noted at the node (`Code`).
+    ``parameters`` is a Lisp list. ``name`` may be a function that makes the name when it is asked for. ``sexp`` and ``called_with`` are
+    noted at the node (`Code`). The hooks get the other arguments. Outside of a plan it is a type error. Source: cpl.md 7.4.
     """
     _tree_or_error()
     observed = on_preparing_task_execution.methods or on_finishing_task_execution.methods
@@ -271,14 +275,17 @@ def replaceable_function(name, lambda_list, parameters, path_part, function, sex
 
 
 def replace_task_code(sexp, function, path, tree=None):
-    """Let the next executions at ``path`` call ``function`` instead; the newest replacement wins and survives `clear_tasks`."""
+    """Let the next executions at ``path`` call ``function`` instead. Returns the node.
+
+    The newest replacement counts, and `clear_tasks` keeps it. Source: cpl.md 7.7.
+    """
     node = ensure_node(path, tree or _tree_or_error())
     node.replacements.insert(0, Code(sexp, function))
     return node
 
 
 def register_task_code(sexp, function, *, path=None, task_tree=None, replace_registered=None):
-    """Set the code of a node if it has none, or with ``replace_registered`` always."""
+    """Set the code of a node if it has none, or always with ``replace_registered``. Returns its code. Source: cpl.md 7.7."""
     node = ensure_node(path or current_path(), task_tree or _tree_or_error())
     if node.code is None:
         node.code = Code()
@@ -295,7 +302,7 @@ def register_task_code(sexp, function, *, path=None, task_tree=None, replace_reg
 
 
 def get_top_level_task_tree(name):
-    """The tree of the named top-level, empty at first; it survives the run."""
+    """The tree of the named top-level. It is empty at first and stays after the run. Source: cpl.md 5.4."""
     tree = _named_trees.get(name)
     if tree is None:
         tree = _named_trees[name] = TaskTreeNode()
@@ -308,17 +315,18 @@ def named_tree(name):
 
 
 def remove_top_level_task_tree(name):
+    """Forget the tree stored under ``name``."""
     _named_trees.pop(name, None)
 
 
 @of(TaskTreeNode)
 def clear_tasks(node):
-    """Forget what ran: code, tasks and parameters. Structure and replacements stay."""
+    """Forget the code, tasks and parameters of what ran. Nodes and replacements stay."""
     return cleared(node)
 
 
 def cleared(node, kept=None):
-    """As `clear_tasks`; ``kept``: a dict that gets node → code that ran there."""
+    """As `clear_tasks`. ``kept``, a dict, gets the code that ran at each node."""
     node.calls = 1
     if kept is not None and _taken(node):
         code = node.effective_code
@@ -340,21 +348,25 @@ def stale_task_tree_node_p(node):
 
 @of(TaskTreeNode)
 def task_tree_node_effective_code(node):
+    """The code that runs at ``node``: the newest replacement, or else its own."""
     return node.effective_code
 
 
 @of(TaskTreeNode)
 def task_tree_node_parameters(node):
+    """The parameters of the latest run at ``node``, or nil."""
     return node.code.parameters if node.code else None
 
 
 @of(TaskTreeNode)
 def task_tree_node_status_fluent(node):
+    """The fluent of the status of the task at ``node``, or nil."""
     return node.code.task.status_fluent if node.code and node.code.task else None
 
 
 @of(TaskTreeNode)
 def task_tree_node_result(node):
+    """The result of the task at ``node``, or nil."""
     return node.code.task.result if node.code and node.code.task else None
 
 
@@ -373,7 +385,7 @@ def flatten_task_tree(tree):
 
 
 def filter_task_tree(predicate, tree):
-    """A copy with the nodes that satisfy ``predicate``; a rejected node takes what is below it along. The root must satisfy it."""
+    """A copy of ``tree`` without the nodes for which ``predicate`` is false, and without all below them. For the root it must be true."""
     if not isinstance(tree, TaskTreeNode):
         return type_error(tree, "TASK-TREE-NODE")
     if not truth(predicate(tree)):
@@ -390,14 +402,14 @@ def filter_task_tree(predicate, tree):
 
 @of(TaskTreeNode)
 def goal_task_tree_node_p(node):
-    """True if the node is that of a goal."""
+    """True if the node belongs to a goal."""
     part = node.path.car if node.path is not None else None
     return True if isinstance(part, Cons) and part.car in _goal_marks else None
 
 
 @of(TaskTreeNode)
 def goal_task_tree_node_pattern(node):
-    """``(name . pattern)`` of a goal's node."""
+    """``(name . pattern)`` of a goal's node. Other nodes are an error."""
     if goal_task_tree_node_p(node) is None:
         error("The assertion (GOAL-TASK-TREE-NODE-P NODE) failed.")
     return node.path.car.cdr.car
@@ -405,14 +417,14 @@ def goal_task_tree_node_pattern(node):
 
 @of(TaskTreeNode)
 def goal_task_tree_node_parameter_bindings(node):
-    """The variables of a goal's pattern with their values in the latest run, an alist; the last variable first, as ``vars-in``."""
+    """The variables of a goal's pattern and their values in the latest run, an alist; the last variable comes first, as in ``vars-in``."""
     variables = patterns.vars_in(goal_task_tree_node_pattern(node).cdr)
     return list_from([Cons(*pair) for pair in zip(variables or (), task_tree_node_parameters(node) or (), strict=False)])
 
 
 @of(TaskTreeNode)
 def goal_task_tree_node_goal(node):
-    """The goal as it was called in the latest run, ``(name . arguments)``; the pattern when it did not run."""
+    """The goal as it was called in the latest run, ``(name . arguments)``. If it did not run, the pattern."""
     pattern = goal_task_tree_node_pattern(node)
     if node.code is not None and node.code.called_with is not None:
         return Cons(pattern.car, node.code.called_with)

@@ -1,13 +1,12 @@
 """``describe-task-tree``: the tasks of a plan as a tree of text, while it runs and after its end.
 
-A plan is a tree of tasks, and a plan that does not do what it should is understood by looking at that tree: which branches live,
-what each waits for and where in the text, what became of those that are dead. CRAM has logs for this; py_trees prints its tree,
-and everybody uses that. The report is read off what the tasks know anyway. It takes no pulse and wakes nobody; even names keep
-the numbers that they have not been given yet.
+A plan is a tree of tasks. The tree shows why a plan does not do what it should: which branches live, what each waits for and where in
+the text, and the results of those that are dead. CRAM has logs for this; py_trees prints its tree, and its users rely on that. The
+report reads what the tasks know anyway. It consumes no pulse and wakes no task, and it does not number the names of tasks.
 
-Dead tasks are forgotten by their parents, so of these the report shows those that a node of the task tree holds (plan functions,
-goals, tags), with the tasks above them. All of them are there for plans that began while ``*record-task-tree*`` was true. What
-a plan was doing when Ctrl-C, a deadlock or the time limit ended it is noted down at that moment.
+Parents forget their dead children. So the report shows the dead tasks that a node of the task tree holds (plan functions, goals, tags),
+with the tasks above them. For plans that began while ``*record-task-tree*`` was true it shows all. When Ctrl-C, a deadlock or the time
+limit ends a plan, its state is noted down for the report.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
     from ..signatures import PlanTree
 
 LONGEST = 60
-"""Characters of a value, a failure or a reason that are shown."""
+"""The report shows so many characters of a value, a failure or a reason."""
 
 BOX = {"more": "├─ ", "last": "└─ ", "line": "│  ", "none": "   "}
 ASCII = {"more": "|- ", "last": "`- ", "line": "|  ", "none": "   "}
@@ -55,10 +54,11 @@ PRINT_LENGTH, PRINT_LEVEL, PRINT_PRETTY = map(lisp_symbol, ("*PRINT-LENGTH*", "*
 
 
 def describe_task_tree(of: PlanTree | None = None, *, stream: object = None, depth: int | None = None, dead: bool | None = True) -> None:
-    """``(describe-task-tree)``: print the tree of the tasks that live now; ``of`` is one task, a task tree or the name of a top-level.
+    """``(describe-task-tree)``: print the tree of the tasks that live now. When no plan runs, print the last one interrupted or recorded.
 
-    When no plan runs it is the last one that was interrupted or recorded. ``depth``: so many levels below the first. ``dead`` nil
-    leaves dead tasks out. ``stream`` as in ``describe``; on a terminal, with the package rich, the statuses are coloured.
+    of: a task, a task tree or the name of a top-level, to print only that. depth: the number of levels below the first; ``None`` is all.
+    dead: nil leaves out dead tasks. stream: as in ``describe``; on a terminal, with the package rich, the statuses are coloured.
+    A ``depth`` that is not a number from 0 on, or an ``of`` that has no tree, is an error.
     """
     if depth is not None and not (isinstance(depth, int) and depth >= 0):
         error("The depth of a report is a number of levels, 0 or more, not ~S.", depth)
@@ -70,7 +70,7 @@ def describe_task_tree(of: PlanTree | None = None, *, stream: object = None, dep
 
 
 def describe_task_tree_in_lisp(*arguments):
-    """``(describe-task-tree &optional of &key stream depth dead)``; as no tree is named by a keyword, options may also come first."""
+    """``(describe-task-tree &optional of &key stream depth dead)``. Options may also come first, since keywords do not name trees."""
     return _lisp(*((None, *arguments) if arguments and isinstance(arguments[0], Keyword) else arguments))
 
 
@@ -78,14 +78,14 @@ _lisp = lispify(describe_task_tree)
 
 
 def task_tree_text(of: PlanTree | None = None, *, depth: int | None = None, dead: bool | None = True) -> str:
-    """What `describe_task_tree` prints, as a string."""
+    """The text that `describe_task_tree` prints, as a string."""
     out = StringIO()
     describe_task_tree(of, stream=out, depth=depth, dead=dead)
     return out.getvalue()
 
 
 def note_stopped(task, exception):
-    """Note down what the plan of the top-level ``task`` is doing, because ``exception`` is about to end it."""
+    """Note down the state of the plan of the top-level ``task``, because ``exception`` is about to end it."""
     what = {kernel.Deadlock: "when nothing could happen any more", kernel.TimeLimit: "when its time was over"}
     heading = f"No plan runs now. The last one {what.get(type(exception), 'when it was interrupted')}, at {_seconds(kernel.now())}:"
     _stopped.value = heading, Forest([task]).lines(None, True), kernel.active()
@@ -127,8 +127,8 @@ def living_plans():
 
 
 def plans_of(tree):
-    """The ``top-level`` tasks to which the task tree, or the part of one, ``tree`` belongs: living ones, else recorded ones, else those
-    that its nodes remember."""
+    """The ``top-level`` tasks to which ``tree``, a task tree or a part of one, belongs: living ones, or else recorded ones, or else those
+    that its nodes hold."""
     roots = [task for task in living_plans() if task.tree is tree] or [task for task in recorded if task.tree is tree][-1:]
     return roots or list(dict.fromkeys(_root(task) for task in node_tasks(tree)))
 
@@ -146,7 +146,7 @@ def _root(task):
 
 
 class Forest:
-    """The trees below the tasks ``roots``: who is whose child, the dead included as far as somebody remembers them."""
+    """The trees below the tasks ``roots``, with the dead tasks that are still known."""
 
     def __init__(self, roots):
         self.roots = roots
@@ -171,7 +171,7 @@ class Forest:
             task = task.parent
 
     def below(self, task, dead):
-        """Its children in the order in which they were started, then the threads that it spawned and that live."""
+        """The children of ``task`` in the order in which they started, then the living threads that it spawned."""
         if isinstance(task, kernel.Task):
             return []
         known = [child for child in self.children.get(task, ()) if dead or child.alive]
@@ -179,7 +179,7 @@ class Forest:
         return known + [thread for thread in task.threads if not thread.dead]
 
     def lines(self, depth, dead):
-        """The lines of the report; a level further to the right for each level down."""
+        """The lines of the report, a `Line` for each task, parents before children."""
         found, waiting = [], [(root, (), 0) for root in reversed(self.roots)]
         while waiting:
             task, lead, level = waiting.pop()
@@ -192,6 +192,7 @@ class Forest:
         return found
 
     def count(self, tasks, dead):
+        """The number of ``tasks`` and of all tasks below them."""
         waiting, number = list(tasks), 0
         while waiting:
             number += 1
@@ -203,7 +204,7 @@ class Forest:
 
 
 class Line:
-    """One task in the report: the strokes that ``lead`` to it, its ``name`` and place, its status, and what else is to say."""
+    """One task in the report: the strokes that ``lead`` to it, its ``name`` and place, its ``status``, and the ``rest`` of the text."""
 
     __slots__ = ("lead", "level", "name", "status", "rest")
 
@@ -212,6 +213,7 @@ class Line:
 
     @property
     def alive(self):
+        """Whether the task is alive."""
         return self.status in ALIVE
 
 
@@ -226,7 +228,7 @@ def described(task, more=""):
 
 
 def title(task):
-    """Its name, and the part of the path that it adds to its parent's."""
+    """The name of ``task``, and the part of the path that it adds to its parent's."""
     if task.path is not None and (task.parent is None or task.parent.path is not task.path):
         return f"{task.plain_name} {_part(task)}"
     return task.plain_name
@@ -256,7 +258,7 @@ def _symbols(form):
 
 
 def _outcome(task):
-    """What became of a dead task."""
+    """A text about the end of a dead task."""
     took = f" after {_seconds(task.ended_at - task.started_at)}" if task.started_at is not None else ""
     if task.status is SUCCEEDED:
         values = all_values(task.result)
@@ -268,7 +270,7 @@ def _outcome(task):
 
 
 def failure(task):
-    """(what a failed task ended with, as text; the place where that arose, or "")."""
+    """(the failure of a dead task as text, the place where it arose or "")."""
     condition = opened(task.result)
     return _failure(condition), describe(getattr(condition, "position", None)) or ""
 
@@ -285,7 +287,7 @@ def _failure(condition):
 
 
 def _doing(task):
-    """What a living task does: since when, what it waits for, and where."""
+    """A text about a living task: for how long it has run, what it waits for, and where."""
     kernel_task = task.kernel_task
     if kernel_task is None or task.status is CREATED:
         return "created" if kernel_task is None else "about to begin"
@@ -314,12 +316,12 @@ def _waiting(kernel_task, text, stopped=False):
 
 
 def place_of(kernel_task):
-    """Where in the user's text ``kernel_task`` is, ``file:line:column``; "" if it is nowhere there."""
+    """The place of ``kernel_task`` in the user's text, ``file:line:column``, or ""."""
     return kernel.reports.where(kernel_task.kernel.frame_of(kernel_task))
 
 
 def waits_for(kernel_task):
-    """What ``kernel_task``, which is parked, waits for."""
+    """A text that says what ``kernel_task``, which is parked, waits for."""
     owner = getattr(kernel_task.why, "__self__", None)
     if isinstance(owner, Branches):
         return "its child" if len(owner.tasks) == 1 else f"the branches of {owner.form.upper()}"
@@ -327,7 +329,7 @@ def waits_for(kernel_task):
 
 
 def short(value):
-    """``value`` printed on one line, not too long."""
+    """``value`` printed on one line, cut to `LONGEST` characters."""
     try:
         with binding(PRINT_LENGTH, 8, PRINT_LEVEL, 4, PRINT_PRETTY, None):
             return cut(prin1_to_string(value))
@@ -336,6 +338,7 @@ def short(value):
 
 
 def cut(text):
+    """``text`` on one line, cut to `LONGEST` characters."""
     text = " ".join(str(text).split())
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
@@ -348,7 +351,7 @@ def _seconds(number):
 
 
 def shown(lines, file=None):
-    """``lines`` as text for the Python file ``file``: with strokes of ASCII if it has no others, coloured if it is a terminal."""
+    """``lines`` as text for the Python file ``file``: with ASCII strokes if its encoding has no others, coloured if it is a terminal."""
     strokes = BOX if _can_write(file, "".join(BOX.values())) else ASCII
     paint = _painter(file)
     text = ""

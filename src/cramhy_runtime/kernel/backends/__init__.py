@@ -1,4 +1,4 @@
-"""Where tasks get their stacks from.
+"""Back ends: they give tasks their stacks.
 
 A back end makes stacks and jumps between them, and knows nothing of queues, clocks or cancellation. A stack is called
 a carrier, since it carries one task after the other: making one costs more than keeping it. The whole interface:
@@ -6,16 +6,16 @@ a carrier, since it carries one task after the other: making one costs more than
 * `adopt(kernel) -> carrier` the stack that called `kernel.start`; it carries the main task.
 * `carrier(job) -> carrier` (or `NoStack`) a stack that waits for its first `transfer` and then calls `job(carrier)`. The job returns
   the carrier that gets the baton next; after that this carrier may be given out again.
-* `transfer(mine, other)` give the baton to OTHER; returns when somebody transfers to MINE.
-* `run_blocking(kernel, task, call)` run CALL while the baton goes round, and return what it returns. `calls_back`:
-  whether the task can be had back before CALL has returned.
+* `transfer(mine, other)` give the baton to OTHER; returns when another carrier transfers to MINE.
+* `run_blocking(kernel, task, call)` run CALL while other tasks run, and return its result. `calls_back` says whether the task can go on
+  before CALL has returned.
 * `frame(carrier)` the innermost Python frame of a stack that does not have the baton, for reports.
-* `close()` the kernel has stopped: let go of the stacks that nobody needs.
+* `close()` the kernel has stopped: free the stacks that are not needed.
 * `forsake(carrier)` its task will never end: keep the stack, but don't expect it back.
 
-A carrier has `ident`, the operating system's thread that it runs on.
+A carrier has `ident`, the thread of the operating system on which it runs.
 
-A third back end (a browser, where neither threads nor greenlets exist) implements these seven and is named in `make_backend`.
+A third back end (for a browser, which has neither threads nor greenlets) would implement these seven and be named in `make_backend`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 
 def make_backend(backend: BackendName | Backend) -> Backend:
-    """A fresh back end for "threads" or "greenlet"; an object with the interface above is taken as it is."""
+    """A fresh back end for "threads" or "greenlet". An object with the interface above is returned as it is.
+
+    Another word is a ValueError; "greenlet" without the package is an ImportError.
+    """
     if backend == "threads":
         from .threads import ThreadBackend
 

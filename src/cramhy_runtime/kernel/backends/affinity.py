@@ -1,12 +1,12 @@
-"""Waking a thread where we are: on the processor that the waker is about to leave.
+"""Waking a thread on the processor of the waking thread, which is about to leave it.
 
-Only one task runs at a time, so the processor of the one that gives the baton away is free a moment later, and its
+Only one task runs at a time, so the processor of the task that gives the baton away is free a moment later, and its
 caches are warm. Linux does not know that: it wakes the other thread on another, idle processor, which first has to wake up
-itself. In a virtual machine a round trip takes 50 us that way, and 20 us in the same place (measured, 2 cores).
+itself. In a virtual machine a round trip takes 50 us that way, and 20 us on the same processor (measured, 2 cores).
 
-So the waker limits the wakee to its own processor, and the wakee lifts the limit as soon as it runs. Code of tasks never
-runs under a limit; threads and processes that it starts inherit none. Where the system has no such call, or forbids it,
-or has one processor, nothing is done.
+So the waking thread limits the other one to its own processor, and the other thread lifts the limit as soon as it runs. Code of
+tasks never runs under a limit, and threads and processes that it starts do not inherit one. If the system has no such call,
+forbids it, or has one processor, nothing is done.
 """
 
 import os
@@ -24,14 +24,16 @@ class Affinity:
         self._processor = ctypes.PyDLL(None).sched_getcpu
 
     def bring(self, tid):
+        """Limit the thread TID to the processor of the current one."""
         os.sched_setaffinity(tid, (self._processor(),))
 
     def let_go(self):
+        """Lift the limit of the current thread."""
         os.sched_setaffinity(0, self._everywhere)
 
 
 def affinity():
-    """How to keep threads on one processor, or None where that is not possible or of no use."""
+    """An `Affinity`, or None if that is impossible or useless here."""
     try:
         if len(os.sched_getaffinity(0)) < 2:
             return None

@@ -85,9 +85,10 @@ class GreenletBackend:
         return GreenletCarrier(self, job)
 
     def transfer(self, mine, other):
-        """A greenlet's stack begins where the one ended that switched to it first, in depth of recursion too.
+        """Give the baton to OTHER.
 
-        If tasks started tasks directly, the thousandth would begin a thousand frames deep. So the root starts them all.
+        A new greenlet begins at the depth of recursion of the greenlet that first switches to it. If tasks started tasks directly, the
+        thousandth would begin a thousand frames deep. So the root starts them all.
         """
         if mine is self.root:
             other.switch()
@@ -101,10 +102,10 @@ class GreenletBackend:
             self.root.switch()
 
     def run_blocking(self, kernel, task, call):
-        """A helper thread runs CALL.
+        """Run CALL in a helper thread.
 
-        When the main task calls in virtual time and nothing could happen meanwhile (nothing is runnable, and no outside
-        source is announced) CALL runs right here instead: the prompt reads its line in the main thread, where Ctrl-C works.
+        If the main task calls in virtual time and nothing can happen meanwhile (no task is runnable, and no outside source is
+        open), CALL runs here instead: the prompt reads its line in the main thread, where Ctrl-C works.
         """
         if task is kernel.main and kernel.nothing_can_happen():
             try:

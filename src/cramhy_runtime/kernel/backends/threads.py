@@ -1,10 +1,10 @@
 """Stacks that are threads of the operating system: the default, because it needs nothing installed.
 
-Every carrier has one lock, and having the baton means not to wait on it. Giving the baton away is two calls: release the
-other's lock, wait on one's own. No dispatcher thread stands between, so a hand-over costs one wake-up.
+Every carrier has one lock, and waits on it while it does not have the baton. To give the baton away takes two calls: release
+the lock of the other carrier, wait on its own. There is no dispatcher thread in between, so a hand-over costs one wake-up.
 
-Threads are taken from a pool that all kernels share, and return to it when their task is dead; a run that starts and
-ends tasks all the time starts no threads. The pool keeps `KEEP` idle threads; they are daemons and hold up no exit.
+Threads come from a pool that all kernels share, and return to it when their task is dead. So a run that starts and
+ends tasks all the time starts no threads. The pool keeps `KEEP` idle threads; they are daemons and do not delay the exit.
 
 A task may recurse as deep as the main thread: `depth` says how large a stack is, and why.
 """
@@ -65,8 +65,8 @@ def borrow(job):
 
 
 def borrow_unless_leaving(job):
-    """As `borrow`, but None when Python starts no more threads because the main program is over: then a call that blocks is made with the
-    baton, so that cleanup goes on."""
+    """As `borrow`, but None if Python starts no more threads because the main program is over. Then the caller makes its blocking call
+    with the baton, so that cleanup goes on."""
     try:
         return borrow(job)
     except NoStack:
@@ -159,10 +159,10 @@ class ThreadBackend:
                     return
 
     def run_blocking(self, kernel, task, call):
-        """This very thread runs CALL, without the baton; a spare one takes the baton and finds the next task.
+        """Run CALL in this thread, without the baton. A spare thread takes the baton and finds the next task.
 
-        Python delivers signals to the main thread. So while the main task is outside, an interrupt may raise right here
-        and so end a wait for input or for a socket, which nothing else could.
+        Python delivers signals to the main thread. So while the main task is outside, an interrupt may be raised here and
+        end a wait for input or for a socket, which nothing else could end.
         """
         spare = borrow_unless_leaving(kernel.carry)
         if spare is None:
@@ -189,7 +189,7 @@ class ThreadBackend:
         return sys._current_frames().get(carrier.ident)
 
     def close(self):
-        """The pool outlives its kernels."""
+        """Do nothing: the pool outlives its kernels."""
 
     def forsake(self, carrier):
-        """A daemon thread that waits for ever harms nobody."""
+        """Do nothing: a daemon thread that waits for ever does no harm."""

@@ -23,7 +23,7 @@ from .reader.reader_functions import read_from_string
 from .printer.printer import prin1_to_string, princ_to_string
 from .printer.standard_printers import print_slots
 from .streams import streams
-from .tools import telling_and_asking
+from .tools import user_queries
 from .packages.package_errors import check_symbol
 from .systems.systems import load_system
 from .tools.advice import hint_for, report_text, show_warnings
@@ -78,7 +78,7 @@ class _Types:
 class _Output:
     hint = staticmethod(hint_for)
     designated = staticmethod(streams.output_stream)
-    warning = staticmethod(telling_and_asking.warning_line)
+    warning = staticmethod(user_queries.warning_line)
 
     def stream(self, name):
         return streams.output_stream(_STREAMS[name].value)
@@ -101,7 +101,7 @@ class _User:
             return None, {}
 
     evaluate = staticmethod(evaluate)
-    form = staticmethod(telling_and_asking.ask_for_form)
+    form = staticmethod(user_queries.ask_for_form)
 
 
 class _Systems:

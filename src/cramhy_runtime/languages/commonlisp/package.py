@@ -22,7 +22,7 @@ MODULES = tuple(
     collections.strings collections.characters ground.hash_tables collections.arrays collections.array_making
     numbers.arithmetic numbers.rounding numbers.irrational numbers.bits numbers.random_state numbers.numbers
     types.types types.coercion types.type_relations objects.classes objects.class_definition objects.slots
-    objects.protocol ground.generic_functions objects.structures streams.streams streams.stream_functions
+    objects.protocol ground.dispatch.generic_functions objects.structures streams.streams streams.stream_functions
     files.file_streams pathnames.pathnames pathnames.wild_pathnames pathnames.logical_pathnames files.files files.file_stream_functions
     evaluation.universal_time evaluation.environment systems.program_files printer.printer printer.print_methods printer.pretty
     printer.pprint_dispatch format.format reader.reader reader.tokens reader.readtables reader.reader_functions
@@ -33,8 +33,8 @@ MODULES = tuple(
 
 HELPERS = {
     "objects.class_definition": "slot-spec define-class define-condition",
-    "ground.generic_functions": "define-generic define-method",
-    "ground.method_combination": "define-short-combination",
+    "ground.dispatch.generic_functions": "define-generic define-method",
+    "ground.dispatch.method_combination": "define-short-combination",
     "evaluation.long_combination": "define-long-combination",
     "objects.structures": "structure-slot define-structure slot-default",
     "types.types": "define-type",

@@ -1,5 +1,5 @@
 """The predicates that come with Prolog.
 
-Where the parts are: `native_predicates` how they are defined · `control` and, or, not, cut · `builtins` the others · `function_calls`
-functions called from Prolog · `rete`, `productions` facts that wake rules.
+Where the parts are: `native_predicates` how predicates are defined in Python · `control` and, or, not, cut · `builtins` the others ·
+`function_calls` functions called from Prolog · `rete`, `productions` facts that trigger handlers.
 """

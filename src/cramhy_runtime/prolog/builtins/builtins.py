@@ -1,6 +1,6 @@
 """The built-in predicates other than control: comparison, lists, strings, numbers, and access to Lisp.
 
-Those that are facts in the original belong to its fact groups here too, so the rules for extending them hold. Source:
+Predicates that are facts in the original belong to the same fact groups here, so the same rules hold for extending them. Source:
 prolog.md section 7.
 """
 
@@ -69,7 +69,7 @@ for _operator in ("<", ">", "<=", ">="):
 
 
 def _member(m, step):
-    """Each element in turn; of a list with an unset end all its extensions."""
+    """Give each element in turn; for a list with an unset end also all its extensions."""
     _, k, element, lst = step
     trail = m.trail
     height, count = len(trail), 0
@@ -106,7 +106,7 @@ def _member(m, step):
 
 
 def _next_member(m, step):
-    """Choice point: the elements of a list that are left. It moves along the list as long as the elements just become the value."""
+    """Choice point: the elements of a list that are left. It moves along the list while ``element`` just gets each of them as its value."""
     _, k, _, element, lst = step
     if element.__class__ is Var and lst.__class__ is Cons:
         item, rest = lst.car, lst.cdr
@@ -145,7 +145,7 @@ def _length(m, lst, n):
 
 @step_predicate("APPEND", _LISTS, 3)
 def _append(m, step):
-    """With a known first list one solution; otherwise the ways to split the third."""
+    """One solution if the first list is known; otherwise all ways to split the third."""
     _, k, a, b, c = step
     trail = m.trail
     a, count = deref(a), 0
@@ -193,7 +193,7 @@ def _append_longer(m, step):
 
 
 def _list_copy(m, term):
-    """A list that a Lisp function may change; what is not a proper list is what it is, for the function to complain of."""
+    """A copy of a list that a Lisp function may change. Anything but a proper list is passed as it is; the function signals an error."""
     if list_end(term) is not None:
         return resolve(term, m.names)
     return list_from([resolve(item, m.names) for item in elements(term)])
@@ -242,7 +242,7 @@ def _string_concat(m, s1, s2, s3):
 
 
 def _applied(m, function, arguments):
-    """Run a Python function as the original runs its own through ``(lisp-fun apply ...)``: errors become warnings."""
+    """Run a Python function as the original runs its functions through ``(lisp-fun apply ...)``: errors become warnings."""
     runner = Symbol("APPLY")
     runner.function = function
     done, _ = call_lisp(runner, arguments, "function", sym("APPLY"))

@@ -1,12 +1,12 @@
-"""Control: conjunction, disjunction, negation, conditions, cut, and the calling of goals that are data.
+"""Control: conjunction, disjunction, negation, conditions, cut, and calls of goals that are data.
 
-The compiler of clauses compiles these constructs in place (``compiler/clause_bodies.py``); here they are for goals that are
-data: those of queries, and what ``call`` gets.
+The compiler of clauses compiles these constructs in place (``compiler/clause_bodies.py``). This module proves goals that are data: the
+goals of queries, and the arguments of ``call``.
 
 Each construct is a function of the machine, the list of its argument terms, its continuation and the *barrier*: the height of
-the choice point stack at which the enclosing clause or query was entered, where ``(cut)`` cuts to. ``and`` and the branches of
-``->`` and ``*->`` pass the barrier on; ``or`` is a barrier of its own, and so are all others (prolog.md section 10; there
-a cut inside ``not``, ``once``, ``call``, ``findall`` and the like destroys the whole construct, here it stops at its barrier).
+the choice point stack at which the enclosing clause or query was entered, and to which ``(cut)`` cuts. ``and`` and the branches of
+``->`` and ``*->`` pass the barrier on; ``or`` and all others are barriers of their own. In the original, a cut inside ``not``, ``once``,
+``call``, ``findall`` and the like destroys the whole construct; here it stops at the barrier (prolog.md section 10).
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from ..terms.terms import Restore, TermTail, Var, copy_term, deref, raw, undo, u
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 
 CONTROL: dict = {}
-"""Functor → control function; replaced by `extend` while users have facts for the functor."""
+"""Functor → control function. `extend` replaces it while users have facts for the functor."""
 _BASE: dict = {}
 
 
 def _control(name, least=0, most=None):
-    """Decorator: the control construct ``name``, called with its arguments as a list; their number is checked."""
+    """Decorator: define the control construct ``name`` by a function of the arguments, whose number is checked."""
 
     def define(function):
         def call(m, terms, k, b):
@@ -47,7 +47,7 @@ def _control(name, least=0, most=None):
 
 
 def extend(name, entry):
-    """Make a control construct fall back on the clauses that users have for it, when it has no solution."""
+    """Let the control construct ``name`` try the clauses of users, in ``entry``, when it has no solution."""
     base = _BASE.get(name)
     if base is None:
         return
@@ -73,7 +73,7 @@ database.watchers.append(extend)
 
 
 def solve(m, goal, k, b):
-    """The step that proves a goal term. Goals are looked up when they are reached, so they can be data."""
+    """The step that proves a goal term. The functor is looked up now, so a goal can be data."""
     if goal.__class__ is not Cons:
         goal = deref(goal)
         if goal is None:
@@ -123,7 +123,7 @@ CONTROL[sym("AND")] = _BASE[sym("AND")] = _and
 
 
 def _or(m, terms, k, b):
-    """A barrier: a cut in a branch drops the other alternatives of that branch and the branches after it."""
+    """Prove one branch after the other. It is a barrier: a cut in a branch drops the other alternatives of it and the later branches."""
     terms = deref(terms)
     if terms is not None and terms.__class__ is not Cons:
         return type_error(raw(terms, m.names), "LIST")
@@ -172,7 +172,7 @@ def _not(m, k, b, goal):
 
 
 def refute(m, step):
-    """The continuation of a goal that must not succeed: fail, with its choice points and the one below them gone."""
+    """The continuation of a goal that must not succeed: fail, and drop its choice points and the one below them."""
     del m.choices[step[2] :]
     return fail(m)
 
@@ -184,7 +184,7 @@ def _once(m, k, b, *goals):
 
 
 def commit(m, step):
-    """The continuation of a goal of which one solution is enough."""
+    """The continuation of a goal that needs one solution only: drop its choice points."""
     _, k, height = step
     del m.choices[height:]
     return k
@@ -244,21 +244,21 @@ def _forall(m, k, b, condition, action):
 class Instances:
     """The instances of ``template`` for all solutions of a goal, proved in a machine of its own.
 
-    The goal is copied, so the instances stay what they are when this proof backtracks, and can be computed later. Variables
-    that a solution leaves unset are those of this proof, or new ones.
+    The goal is copied, so the instances do not change when this proof backtracks, and can be computed later. A variable that a
+    solution leaves unset is the variable of this proof, or a new one.
     """
 
     __slots__ = ("proof", "template", "originals")
 
     def __init__(self, m, template, copies, step):
-        """``copies``: the variables of this proof → those of ``template`` and of ``step``, which proves the goal."""
+        """``copies`` maps the variables of this proof to those of ``template`` and of ``step``, which proves the goal."""
         self.template = template
         self.originals = {copy: variable for variable, copy in copies.items()}
         self.proof = m.nested({copy.name: copy for copy in self.originals if copy.name is not None})
         self.proof.prove(step)
 
     def remaining(self):
-        """All instances still to come, as a Python list."""
+        """All instances that are left, as a Python list."""
         found, template, originals = [], self.template, self.originals
         append = found.append
 
@@ -270,7 +270,7 @@ class Instances:
         return found
 
     def lazy_list(self):
-        """The instances as a lazy list, its first element computed now."""
+        """The instances as a lazy list, whose first element is computed now."""
         if not self.proof.next_solution():
             return None
         return Cons(copy_term(self.template, self.originals.copy()), TermTail(self.lazy_list, self.remaining))
@@ -298,7 +298,7 @@ def _solve_goal(m, step):
 
 
 def findall(m, function, terms, position):
-    """The list for ``findall`` in compiled code, see `_compiled_instances`; so `bagof` and `setof`, ``None`` without a solution."""
+    """The list for ``findall`` in compiled code (see `_compiled_instances`). Also for `bagof`, which fails on ``None``, no solution."""
     return _compiled_instances(m, function, terms, position).lazy_list()
 
 
@@ -306,6 +306,7 @@ bagof = findall
 
 
 def setof(m, function, terms, position):
+    """As `findall`, for ``setof``: a list without repetitions, or ``None``."""
     return list_from(_distinct(_compiled_instances(m, function, terms, position).remaining()))
 
 
@@ -327,12 +328,12 @@ def _setof(m, k, b, template, goal, result):
 
 
 def _distinct(items):
-    """``items`` without those that come again later."""
+    """``items`` without repetitions: of equal items the last one stays."""
     return [item for i, item in enumerate(items) if not any(_same(item, other) for other in items[i + 1 :])]
 
 
 def _same(a, b):
-    """``equal`` for terms: nothing needs to be set to make them the same."""
+    """``equal`` for terms: whether they are the same without setting a variable."""
     trail = []
     if a is b:
         return True
@@ -360,7 +361,7 @@ def _filter_bindings(names_of_query):
 
 
 def _keep_only(m, step):
-    """Unset every variable in reach but those listed; what the listed ones have stays, as it is now."""
+    """Unset every variable in reach except the listed ones, which keep their present values."""
     _, k, variables, goals, names_of_query = step
     kept, dropped = _written_variables(variables), _written_variables(goals)
     if names_of_query:

@@ -1,9 +1,9 @@
 """Calling Lisp from a proof: ``lisp-fun``, ``lisp-pred`` and the comparisons.
 
-A variable among the arguments is replaced by its value, or passed as its symbol when it has none; everything else, lists with
-variables in them too, is passed as it is written. The first value is unified with the result; variables in returned data are
-the variables of the proof. An ``error`` in the call becomes a warning and the goal fails, unless ``*break-on-lisp-errors*``;
-plan failures and other conditions that are no errors go through. Source: prolog.md section 8.
+A variable among the arguments is replaced by its value, or passed as its symbol if it has no value. All other arguments, also lists
+with variables in them, are passed as they are written. The first value is unified with the result; variables in returned data are
+the variables of the proof. An ``error`` in the call becomes a warning and the goal fails, unless ``*break-on-lisp-errors*`` is true.
+Plan failures and other conditions that are not errors pass. Source: prolog.md section 8.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ BREAK_ON_LISP_ERRORS = special(PROLOG.intern("*BREAK-ON-LISP-ERRORS*"))
 
 
 def resolve_argument(m, term):
-    """What a Lisp function gets for a variable."""
+    """The argument of a Lisp function for a variable: its value, or its symbol."""
     kind = term.__class__
     if kind is Symbol or kind is int or kind is str:
         return term
@@ -41,12 +41,12 @@ def resolve_argument(m, term):
 
 
 def raw_argument(m, term):
-    """What a Lisp function gets for a list that is written in the goal: the list as it is written."""
+    """The argument of a Lisp function for a list that is written in the goal: the list as it is written."""
     return raw(term, m.names)
 
 
 def as_variable(term):
-    """``term`` if it is a variable, else a variable with that value: so that a list that is passed as it is written shows one."""
+    """``term`` if it is a variable, or else a variable with that value. A list that is passed as it is written shows such variables."""
     if term.__class__ is Var:
         return term
     variable = Var()
@@ -55,14 +55,14 @@ def as_variable(term):
 
 
 def argument(m, term):
-    """What a Lisp function gets for an argument term of a goal."""
+    """The argument of a Lisp function for an argument term of a goal."""
     return resolve(term, m.names) if term.__class__ is Var else raw(term, m.names) if term.__class__ is Cons else term
 
 
 def call_lisp(function, arguments, kind, written, m=None):
-    """(True, value) of a call, or (False, condition) after the warning about the error in it.
+    """Call ``function``. Returns (True, value), or (False, condition) after a warning about the error in it.
 
-    ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it, ``m`` the proof that the goal is of.
+    ``kind`` is ``function`` or ``predicate``, ``written`` the function term as the goal has it, ``m`` the proof of the goal.
     """
     if BREAK_ON_LISP_ERRORS.value is not None and truth(BREAK_ON_LISP_ERRORS.value):
         return True, _apply(function, arguments)
@@ -106,7 +106,7 @@ def _apply(function, arguments):
 
 
 def _whole(item):
-    """A list that ``findall`` bound, completely computed: what plan code expects of a list."""
+    """``item``; if it is a lazy list of ``findall``, compute it completely, as plan code expects of a list."""
     if item.__class__ is Cons:
         cell = item
         while cell.__class__ is Cons:
@@ -117,7 +117,7 @@ def _whole(item):
 
 
 def lisp_value(m, function, arguments):
-    """The term of the first value of a call of ``function``; ``NotImplemented`` after the warning about an error in it."""
+    """Call ``function`` and return its first value as a term, or ``NotImplemented`` after a warning about an error in it."""
     done, value = call_lisp(function, arguments, "function", function, m)
     if not done:
         return NotImplemented
@@ -128,7 +128,7 @@ def lisp_value(m, function, arguments):
 
 
 def lisp_fun(m, function, arguments, result):
-    """Call ``function`` and unify its first value with ``result``. For compiled code: the arguments are prepared."""
+    """Call ``function`` and unify its first value with ``result``. Returns whether that succeeds. The arguments are prepared already."""
     value = lisp_value(m, function, arguments)
     if value is NotImplemented:
         return False
@@ -141,7 +141,7 @@ def lisp_fun(m, function, arguments, result):
 
 
 def lisp_pred(m, predicate, arguments):
-    """Whether ``predicate`` is true of the arguments. The predicate is taken as it is written, never a variable's value."""
+    """Whether ``predicate`` is true for the arguments. It is a symbol as it is written, never the value of a variable."""
     done, value = call_lisp(predicate, arguments, "predicate", predicate, m)
     return done and truth(value)
 
@@ -151,7 +151,7 @@ _FLOAT_COMPARISONS = {sym("<"): float.__lt__, sym(">"): float.__gt__, sym("<="):
 
 
 def compare(m, operator, a, b):
-    """A comparison of two numbers; anything else goes through the Lisp function, which signals what is wrong."""
+    """Compare two numbers. Other arguments go to the Lisp function, which signals its error."""
     if a.__class__ is int and b.__class__ is int:
         return _COMPARISONS[operator](a, b)
     if isinstance(a, float) and isinstance(b, float):

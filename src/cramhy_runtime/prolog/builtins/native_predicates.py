@@ -2,16 +2,15 @@
 
 Three ways, from simple to fast. Each is a decorator with the name of the functor, ``"PACKAGE::NAME"``:
 
-* ``@test(name)``: ``f(machine, *terms)`` succeeds once if it returns something true. It may set variables with
+* ``@test(name)``: ``f(machine, *terms)`` succeeds once if it returns a true value. It may set variables with
   ``machine.unify(a, b, ...)``.
-* ``@predicate(name)``: ``f(machine, *terms)`` is a generator; each ``yield`` is a solution, made by ``machine.unify`` just
-  before it. On backtracking what was set is unset and the generator goes on.
+* ``@predicate(name)``: ``f(machine, *terms)`` is a generator. Each ``yield`` is a solution, made by ``machine.unify`` just before it.
+  On backtracking the variables are unset and the generator goes on.
 * ``@step_predicate(name)``: ``f(machine, step)`` with step ``(f, continuation, *terms)`` returns the next step; see ``engine/machine.py``.
 
-The terms are as the goal has them: use `deref` to look at one, `resolve` for plain Lisp data. A handler is called with every
-number of arguments, and a wrong one is a program-error; clauses that users add act only when it gives no solution. With
-``group`` the function stands for facts of that built-in fact group instead: other numbers of arguments just fail, and the
-clauses of users follow.
+The terms are those of the goal: use `deref` to look at one, `resolve` for plain Lisp data. A handler gets goals with any number of
+arguments, and a wrong number is a program-error; the clauses of users are tried only if it gives no solution. With ``group`` the
+function stands for facts of that built-in fact group instead: other numbers of arguments just fail, and the clauses of users follow.
 
 Handlers written in Lisp work on binding lists: `define_handler` adapts them.
 """
@@ -68,7 +67,7 @@ def _declare(name, function, wrap, group):
 
 
 def refuse_count(name, given, least, most):
-    """The program-error for a handler that is called with ``given`` arguments, with a hint at how many it takes."""
+    """Signal the program-error for a handler that is called with ``given`` arguments. A hint says how many it takes."""
     symbol = sym(name) if isinstance(name, str) else name
     count = f"at least {least}" if most is None else f"{least} to {most}" if most != least else f"{least or 'no'}"
     plural = "" if count.split()[-1] == "1" else "s"
@@ -78,7 +77,8 @@ def refuse_count(name, given, least, most):
 def test(name, group=None, calls_lisp=False):
     """Decorator: a predicate with at most one solution; see the head of this module.
 
-    ``calls_lisp``: it calls Lisp functions, so messages may need to know the clauses that wait for it.
+    name: the functor, ``"PACKAGE::NAME"`` or a symbol. group: the name of a built-in fact group. calls_lisp: whether it calls Lisp
+    functions; then messages name the clauses that wait for it.
     """
 
     def wrap(function):
@@ -99,7 +99,7 @@ def _going_on(m, k):
 
 
 def predicate(name, group=None):
-    """Decorator: a predicate whose solutions a generator gives; see the head of this module."""
+    """Decorator: a predicate by a generator that yields once for each solution; see the head of this module."""
 
     def wrap(function):
         return lambda m, step: retry_iterator(m, step[1], iter(function(m, *step[2:])))
@@ -128,10 +128,11 @@ _WANTED = "\n(A handler returns a list of binding lists, one for each solution: 
 
 
 def define_handler(name, function):
-    """``def-prolog-handler``: ``function(bindings, *arguments)`` gets a binding list and the arguments as they are written.
+    """``def-prolog-handler``: define the functor ``name`` by ``function(bindings, *arguments)``. Returns ``name``.
 
-    It returns a list, lazy or not, of binding lists, one per solution: what they say beyond the given bindings becomes set.
-    Redefinition replaces silently. Source: prolog.md section 11.
+    The function gets a binding list and the arguments as they are written. It returns a list, lazy or not, of binding lists, one per
+    solution, whose new bindings are set; other results are a type error. A handler that exists is replaced. Source: prolog.md section
+    11.
     """
 
     def solutions(m, terms):

@@ -1,10 +1,10 @@
 """Productions: conjunctions of fact patterns whose handlers are called when matches come and go.
 
-From the registration of its first handler on a production keeps its matches. Each of its patterns has a store of the facts that match
-it, shared with every production that has the same pattern but for the names of variables, and indexed by the values that joins ask
-for. So a fact that comes is joined, from each pattern that it matches, only with facts that fit; one that goes takes back exactly the
-matches that it is in. First all matches are brought up to date, then handlers are called: these may assert, retract and wait
-themselves, and each hears ``:assert`` of a match before its ``:retract``, or neither. Source: prolog.md section 12.2.
+A production keeps its matches from the registration of its first handler on. Each of its patterns has a store of the facts that match
+it. Productions whose patterns differ only in the names of variables share a store, which is indexed by the values that joins ask for.
+So a new fact is joined, from each pattern that it matches, only with facts that fit; a fact that goes takes back exactly its own
+matches. First all matches are updated, then the handlers are called. Handlers may assert, retract and wait themselves. Each gets the
+``:assert`` of a match before its ``:retract``, or neither. Source: prolog.md section 12.2.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def _named(pattern):
 
 
 class Store:
-    """The facts that match one ``pattern``: occurrence → the values of its variables. Shared by the productions that have it."""
+    """The facts that match one ``pattern``: occurrence → the values of its variables. Productions with this pattern share it."""
 
     def __init__(self, pattern):
         self.pattern, self.variables = pattern, _named(pattern)
@@ -45,7 +45,7 @@ class Store:
         self.users = []  # (production, place of the pattern in it)
 
     def add(self, occurrence):
-        """Keep ``occurrence`` if it matches; whether it does."""
+        """Keep ``occurrence`` if it matches. Returns whether it does."""
         found = match_fact(self.pattern, occurrence.fact, {})
         if found is None:
             return False
@@ -55,6 +55,7 @@ class Store:
         return True
 
     def remove(self, occurrence):
+        """Drop ``occurrence``. Returns whether it was kept."""
         row = self.rows.pop(occurrence, None)
         if row is None:
             return False
@@ -82,7 +83,7 @@ def _key(row, columns):
 
 
 class Network:
-    """The stores, found by the first element of a fact where the pattern has a constant there."""
+    """The stores. Those whose pattern begins with a constant are found by the first element of a fact."""
 
     def __init__(self):
         self.stores = {}
@@ -101,7 +102,7 @@ class Network:
         return found
 
     def drop(self, production):
-        """Forget a production, and the stores that no other one uses."""
+        """Forget a production, and the stores that no other production uses."""
         if production not in self.watching:
             return
         del self.watching[production]
@@ -112,7 +113,7 @@ class Network:
                 self.by_first[_first_key(store.pattern)].remove(store)
 
     def changed(self, operation, occurrence):
-        """What the memory tells: first every store and match is brought up to date, then the handlers hear of it."""
+        """Update every store and match after a change of the memory, then call the handlers."""
         if operation == "CLEAR":
             self.__init__()
             return
@@ -148,7 +149,7 @@ def _part(item, numbers):
 
 
 def _first_key(pattern):
-    """The key of the first element that all facts of the pattern have; ``None`` if they differ in it."""
+    """The key of the first element of all facts of the pattern; ``None`` if it is a variable."""
     return None if not isinstance(pattern, Cons) or variable(pattern.car) else eql_key(identity(pattern.car))
 
 
@@ -157,7 +158,7 @@ memory.watchers.append(lambda operation, occurrence: _network.changed(operation,
 
 
 def _tell_all(calls):
-    """Make all calls, as cleanup forms are run: one that is left by an error or any other exit does not keep the others."""
+    """Make all calls, as cleanup forms are run: an error, or any other exit, in one of them does not stop the others."""
     for index, call in enumerate(calls):
         try:
             call()
@@ -167,7 +168,7 @@ def _tell_all(calls):
 
 
 class Match:
-    """One match of a production: the values of its variables. ``waiting``: handlers that are still to hear of it."""
+    """One match of a production: the values of its variables. ``waiting`` are the handlers that have not been called for it yet."""
 
     __slots__ = ("production", "occurrences", "values", "holds", "waiting")
 
@@ -176,7 +177,7 @@ class Match:
         self.holds, self.waiting = True, None
 
     def announce(self):
-        """Tell the handlers, newest first, as long as the match holds."""
+        """Call the handlers with ``:assert``, newest first, as long as the match holds."""
         self.waiting = list(self.production.callbacks)
         try:
             while self.waiting and self.holds:
@@ -186,12 +187,13 @@ class Match:
                 self.waiting = []
 
     def take_back(self):
-        """Tell the handlers that have heard of it that it is gone."""
+        """Call the handlers that know of the match with ``:retract``."""
         unaware = [*self.production.callbacks] if self.waiting is None else self.waiting
         for callback in [callback for callback in self.production.callbacks if callback not in unaware]:
             self.tell(callback, _RETRACT)
 
     def tell(self, callback, operation):
+        """Call one handler with the operation and the values."""
         arguments = [item for v in self.production.variables for item in (keyword(v.name), self.values.get(v))]
         function_of(callback)(operation, *arguments)
 
@@ -209,7 +211,7 @@ class Production:
         self.matches = {}  # occurrence -> its matches
 
     def start(self):
-        """Keep matches from now on; those that exist are told at once."""
+        """Keep matches from now on. The handlers are called at once for those that exist."""
         Production.count += 1
         self.number, self.matches = Production.count, {}
         _network.watching[self] = None
@@ -223,7 +225,7 @@ class Production:
         _tell_all([match.announce for match in existing])
 
     def _order(self, first):
-        """In which order the other patterns are joined from ``first``: always the one that has most variables known."""
+        """The order in which the other patterns are joined to ``first``: always the pattern with most known variables comes next."""
         known, order, left = set(self.names[first]), [], [place for place in range(len(self.patterns)) if place != first]
         while left:
             place = max(left, key=lambda place: len(known & set(self.names[place])))
@@ -234,7 +236,7 @@ class Production:
         return order
 
     def _joined(self, occurrence, first, excluding=True):
-        """The matches with ``occurrence`` at ``first`` and, if ``excluding``, not before; they are kept from now on."""
+        """The matches with ``occurrence`` at place ``first`` and, if ``excluding``, at no earlier place. They are kept from now on."""
         found = []
 
         def join(step, occurrences, values):
@@ -255,10 +257,11 @@ class Production:
         return found
 
     def gained(self, occurrence, places):
+        """The new matches with ``occurrence`` at one of ``places``."""
         return [match for place in places for match in self._joined(occurrence, place)]
 
     def lost(self, occurrence):
-        """The matches that ``occurrence`` is in; they are kept no more."""
+        """The matches with ``occurrence``, which are not kept any more."""
         found = list(self.matches.pop(occurrence, ()))
         for match in found:
             match.holds = False
@@ -274,7 +277,7 @@ class Production:
 
 
 def register_production(name, definition):
-    """``(register-production name definition)``: define a production by its list of patterns; a redefinition warns."""
+    """``(register-production name definition)``: define a production by its list of patterns. Returns it. A redefinition warns."""
     if name in _definitions.value:
         remove_production(name)
         style_warn("Redefining production `~S'.", name)
@@ -283,7 +286,7 @@ def register_production(name, definition):
 
 
 def remove_production(name):
-    """``(remove-production name)``: forget a production; nothing fires for it any more. ``nil`` for a name that nobody defined."""
+    """``(remove-production name)``: forget a production, so that its handlers are not called any more. Returns nil if there is none."""
     production = _definitions.value.pop(name, None)
     if production is not None:
         _network.drop(production)
@@ -297,7 +300,7 @@ def clear_productions():
 
 
 def with_productions(productions, body):
-    """The work of the macro: call ``body`` with productions, a list of (name, list of patterns), that only it sees."""
+    """``with-productions``: call ``body`` with ``productions``, a list of (name, list of patterns), that only it sees."""
     own = {name: Production(name, python_list(patterns)) for name, patterns in productions}
     with binding(_definitions, {**_definitions.value, **own}):
         try:
@@ -315,7 +318,8 @@ def _production(name):
 def register_production_handler(production_name, callback):
     """``(register-production-handler name callback)``: call ``(callback operation :?variable value...)`` when matches come and go.
 
-    The operation is ``:assert`` or ``:retract``. The first handler of a production gets the matches that exist. Returns the production.
+    The operation is ``:assert`` or ``:retract``. The first handler of a production is called for the matches that exist. Returns the
+    production; an unknown name is an error.
     """
     production = _production(production_name)
     production.callbacks.insert(0, callback)
@@ -325,14 +329,14 @@ def register_production_handler(production_name, callback):
 
 
 def remove_production_handler(production_name, callback):
-    """``(remove-production-handler name callback)``: do not call ``callback`` any more."""
+    """``(remove-production-handler name callback)``: stop calling ``callback``. An unknown name is an error."""
     production = _production(production_name)
     if callback in production.callbacks:
         production.callbacks.remove(callback)
 
 
 def with_production_handlers(handlers, body):
-    """The work of the macro: call ``body`` with handlers in force, a list of (production name, function)."""
+    """``with-production-handlers``: call ``body`` with ``handlers`` in force, a list of (production name, function)."""
     registered = []
     try:
         for name, function in handlers:

@@ -1,9 +1,9 @@
-"""Rete's memory: facts that come and go, and the patterns that are asked of them.
+"""Rete's memory: facts that come and go, and queries for patterns of facts.
 
 A fact is a proper list of constants; the memory counts how often each was asserted. It is a tree that branches by the elements of
-the facts (the original's alpha network), so a pattern walks only where its constants lead. Elements are compared by ``eql`` of their
-`object_id`, so strings and lists never match by content. Who wants to know of facts that come and go (see ``productions.py``)
-watches the memory. Source: prolog.md section 12.1.
+the facts (the original's alpha network), so the search for a pattern follows only its constants. Elements are compared by ``eql`` of
+their `object_id`, so strings and lists never match by content. Watchers of the memory hear of facts that come and go (see
+``productions.py``). Source: prolog.md section 12.1.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_
 from cramhy_runtime.ground.equality import eql, eql_key
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
-from cramhy_runtime.ground.generic_functions import generic, specializer_of, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import generic, specializer_of, when_methods_change
 from cramhy_runtime.utilities.lazy_lists import from_iterator
 from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, vars_in
 from cramhy_runtime.kernel.images import Cell, per_image
@@ -30,7 +30,7 @@ object_id = generic(
     "CRAM-PROLOG::OBJECT-ID",
     "(obj)",
     documentation="""
-    What identifies ``obj`` as an element of a fact: itself, unless a method for its class says otherwise.""",
+    The object that identifies ``obj`` as an element of a fact: itself, unless there is a method for its class.""",
 )
 object_id.method(object)(lambda obj: obj)
 
@@ -40,7 +40,7 @@ _plain = Cell(_ATOMS)  # the classes whose objects are their own identity
 
 @when_methods_change
 def _see_who_has_identity(function):
-    """While no method of `object_id` is about atoms, nobody need be asked for the identity of one."""
+    """While no method of `object_id` is about atoms, `identity` need not call it for them."""
     if function is object_id:
         special = [method.specializers[0] for method in function.methods if method.specializers[0] is not specializer_of(object)]
         about_atoms = any(not isinstance(cls, type) or any(issubclass(atom, cls) for atom in _ATOMS) for cls in special)
@@ -53,7 +53,7 @@ def identity(obj):
 
 
 class Node:
-    """A node of the tree: the facts that start alike. At the end of a fact, ``occurrences`` are its assertions that stand."""
+    """A node of the tree: the facts with the same beginning. At the end of a fact, ``occurrences`` are its assertions that still hold."""
 
     __slots__ = ("parent", "identity", "children", "fact", "occurrences")
 
@@ -64,7 +64,7 @@ class Node:
         self.occurrences = []
 
     def copy(self):
-        """The same tree of nodes of its own."""
+        """A copy of the tree from here on."""
         made = Node(self.parent, self.identity)
         made.fact, made.occurrences = self.fact, list(self.occurrences)
         for key, child in self.children.items():
@@ -73,6 +73,7 @@ class Node:
         return made
 
     def size(self):
+        """The number of nodes from here on."""
         count, nodes = 0, [self]
         while nodes:
             count += 1
@@ -80,7 +81,7 @@ class Node:
         return count
 
     def leaves(self, pattern=None):
-        """The nodes of the facts that hold and may match ``pattern`` by its constants (all, without one), newest first."""
+        """The nodes of the facts that hold and that fit the constants of ``pattern`` (all facts, without one), newest first."""
         stack = [(self, pattern)]
         while stack:
             node, cell = stack.pop()
@@ -127,6 +128,7 @@ class Memory:
         self.clear()
 
     def clear(self):
+        """Forget all facts, without calling watchers."""
         self.root = Node()
         self.occurrences = {}  # in order of assertion
 
@@ -136,6 +138,7 @@ class Memory:
         return found[::-1]
 
     def tell(self, operation, occurrence):
+        """Call the watchers."""
         for watcher in self.watchers:
             watcher(operation, occurrence)
 
@@ -144,7 +147,7 @@ memory = per_image(Memory())
 
 
 def match_fact(pattern, fact, bindings, test=eql):
-    """``bindings``, a dict, extended so that ``pattern`` is ``fact``; ``None`` if it cannot be."""
+    """A copy of the dict ``bindings``, extended so that ``pattern`` equals ``fact``, or ``None`` if that is impossible."""
     extended = dict(bindings)
     while pattern.__class__ is Cons and fact.__class__ is Cons:
         item = pattern.car
@@ -201,9 +204,9 @@ def _check(fact):
 
 
 def rete_assert(fact):
-    """``(rete-assert fact)``: add one occurrence of ``fact`` and tell the productions; returns the memory node.
+    """``(rete-assert fact)``: add one occurrence of ``fact`` and tell the productions. Returns the memory node.
 
-    Errors: ``nil``, what is not a proper list, and a fact that contains ``?_``.
+    A fact that is ``nil``, not a proper list, or contains ``?_``, is an error.
     """
     _check(fact)
     node, occurrence = _leaf(fact, True), Occurrence(fact)
@@ -215,7 +218,10 @@ def rete_assert(fact):
 
 
 def rete_retract(fact):
-    """``(rete-retract fact)``: remove one occurrence of ``fact``, the newest, and tell the productions. An absent fact is an error."""
+    """``(rete-retract fact)``: remove the newest occurrence of ``fact`` and tell the productions. Returns the memory node.
+
+    If the fact does not hold, it is an error.
+    """
     node = _leaf(fact, False) if isinstance(fact, Cons) and list_end(fact) is None else None
     if node is None or not node.occurrences:
         return error("wme-memory already empty. Cannot retract.")
@@ -230,9 +236,9 @@ def rete_retract(fact):
 
 
 def with_facts_asserted(fact_thunks, body):
-    """The work of the macro of this name: assert what the thunks give, call ``body``, retract in the same order on any exit.
+    """``with-facts-asserted``: assert the facts that the thunks return, call ``body``, and retract them in the same order on any exit.
 
-    A fact that the body has retracted itself is an error as in `rete_retract`, when the others are retracted.
+    If the body has retracted one of them itself, that is an error as in `rete_retract`, after the others are retracted.
     """
     with asserted(one(thunk()) for thunk in fact_thunks):
         return body()
@@ -262,7 +268,7 @@ def _retract_all(facts):
 
 
 def clear_alpha_network():
-    """``(clear-alpha-network)``: retract everything and empty the memory; productions registered before do not fire any more."""
+    """``(clear-alpha-network)``: retract all facts and empty the memory. Productions registered before are not told of facts any more."""
     try:
         _retract_all([occurrence.fact for occurrence in memory.occurrences])
     finally:
@@ -271,7 +277,7 @@ def clear_alpha_network():
 
 
 def alpha_network_size(node=None):
-    """``(alpha-network-size &optional node)``: the number of nodes, the root included."""
+    """``(alpha-network-size &optional node)``: the number of nodes below ``node`` (default: the root), itself included."""
     return (node or memory.root).size()
 
 
@@ -282,7 +288,7 @@ def _pairs(bindings, tail=None):
 def rete_holds(fact_pattern, test=None, processed=None, node=None):
     """``(rete-holds fact-pattern)``: the lazy list of bindings under which the pattern is a fact, the newest fact first.
 
-    ``test`` compares the identities of elements (default: ``eql``); ``node``: only the facts below this node of the memory.
+    test: compares the identities of elements (default: ``eql``). node: a node of the memory; then only facts below it count.
     """
     compare = eql if test is None else function_of(test)
     if compare is eql and node is None and vars_in(fact_pattern) is None:

@@ -1,9 +1,9 @@
 """Code for the goals of a clause.
 
-Goals that are tests (unification, comparison, ``lisp-fun``, ``bound``, ...) are code in place. A call ends the Python function: what
-comes after it is a function of its own, its continuation, which gets the variables that it needs through its step. The constructs
+Goals that are tests (unification, comparison, ``lisp-fun``, ``bound``, ...) become code in place. A call ends the Python function: the
+goals after it are a function of their own, the continuation, which gets the variables that it needs through its step. The constructs
 of control are compiled in place too: a condition made of tests is an ``if``; otherwise the branches not taken yet are functions of
-choice points. No goal is built as a term if the clause says which one it is.
+choice points. A goal is built as a term only if the clause does not say which goal it is.
 
 The rules of cut are those of ``builtins/control.py``, which interprets the goals that are data: a `Context` knows where a cut cuts to.
 """
@@ -60,9 +60,9 @@ in_place.update([*TESTS, *CONSTRUCTS])
 
 
 class Context(namedtuple("Context", "k b repeat", defaults=("k", "b", None))):
-    """Where goals stand: ``k`` and ``b`` are Python expressions for their continuation and for where a cut cuts to.
+    """Where goals stand: ``k`` and ``b`` are Python expressions for their continuation and for the barrier of a cut.
 
-    ``repeat`` is the statement by which the predicate calls itself as the last goal, or ``None`` where it must return to do so.
+    ``repeat`` is the statement with which the predicate calls itself as the last goal, or ``None`` if it must return to do so.
     """
 
     __slots__ = ()
@@ -87,7 +87,7 @@ def is_test(goal):
 
 
 def flat(goals):
-    """The goals of a body, conjunctions in it flattened."""
+    """The goals of a body, with conjunctions in it flattened."""
     for goal in goals or ():
         if isinstance(goal, Cons) and goal.car is AND and proper(goal) and not looked_up(AND):
             yield from flat(goal.cdr)
@@ -113,13 +113,16 @@ def may_cut(goal):
 
 
 class Bodies(Matching):
-    """``keep_variables``: no variable may be a mere Python variable, because goals of the clause change variables that are set."""
+    """Code for bodies of clauses.
+
+    ``keep_variables`` says that every variable must be a `Var`, since goals of the clause change variables that are set.
+    """
 
     keep_variables = False
     predicate = None
 
     def body(self, goals, names, context):
-        """Code for ``goals``, a list; it leaves the function, or repeats the predicate."""
+        """Emit code for ``goals``, a list. The code leaves the function, or repeats the predicate."""
         goals = list(flat(goals))
         while goals:
             goal, goals = goals[0], goals[1:]
@@ -143,7 +146,7 @@ class Bodies(Matching):
     # ------------------------------------------------------------------------------------------------------------------ tests
 
     def test(self, goal, names):
-        """Code in place for a goal that `is_test`."""
+        """Emit code in place for a goal that `is_test`."""
         functor, arguments = goal.car, arguments_of(goal)
         if functor is TRUE:
             return
@@ -208,7 +211,7 @@ class Bodies(Matching):
             self.emit(f"undo(trail, {height})")
 
     def _tests(self, goals, names):
-        """A loop of one turn around tests, which is left by ``break`` when one fails; an ``else`` may follow."""
+        """Emit a loop of one turn around tests. It breaks when a test fails, and an ``else`` may follow it."""
         self.emit("for _ in ONCE:")
         self.depth += 1
         outer, self.failing = self.failing, "break"
@@ -221,7 +224,7 @@ class Bodies(Matching):
         self.depth -= 1
 
     def _argument(self, pattern, names):
-        """An expression for what a Lisp function gets for ``pattern``: a variable's value; lists as they are written."""
+        """An expression for the argument of a Lisp function for ``pattern``: a variable's value; lists as they are written."""
         if variable(pattern):
             return f"resolve_argument(m, {self.build(pattern, names)})"
         if not isinstance(pattern, Cons) or is_ground(pattern):
@@ -269,9 +272,9 @@ class Bodies(Matching):
         return self.branch("then_", goals, names, context._replace(repeat=None), context.k)
 
     def branch(self, kind, goals, names, context, k, held=(), opening=()):
-        """A step whose function proves ``goals`` in ``context``: an expression.
+        """An expression for a step whose function proves ``goals`` in ``context``.
 
-        ``held``: further Python names that it has, and the expressions for their values. ``opening``: lines at its beginning.
+        ``held`` maps further Python names in the function to expressions for their values. ``opening`` are lines at its beginning.
         """
         needed = {}
         for goal in goals:
@@ -297,7 +300,7 @@ class Bodies(Matching):
     # ------------------------------------------------------------------------------------------------- constructs of control
 
     def _shared(self, parts, goals, names):
-        """Make the new variables that occur in more than one of ``parts`` and the ``goals`` behind them."""
+        """Emit code for new variables that occur in more than one of ``parts`` and the ``goals`` after them."""
         seen = variables(list_from(goals))
         for part in parts:
             inside = variables(part)
@@ -305,7 +308,7 @@ class Bodies(Matching):
             seen = {**seen, **inside}
 
     def _rest(self, goals, names, context):
-        """The continuation behind a construct, in a Python variable."""
+        """A Python variable with the continuation after a construct."""
         if not goals:
             return context.k
         k = self.fresh("k")
@@ -329,7 +332,7 @@ class Bodies(Matching):
         self.body(branches[:1], dict(names), Context(k, local, context.repeat if k == context.k else None))
 
     def _other_branches(self, branches, names, k):
-        """The choice point for the second and later branches of an ``or``, which share their variables."""
+        """An expression for the choice point of the later branches of an ``or``, which share their variables."""
         live = [name for name in variables(list_from(branches)) if name in names]
         function = self.fresh("or_")
 
@@ -414,7 +417,7 @@ class Bodies(Matching):
     # -------------------------------------------------------------------------------------------------------------- collections
 
     def collection(self, kind):
-        """The method for ``findall`` and its like: the goal is a function that a machine of its own proves."""
+        """The method for ``findall``, ``bagof`` or ``setof``: the goal becomes a function, which a machine of its own proves."""
 
         def collect(arguments, goals, names, context):
             template, goal, result = arguments

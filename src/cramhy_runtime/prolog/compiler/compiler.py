@@ -1,16 +1,15 @@
 """The clause compiler: the clauses of a predicate become one Python function.
 
-For each predicate Python source is written and compiled. It looks at the first argument that tells the clauses apart, and goes to
-the code of those that can match; where that argument is unset, it goes by the next one that does. A clause is tried together with
-the tests that its body begins with, and only when these succeed and other clauses could match too is a choice point made, so calls
-that one clause answers leave none. A clause that ends by calling its own predicate becomes a loop.
+The compiler writes Python source for each predicate. The code looks at the first argument that distinguishes the clauses, and goes to
+those that can match; if that argument is unset, it looks at the next such argument. It tries a clause together with the tests at the
+beginning of its body. It makes a choice point only if these succeed and other clauses could match too, so a call that only one clause
+answers leaves none. A clause that ends by calling its own predicate becomes a loop.
 
-Clauses that are too many or too long to stand in that function are functions of their own, which tables of candidates name. Ground
-facts without bodies are tables altogether, see ``engine/relations.py``. What stands in a clause is compiled by
-``head_matching.py`` and ``clause_bodies.py``.
+If the clauses are too many or too long for that function, they are functions of their own, in tables of candidates. Ground facts without
+bodies are tables altogether, see ``engine/relations.py``. ``head_matching.py`` and ``clause_bodies.py`` compile the parts of a clause.
 
-Why source, and why clauses stand inside the function of their predicate: naive reverse runs at 2.1 M inferences a second; with
-one more Python call per clause, which closures would need at least, at 1.2 M.
+Source text, with the clauses inside the function of their predicate, is fast: naive reverse runs at 2.1 M inferences a second. With one
+more Python call per clause, which closures would need at least, it runs at 1.2 M.
 """
 
 from __future__ import annotations
@@ -29,14 +28,14 @@ from .generated_code import Rest, is_ground
 
 LOOP = range(100)
 _HEAVY = 90
-"""Conses of clauses that are still written out where they may be tried."""
+"""Clauses with at most so many conses are written out in each place where they may be tried."""
 
 _ANY, _LIST, _OTHER = object(), object(), object()
-"""What a clause can match by an argument, where that is no key of the index: anything, lists, other atoms."""
+"""The kinds of arguments that a clause can match, if they are not keys of the index: anything, lists, other atoms."""
 
 
 def compile_clauses(predicate, clauses):
-    """The call function of ``predicate`` for ``clauses``, a list of `Clause`, and its `Relation` if it is one."""
+    """The call function of ``predicate`` for ``clauses``, a list of `Clause`, and its `Relation` if the clauses are rows of one."""
     arity, fitting = predicate.arity, []
     for clause in clauses:
         arguments = _head_arguments(clause.head, arity)
@@ -54,7 +53,7 @@ SERVICES.install(compile_clauses=compile_clauses)
 
 
 def clause_functions(predicate, clauses):
-    """For who chooses among the clauses itself: (clause, function) pairs, called ``function(m, k, barrier, *arguments)``."""
+    """Pairs (clause, function), for callers that choose among the clauses. They call ``function(m, k, barrier, *arguments)``."""
     fitting = [(arguments, clause) for clause in clauses if (arguments := _head_arguments(clause.head, predicate.arity)) is not None]
     return PredicateCode(predicate, fitting).each() if fitting else []
 
@@ -97,7 +96,7 @@ def _weight(item):
 
 
 class PredicateCode(Holes, Bodies):
-    """The code of one predicate in the making. ``fitting``: pairs (argument patterns, clause)."""
+    """The code of one predicate while it is written. ``fitting`` are pairs (argument patterns, clause)."""
 
     waiting = False  # whether the clause to come may find a hole
 
@@ -118,7 +117,7 @@ class PredicateCode(Holes, Bodies):
         self.tries, self.buckets, self.clause_names = {}, {}, {}
 
     def function(self):
-        """Write and compile it all; the call function."""
+        """Write and compile all code. Returns the call function."""
 
         def body():
             self.emit(f"_, k{self.arguments} = step")
@@ -138,7 +137,7 @@ class PredicateCode(Holes, Bodies):
         return self.space["predicate"]
 
     def each(self):
-        """Write and compile a function for each clause."""
+        """Write and compile a function for each clause. Returns (clause, function) pairs."""
         for n in range(len(self.fitting)):
             self._clause_function(n)
         self.make()
@@ -172,7 +171,7 @@ class PredicateCode(Holes, Bodies):
     # ------------------------------------------------------------------------------------------------- choosing the clauses
 
     def _kind(self, n, position):
-        """What clause ``n`` can match at an argument."""
+        """The kind of values that clause ``n`` can match at an argument."""
         patterns = self.fitting[n][0]
         if position >= len(patterns):
             return _ANY
@@ -185,7 +184,7 @@ class PredicateCode(Holes, Bodies):
         return _OTHER if key is NotImplemented else key
 
     def _telling(self, numbers, known):
-        """The first argument that tells the clauses apart, and is not ``known`` yet."""
+        """The first argument that distinguishes the clauses and is not ``known`` yet."""
         for position in range(self.arity):
             if position not in known and any(self._kind(n, position) is not _ANY for n in numbers):
                 return position
@@ -259,7 +258,7 @@ class PredicateCode(Holes, Bodies):
             self.emit(FILL.format(self.hole))
 
     def _candidates(self, numbers, known, telling=None):
-        """Code that tries the clauses ``numbers``. ``telling``: the argument that chose them, where there may be a hole."""
+        """Emit code that tries the clauses ``numbers``. ``telling`` is the argument that chose them, if there may be a hole."""
         if telling is not None and self.hole is not None:
             if len(numbers) == 1 and numbers[0] in self.builders and known[telling] is A_LIST:
                 self._owned(numbers[0], lambda: self.turn_with_hole(numbers[0], self.hole, telling))
@@ -276,7 +275,7 @@ class PredicateCode(Holes, Bodies):
             self.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")
 
     def _bucket(self, content):
-        """The name of a tuple of clause functions, or of a dict of such: ``content`` has the numbers of the clauses."""
+        """The name of a tuple of clause functions, or of a dict of such tuples. ``content`` has the numbers of the clauses."""
         found = self.buckets.get(repr(content))
         if found is None:
             found = self.buckets[repr(content)] = f"B{len(self.buckets)}", content
@@ -311,11 +310,11 @@ class PredicateCode(Holes, Bodies):
         self.owner, self.keep_variables, self.failing = outer
 
     def _known(self, n, known):
-        """What is known of the arguments, as far as it helps clause ``n``."""
+        """The part of ``known`` about the arguments that helps clause ``n``."""
         return {position: kind for position, kind in known.items() if not (kind is SAME and self._kind(n, position) is _OTHER)}
 
     def _chain(self, numbers, known, repeat):
-        """The clauses ``numbers`` one after the other: the first whose head and first tests succeed is taken."""
+        """Emit code for the clauses ``numbers`` one after the other. It takes the first whose head and first tests succeed."""
         n = numbers[0]
         patterns, names, goals = self.fitting[n][0], {}, self.goals[n]
         if any(map(may_cut, goals)):

@@ -1,7 +1,7 @@
-"""Python source in the making: lines, functions, the constants that they name, and the variables of the clause that they are for.
+"""Python source while it is written: lines, functions, the constants in them, and the variables of their clause.
 
-What the compiler of clauses needs before it knows anything of Prolog: `Source` collects functions of text and makes them real; a
-function may be written while another one is, since a goal in the middle of a clause needs one for what comes after it.
+This is the part of the compiler of clauses that knows nothing of Prolog. `Source` collects the text of functions and compiles it. A
+function may be written in the middle of another one, since the goals after a call need a function of their own.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ GLOBALS = {
 
 
 class Source:
-    """Functions of text that belong together. ``emit`` adds a line to the one that is being written."""
+    """The text of functions that belong together. ``emit`` adds a line to the function that is being written."""
 
     def __init__(self, title):
         self.title = title
@@ -91,7 +91,7 @@ class Source:
         return name
 
     def make(self):
-        """Compile all functions; they are in ``space`` then, each with the clause that it is of."""
+        """Compile all functions and put them in ``space``, each with its clause."""
         define_functions(self.title, self.functions, self.space)
         for name, owner in self.owners.items():
             self.space[name].clause = owner
@@ -111,7 +111,7 @@ def is_ground(item):
 
 
 def variables(item, found=None):
-    """The variables of Lisp data but ``?_``, as a dict in order of occurrence."""
+    """The variables of Lisp data except ``?_``, as a dict in order of occurrence."""
     found = {} if found is None else found
     stack = [item]
     while stack:
@@ -132,7 +132,7 @@ def proper(goal):
 
 
 class Rest:
-    """The variable behind the dot of a clause head, for goals with ``count`` more arguments."""
+    """The variable after the dot of a clause head, for goals with ``count`` more arguments."""
 
     def __init__(self, name, count):
         self.name, self.count = name, count

@@ -1,8 +1,8 @@
 """Code that matches the arguments of a goal with the head of a clause, and code that builds terms.
 
-Unification with a pattern that is known when the clause is compiled is spelled out, test by test. What is known of an argument,
-because the choice among the clauses has looked at it already, is left out. A variable of the clause is a Python variable that holds
-a term: the argument itself, a part of it, or a new `Var` where a term must be built before the variable has a value.
+The pattern is known when the clause is compiled, so its unification is written out test by test. Tests that the choice among the clauses
+has made already are left out. A variable of the clause is a Python variable that holds a term: the argument itself, a part of it, or a
+new `Var` if a term must be built before the variable has a value.
 
 ``names`` maps the variables that have occurred to Python expressions; ``self.failing`` is the statement that leaves on failure.
 """
@@ -17,17 +17,23 @@ from .generated_code import Rest, Source, is_ground, variables
 
 _DEEP = 4
 UNKNOWN, A_LIST, UNBOUND, SAME = "unknown", "a list", "unbound", "same"
-"""What is known of an argument: nothing; that it is a cons; an unset variable; or the atom that the clause has there."""
+"""Knowledge about an argument: nothing; that it is a cons; an unset variable; or the atom that the clause has there."""
 
 
 class Matching(Source):
+    """Writes code for heads and for terms."""
+
     failing = "return fail(m)"
 
     def fail_unless(self, test):
+        """Emit code that fails unless the expression ``test`` is true."""
         self.emit(f"if not {test}: {self.failing}")
 
     def match_head(self, patterns, names, known=None, hole=None):
-        """Code for the arguments ``a0``, ``a1``, ...; ``known``: argument → what is known of it; ``hole``: see ``list_building.py``."""
+        """Emit code that matches the arguments ``a0``, ``a1``, ... with ``patterns``.
+
+        ``known`` maps arguments to knowledge about them, such as `A_LIST`. ``hole`` is explained in ``list_building.py``.
+        """
         for i, pattern in enumerate(patterns):
             if isinstance(pattern, Rest):
                 break
@@ -63,7 +69,7 @@ class Matching(Source):
                 self.emit(f"{names[pattern.name]} = {built}")
 
     def match(self, pattern, x, names, depth, known=None):
-        """Code that unifies ``pattern`` with the term in the Python variable ``x``, which is dereferenced when something is ``known``."""
+        """Emit code that unifies ``pattern`` with the term in the Python variable ``x``. If it is ``known``, it is dereferenced."""
         if variable(pattern):
             if pattern is ANONYMOUS:
                 return
@@ -151,7 +157,7 @@ class Matching(Source):
     # ------------------------------------------------------------------------------------------------------------ building terms
 
     def _cell(self, pattern, names):
-        """Code for a new cons, without the call of its constructor; returns the Python variable that holds it."""
+        """Emit code for a new cons, without a call of its constructor. Returns the Python variable that holds it."""
         car, cdr = self.build(pattern.car, names), self.build(pattern.cdr, names)
         cell = self.fresh("n")
         self.emit(f"{cell} = new(Cons); {cell}.car = {car}; {cell}.cdr = {cdr}")
@@ -180,17 +186,18 @@ class Matching(Source):
         return end
 
     def first_occurrences(self, item, names):
-        """Make the variables of ``item`` that have not occurred."""
+        """Emit code for the variables of ``item`` that have not occurred yet."""
         for name in variables(item):
             if name not in names:
                 names[name] = self.fresh("v")
                 self.new_variable(names[name], name)
 
     def new_variable(self, python_name, symbol):
-        """Code that makes a variable; while goals are traced it knows what it is called in the clause."""
+        """Emit code that makes a variable. While goals are traced, the variable knows its name in the clause."""
         self.emit(f"{python_name} = Var()")
         self.name_variable(python_name, symbol)
 
     def name_variable(self, python_name, symbol):
+        """While goals are traced, emit code that gives a variable its name in the clause."""
         if traced:
             self.emit(f"{python_name}.written = {self.constant(symbol)}")

@@ -1,12 +1,12 @@
 """Lists that a loop builds from front to back, without a variable for each rest that is not known yet.
 
 ``(<- (app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))`` gives its caller a cons whose cdr is the variable ``?r``, which the next turn of
-the loop sets at once. Nobody else has seen it. So while such a predicate loops, the cons itself is remembered, as the *hole*, and the
-next turn puts its cons into its cdr: no variable, no trail entry, and nothing to follow when the list is read. Wherever something
-else than the next such turn comes, the hole is filled with a variable first.
+the loop sets at once. No other code has seen that variable. So while such a predicate loops, it remembers the cons itself, as the
+*hole*, and the next turn puts its cons into the cdr: without a variable, without a trail entry, and without a reference to follow when
+the list is read. Before anything but the next such turn comes, the hole is filled with a variable.
 
-The one way to see the hole would be a list argument that runs along the list being built; that is tested. The law: whatever
-is answered is what would be answered without this.
+Only a list argument that runs along the list being built could see the hole; the code tests for that. The law: the answers are the
+same as without this.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ FILL = "if hole is not None: a{0} = hole.cdr = Var(); hole = None"
 
 
 def hole_positions(functor, patterns, goals):
-    """The arguments in which a clause may build a list with a hole: where it is a cons whose cdr is new, and goes to the same
-    argument of the call of ``functor`` that is all its body; and its other arguments are variables, but for one list."""
+    """The arguments in which a clause may build a list with a hole.
+
+    Such an argument is a cons whose cdr is new and goes to the same argument of the call of ``functor``, which is the whole body. The
+    other arguments of the clause are variables, except for one list.
+    """
     fit = []
     if len(goals) != 1 or goals[0].__class__ is not Cons or goals[0].car is not functor:
         return fit
@@ -47,7 +50,7 @@ def hole_positions(functor, patterns, goals):
 
 
 def can_wait(patterns, position):
-    """Whether the head of a clause can be matched without a variable in the hole: the argument there is an atom, or another argument."""
+    """Whether the head of a clause can be matched without a variable in the hole: the argument there is an atom or a repeated variable."""
     if any(isinstance(pattern, Rest) for pattern in patterns):
         return False
     pattern = patterns[position]
@@ -57,10 +60,10 @@ def can_wait(patterns, position):
 
 
 class Holes:
-    """Code for such loops; part of the class of the compiler."""
+    """Writes code for such loops; a part of the class of the compiler."""
 
     def turn_with_hole(self, n, position, telling):
-        """Code for a turn of clause ``n``, whose list argument ``telling`` is known to be a cons."""
+        """Emit code for a turn of clause ``n``, whose list argument ``telling`` is known to be a cons."""
         patterns, _ = self.fitting[n]
         call = self.goals[n][0]
         pattern, first = patterns[position], patterns[telling]

@@ -2,11 +2,11 @@
 
 All clauses of a functor form one predicate, whatever their number of arguments; since goals with other numbers of arguments
 cannot unify, code is kept per functor and number of arguments, and made when a goal first needs it. A functor may have a
-*handler*, tried first: when it gives no solution the clauses are tried (prolog.md 5.1); or *native facts*, Python code that
-stands for the clauses of a built-in fact group and is followed by those that users add.
+*handler*, which is tried first; if it gives no solution the clauses are tried (prolog.md 5.1). Or it may have *native facts*: Python code
+that stands for the clauses of a built-in fact group, and the clauses of users follow it.
 
-The compiler of clauses and the constructs of control stand above this module. What it needs of them they install in ``services.py``, or
-enter here: the functors that are compiled `in_place`, and the functions that hear of changes, `watchers`.
+The compiler of clauses and the constructs of control stand above this module. They install the functions that it needs in
+``services.py``, and enter here the functors that are compiled `in_place` and the functions to call after changes, `watchers`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ..terms.terms import deref
 
 
 in_place: set = set()
-"""Functors whose goals are compiled in place: when users give one clauses, all code is made anew."""
+"""Functors whose goals are compiled in place. When users give one of them clauses, all code is made anew."""
 watchers: list = []
 """Functions that are called with the name of a functor and its entry, or ``None``, after its clauses have changed."""
 
@@ -33,9 +33,9 @@ watchers: list = []
 class Traced(dict):
     """Functors whose goals are watched, in the order in which they were named.
 
-    All of their calls go through `Predicate.call`, and no code repeats or replaces them.
+    All of their calls go through `Predicate.call`; no loop and no code in place replaces them.
 
-    With ``everything`` all predicates are, but the constructs of control, the set ``constructs``, only if they are named.
+    With ``everything`` all predicates are watched. The constructs of control, the set ``constructs``, are watched only if they are named.
     """
 
     everything = False
@@ -49,7 +49,7 @@ class Traced(dict):
 
 
 traced = Traced()
-"""The functors that are watched now. After a change of it call `forget_all`."""
+"""The functors that are watched now. Call `forget_all` after a change of it."""
 
 
 class Predicate:
@@ -66,7 +66,7 @@ class Predicate:
         self.call, self._relation = self.compile_and_call, False
 
     def compile(self):
-        """Make the code now. Code that runs meanwhile goes on with what it has."""
+        """Make the code now. Code that is running meanwhile does not change."""
         entry = functors.get(self.functor)
         if traced and self.functor in traced:
             self.call, self._relation = SERVICES.watch_predicate(self, entry if entry is not None and entry.defined else None), None
@@ -76,7 +76,7 @@ class Predicate:
             self.call, self._relation = _undefined(self.functor), None
 
     def as_relation(self):
-        """The `Relation` whose rows are all that goals can be; ``None`` if there is more to them."""
+        """The `Relation` whose rows are all solutions of such goals; ``None`` if there are others."""
         if self._relation is False:
             self.compile()
         return self._relation
@@ -91,9 +91,9 @@ class Predicate:
 
 
 class Clause:
-    """A fact or rule: Lisp data of the ``head`` and of the list of ``goals``, and the group that it belongs to.
+    """A fact or rule: the ``head`` and the list of ``goals`` as Lisp data, and the name of its fact ``group``.
 
-    ``origin``: the user's code that made it, see ``terms/origins.py``.
+    ``origin`` is the user's code that made it, see ``terms/origins.py``.
     """
 
     __slots__ = ("head", "goals", "group", "origin")
@@ -103,17 +103,17 @@ class Clause:
 
     @property
     def position(self):
-        """(file, line, column) of the form that made it, or ``None``."""
+        """(file, line, column) of the form that made the clause, or ``None``."""
         return origins.position_of_origin(self.origin)
 
 
 class Functor:
-    """What is known of a functor.
+    """A functor, with its handler and clauses.
 
-    ``handler`` is a call function; ``native`` maps numbers of arguments (``None``: any) to call functions that stand for the
-    clauses of the built-in fact group ``native_group``; ``clauses`` are those of users, in order. A functor of a built-in group
+    ``handler`` is a call function. ``native`` maps numbers of arguments (``None``: any) to call functions that stand for the
+    clauses of the built-in fact group ``native_group``. ``clauses`` are those of users, in order. A functor of a built-in group
     without native facts is there to be extended: its goals just fail until users add clauses. ``compiler`` makes the call function
-    of the clauses, where a room knows a better way than ``compile_clauses``.
+    of the clauses, if a room knows a better way than ``compile_clauses``.
     """
 
     __slots__ = ("name", "handler", "native", "native_group", "clauses", "compiler")
@@ -125,6 +125,7 @@ class Functor:
 
     @property
     def defined(self):
+        """Whether it has clauses or a handler, or belongs to a built-in group."""
         return bool(self.clauses or self.handler) or self.native_group is not None
 
     def groups(self):
@@ -135,7 +136,7 @@ class Functor:
         return list(found)
 
     def code(self, arity):
-        """The call function for goals with ``arity`` arguments, and the `Relation` if they are rows of one."""
+        """The call function for goals with ``arity`` arguments, and the `Relation` if the clauses are rows of one."""
         native = self.native and (self.native.get(arity) or self.native.get(None) or _failing)
         predicate = find_predicate(self.name, arity)
         if self.compiler is not None:
@@ -154,7 +155,7 @@ _predicates: dict[tuple, Predicate] = {}
 
 
 def find_predicate(functor, arity):
-    """The `Predicate` for a functor and a number of arguments; there is one whether it is defined or not."""
+    """The `Predicate` for a functor and a number of arguments, whether the functor is defined or not."""
     found = _predicates.get((functor, arity))
     if found is None:
         found = _predicates[functor, arity] = Predicate(functor, arity)
@@ -162,7 +163,7 @@ def find_predicate(functor, arity):
 
 
 def functor_entry(name):
-    """The `Functor` of that name, made if need be."""
+    """The `Functor` of that name. It is made if there is none."""
     found = functors.get(name)
     if found is None:
         found = functors[name] = Functor(name)
@@ -180,7 +181,7 @@ def changed(name):
 
 
 def forget_all():
-    """Forget the compiled code of all functors, because other ones are traced now."""
+    """Forget the compiled code of all functors, because other functors are traced now."""
     version.value = next(_versions)
     for name in traced.constructs:
         for watcher in watchers:
@@ -191,11 +192,11 @@ def forget_all():
 
 _versions = itertools.count(1)
 version = Cell(0)
-"""Which changes have been made: another number after each, and another one in each image."""
+"""A number for the state of the database: a new one after each change, and another one in each image."""
 
 
 def valid_functor(name):
-    """A functor is a symbol, but neither ``nil`` nor a variable."""
+    """Whether ``name`` can be a functor: a symbol, but neither ``nil`` nor a variable."""
     return name is not None and is_symbol(name) and not variable(name)
 
 
@@ -206,7 +207,7 @@ def extended(name):
 
 
 def looked_up(name):
-    """Whether goals of a built-in that could be compiled in place must be looked up: users have clauses for it, or it is traced."""
+    """Whether goals of a built-in must be looked up, not compiled in place, because users have clauses for it or it is traced."""
     return extended(name) or name in traced
 
 
@@ -214,7 +215,7 @@ def looked_up(name):
 
 
 def arguments_of(goal):
-    """The argument terms of a goal; its end may be a variable that stands for a list."""
+    """The argument terms of a goal. The end of the goal may be a variable whose value is a list."""
     arguments, cell = [], deref(goal.cdr)
     while cell.__class__ is Cons:
         arguments.append(cell.car)
@@ -260,7 +261,7 @@ def _with_fallback(handler, clauses):
 
 
 def handled(m, step):
-    """The continuation of a goal with a fallback, whose choice point is at the height in ``step``: there is a solution, drop it."""
+    """The continuation of a goal with a fallback: there is a solution, so drop the choice point at the height in ``step``."""
     settle(m, step[2])
     return step[1]
 
@@ -270,7 +271,7 @@ def handled(m, step):
 
 @part
 class _Traced:
-    """What is watched. `Traced` is asked in each proof, so it has plain attributes."""
+    """The traced functors. Each proof asks `Traced`, so it has plain attributes."""
 
     @staticmethod
     def take():
@@ -290,7 +291,7 @@ class _Traced:
 
 @part
 class _Functors:
-    """What is known of functors. Modules hold a `Functor` and ask it, so it stays the same object in all images."""
+    """The functors. Modules refer to a `Functor`, so it is the same object in all images."""
 
     @staticmethod
     def take():
@@ -316,7 +317,7 @@ class _Functors:
 
 @part
 class _Code:
-    """The code that clauses compile to. The compiled code of other clauses holds a `Predicate`, so that stays the same object, too."""
+    """The compiled code of clauses. The code of other clauses refers to a `Predicate`, so that is the same object in all images, too."""
 
     @staticmethod
     def take():

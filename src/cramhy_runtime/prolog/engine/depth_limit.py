@@ -1,8 +1,8 @@
-"""What is said of a proof that goes deeper and deeper.
+"""The error of a proof that goes deeper and deeper.
 
-A proof needs no stack of Python, so a left recursion would go on until memory is gone. The machine counts the goals that wait, now
-and then, and where they are more than ``*prolog-depth-limit*`` the proof ends in an error, which is made here. It shows the clauses
-that the innermost of these goals belong to: those of one turn of the circle, if they go round in one.
+A proof does not use Python's stack, so a left recursion would go on until memory is full. From time to time the machine counts the goals
+that wait. If they are more than ``*prolog-depth-limit*``, the proof ends in the error of this module. It shows the clauses of the
+innermost of these goals. If they repeat, it shows the clauses of one turn.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from cramhy_runtime.ground.source_places import describe
 from .goal_text import show
 
 _SHOWN = 1000
-"""Continuations that are looked at for the clauses that come again and again."""
+"""The number of continuations that are searched for clauses that repeat."""
 _LINES = 6
 
 
 def too_deep(m, step, limit):
-    """The error of a proof that is deeper than ``limit``, with the clauses whose goals wait, the innermost first."""
+    """Signal the error of a proof that is deeper than ``limit``, with the clauses whose goals wait, the innermost first."""
     waiting, k = [], step
     while k is not None and len(waiting) < _SHOWN:
         clause = getattr(k[0], "clause", None)
@@ -53,7 +53,7 @@ def _told(waiting):
 
 
 def _cycle(items):
-    """The length of the shortest cycle with which ``items`` begins, of which there are three turns at least; else of all."""
+    """The length of the shortest cycle with which ``items`` begins, if it has three turns at least; otherwise the length of all."""
     for length in range(1, len(items) // 3 + 1):
         if all(items[i] is items[i + length] for i in range(2 * length)):
             return length

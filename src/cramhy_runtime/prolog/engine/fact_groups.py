@@ -27,7 +27,7 @@ _ARROW = sym("CRAM-PROLOG::<-")
 
 
 def _tell_fact(here):
-    """For an error in a definition: which of its clauses is meant, and where it stands."""
+    """A text for an error in a definition: which clause is wrong, and where it is."""
     if "fact" not in here:
         return None
     place = describe(position_of_origin(here["origin"]))
@@ -36,10 +36,11 @@ def _tell_fact(here):
 
 @circumstance(_tell_fact)
 def define_fact_group(name, extendable, facts, origins=()):
-    """Define the group ``name`` with ``facts``, a list of (head goal...); returns a list of (functor fact...).
+    """Define the group ``name`` with ``facts``, a list of (head goal...). Returns a list of (functor fact...).
 
-    ``origins``: for each fact which code made it, see ``terms/origins.py``. Warns when the group exists, and replaces it. Errors: an
-    invalid functor, or one that another group has and ``extendable`` does not list; then everything stays as it was, the old group too.
+    ``origins`` are the user's code that made each fact, see ``terms/origins.py``. If the group exists, it warns and replaces the group.
+    An invalid functor is an error, and so is a functor of another group that ``extendable`` does not list. After an error everything is
+    as before, and the old group too. Source: prolog.md 6.2.
     """
     if name in _groups:
         style_warn("Redefining prolog fact-group ~a.", name)
@@ -101,7 +102,7 @@ _came_with_us: dict = per_image({})
 
 
 def restore_fact_group(name):
-    """Give a built-in group that users have redefined back what it came with; ``nil`` when it is as it was.
+    """Undo the redefinition of a built-in group by users. Returns ``nil`` if it is unchanged. Another name is an error.
 
     Clauses that users added for its predicates in groups of their own stay.
     """
@@ -121,7 +122,7 @@ def restore_fact_group(name):
 
 
 def built_in_group(name, functor):
-    """Note that ``functor`` belongs to the built-in group ``name``; users extend it in groups that list it as extendable."""
+    """Note that ``functor`` belongs to the built-in group ``name``. Users extend it in groups that list it as extendable."""
     functor_entry(functor).native_group = name
     functors_of_group = _groups.setdefault(name, [])
     if functor not in functors_of_group:
@@ -129,7 +130,7 @@ def built_in_group(name, functor):
 
 
 def fact_outside_group(*fact):
-    """What ``<-`` does outside of a fact group."""
+    """``<-`` outside of a fact group: signal an error."""
     return error("Facts cannot be declared outside fact-groups.")
 
 

@@ -1,6 +1,6 @@
-"""What is said of a Lisp function that ended in an error when a goal called it: beside the original's text, the rule, its place, and why.
+"""The report of an error in a Lisp function that a goal called. It adds the rule, its place and the reason to the original's text.
 
-Most such errors come from a variable that has no value yet: the function gets its symbol then (prolog.md section 8, rule 2).
+Most such errors come from a variable that has no value yet: then the function gets its symbol (prolog.md section 8, rule 2).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _CALLS = {"function": sym("CRAM-PROLOG::LISP-FUN"), "predicate": sym("CRAM-PROLO
 
 
 def note_place(warning, m, kind, function, arguments, problem):
-    """Note on ``warning`` which rule called ``function``, which of the ``arguments`` are unset, and what helps against the ``problem``.
+    """Note on ``warning`` which rule called ``function``, which of the ``arguments`` are unset, and a hint about the ``problem``.
 
     ``kind`` is ``function`` or ``predicate``, ``m`` the proof.
     """
@@ -50,7 +50,7 @@ def note_place(warning, m, kind, function, arguments, problem):
 
 
 def _term(argument):
-    """The term that a Lisp function got ``argument`` for: a symbol that is a variable was one without a value."""
+    """The term of which ``argument`` of a Lisp function was made: a symbol that is a variable stands for one without a value."""
     if not variable(argument):
         return argument
     term = Var()

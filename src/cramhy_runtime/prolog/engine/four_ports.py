@@ -1,9 +1,9 @@
 """The four ports of a goal: it is called, it exits with a solution, it is asked again, it fails.
 
-Byrd's box model: what watches a proof, the tracer and the explainer, puts goals into boxes and is told when the proof passes a port.
-A box is entered with `enter`, which leaves a choice point below all of the goal's: to come back to it means that the goal has no
-(further) solution. A goal that exits without choice points of its own takes that one away, so a watched proof keeps no more
-than others; a goal whose choice points are cut away is not heard of again.
+This is Byrd's box model. The watchers of a proof, the tracer and the explainer, put goals into boxes and are told when the proof passes
+a port. `enter` puts a goal into a box and leaves a choice point below those of the goal: when the proof comes back to it, the goal has
+no (further) solution. A goal that exits without choice points of its own removes that one, so a watched proof keeps no more choice
+points than others. A goal whose choice points are cut away passes no port any more.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from .machine import fail, give_up
 
 
 class Box:
-    """A goal that is watched. A watcher overrides what it wants to hear of; ``m`` is the machine, its bindings are those of now."""
+    """A goal that is watched. A watcher overrides the methods for the ports that it needs. ``m`` is the machine, with its bindings."""
 
     __slots__ = ()
 
     def exited(self, m, last):
-        """There is a solution; ``last`` when it is known that there is no other."""
+        """There is a solution. ``last`` is true if it is known to be the last one."""
 
     def redone(self, m):
         """Another solution is asked for."""
 
     def failed(self, m):
-        """There is no (further) solution; the bindings are those of the call again."""
+        """There is no (further) solution. The bindings are those of the call again."""
 
 
 def enter(m, box, k):
-    """Watch a goal that is about to be proved: the continuation to prove it with, where its own would be ``k``."""
+    """Watch a goal that is about to be proved with the continuation ``k``. Returns the continuation to use instead."""
     height = len(m.choices)
     m.choices.append((_failed, None, len(m.trail), box))
     return (_exited, k, box, height)

@@ -1,7 +1,7 @@
 """Goals and values as the tracer and the explainer show them: on one line, short, variables by the names that the user gave them.
 
-A term may be huge, endless or still to be computed, so what is shown of it is bounded while it is read, and nothing is forced. Two
-variables of one name, which come from two uses of a clause, are told apart by a number: ``?x`` and ``?x-2``.
+A term may be huge, endless or not computed yet. So only a part of it is read for the text, and lazy lists are not forced. A number
+distinguishes two variables of the same name, which come from two uses of a clause: ``?x`` and ``?x-2``.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from .database import functors
 from ..terms.terms import UNSET, TermTail, Var
 
 MOST_ELEMENTS = 12
-"""So many elements of a list are shown."""
+"""The text shows so many elements of a list."""
 MOST_DEPTH = 6
-"""So deep are lists in lists shown."""
+"""The text shows so many levels of lists in lists."""
 MOST_CHARACTERS = 240
-"""So long is a goal on a line."""
+"""The text of a goal has so many characters at most."""
 _MORE, _ANYTHING = Symbol("..."), Symbol("?_")
 _BREAK = re.compile(r"\s*\n\s*")
 
@@ -41,6 +41,7 @@ class Names:
         self.symbols, self.counts = {}, {}
 
     def of(self, variable):
+        """The symbol that stands for ``variable``."""
         symbol = self.symbols.get(variable)
         if symbol is None:
             written = variable.written or variable.name
@@ -52,7 +53,7 @@ class Names:
 
 
 def readable(term, names=None, depth=MOST_DEPTH):
-    """Lisp data to be printed for ``term``: values in place of variables, no more of it than is shown."""
+    """Lisp data to be printed for ``term``: values in place of variables, and only the part that is shown."""
     names = names or Names()
     while term.__class__ is Var:
         if term.ref is UNSET:
@@ -85,7 +86,7 @@ def readable(term, names=None, depth=MOST_DEPTH):
 
 
 def line(data, case=None):
-    """``data`` printed on one line, at most `MOST_CHARACTERS` long; ``case``: ``"DOWNCASE"`` or as the user has set it."""
+    """``data`` printed on one line of at most `MOST_CHARACTERS`. ``case`` is ``"DOWNCASE"`` or, for the user's setting, ``None``."""
     case = keyword(case) if case else PRINT_CASE.value
     with binding(PRINT_PRETTY, None, PRINT_GENSYM, None, PRINT_CASE, case, PRINT_CIRCLE, None, PRINT_READABLY, None):
         text = handler_case([(Error, lambda problem: f"#<{type(data).__name__} that cannot be printed>")], lambda: prin1_to_string(data))
@@ -94,18 +95,18 @@ def line(data, case=None):
 
 
 def show(term, names=None):
-    """``term`` as text for a student: small letters, as one types them."""
+    """``term`` as text for a student, in small letters."""
     return line(readable(term, names), "DOWNCASE")
 
 
 def clause_name(clause, case="DOWNCASE"):
-    """``clause 2 of turtle-motions at motions.lisp:14:3``: its number among those of its functor in its group, and where it stands."""
+    """``clause 2 of turtle-motions at motions.lisp:14:3``: its number among the clauses of its functor in its group, and its place."""
     place = describe(getattr(clause, "position", None))
     return f"clause {clause_number(clause)} of {line(clause.group, case)}" + (f" at {place}" if place else "")
 
 
 def clause_number(clause):
-    """The number of a clause, from 1, among those of its functor in its group."""
+    """The number of a clause, from 1, among the clauses of its functor in its group, as text."""
     entry = functors.get(clause.head.car)
     clauses = [other for other in entry.clauses if other.group is clause.group] if entry is not None else []
     return str(clauses.index(clause) + 1) if clause in clauses else "?"

@@ -1,12 +1,12 @@
 """Joins: queries whose goals are all rows of relations become loops within loops.
 
-``(and (edge ?x ?y) (edge ?y ?z))`` needs no machine: for each row of the first goal the rows of the second that fit are walked.
-When a query of the same shape is asked again, a Python generator is written for it: a loop for each goal over what the table for
-its known arguments has (``relations.py``), and in the innermost one the binding list of the solution. Queries have the same shape
-when they differ only in their constants, which the generator gets.
+``(and (edge ?x ?y) (edge ?y ?z))`` needs no machine: for each row of the first goal, a loop goes through the rows of the second that fit.
+When a query of the same shape is asked again, a Python generator is written for it. It has a loop for each goal over the rows in the
+table for its known arguments (``relations.py``), and the innermost loop makes the binding list of the solution. Queries have the same
+shape if they differ only in their constants, which the generator gets.
 
-What a conjunction may see of changes that are made between two of its solutions is what the machine would see: a goal that is
-entered anew sees them, one that is walked does not.
+If facts change between two solutions, a conjunction sees the changes as the machine would: a goal that is entered anew sees them, a goal
+whose rows are being gone through does not.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ _AND = sym("AND")
 _NEXT_GOAL, _CONSTANT = object(), object()
 _PLAIN = frozenset([Symbol, Keyword, int, str])
 _PAUSE = object()
-"""What a generator gives instead of a solution when it has walked many rows, so that others get their turn."""
+"""A generator yields this instead of a solution after many rows, so that other tasks get their turn."""
 _ROWS = 1000
-"""Rows between two pauses."""
+"""The number of rows between two pauses."""
 _MOST = 500
-"""Shapes that are remembered."""
+"""The number of shapes that are remembered."""
 _joins: dict = {}
 
 
@@ -88,14 +88,14 @@ def _describe(arguments, shape, constants):
 
 
 class Join:
-    """The queries of one shape. ``generator(constants)`` gives their solutions; ``None`` while there is no need or no way for it."""
+    """The queries of one shape. ``generator(constants)`` yields their solutions; it is ``None`` if it is not needed or not possible."""
 
     def __init__(self, query):
         self.goals = list(query.cdr) if query.car is _AND else [query]
         self.version = self.generator = None
 
     def revise(self):
-        """See whether all goals are rows of relations now, and write the generator if need be; whether there is one."""
+        """Look whether all goals are rows of relations now, and write the generator if necessary. Returns whether there is one."""
         self.version = database.version.value
         if not all(self._is_relation(goal) for goal in self.goals):
             self.generator = None
@@ -113,7 +113,7 @@ class Join:
 
 
 class Solutions:
-    """The solutions that a generator gives, as a lazy list."""
+    """The solutions of a generator, as a lazy list."""
 
     __slots__ = ("generator", "found")
 
@@ -122,7 +122,7 @@ class Solutions:
         self.found = []
 
     def lazy_list(self):
-        """The lazy list of those that are left, its first element computed now."""
+        """The lazy list of the solutions that are left. Its first element is computed now."""
         if self.found:  # the walk through all of them was interrupted
             return Cons(self.found.pop(0), tail(self.lazy_list, self.remaining))
         for solution in self.generator:
@@ -132,9 +132,9 @@ class Solutions:
         return None
 
     def remaining(self):
-        """All that are left, as a Python list.
+        """All solutions that are left, as a Python list.
 
-        Garbage is not looked for between two pauses: everything that is made there is kept.
+        The garbage collector is off between two pauses, since everything that is made there is kept.
         """
         append, collecting = self.found.append, gc.isenabled()
         try:
@@ -154,13 +154,14 @@ class Solutions:
 
 
 def pause():
+    """Let other tasks run if this one has used up its turn."""
     budget.left -= _ROWS
     if budget.left < 0:
         kernel.checkpoint()
 
 
 class _Proved:
-    """Stands for the table of a predicate that is no relation any more: its solutions are proved for each key."""
+    """Stands for the table of a predicate that is not a relation any more: its solutions are proved for each key."""
 
     def __init__(self, predicate, mask):
         self.predicate, self.known = predicate, [i for i in range(predicate.arity) if mask >> i & 1]
@@ -179,7 +180,7 @@ class _Proved:
 
 
 def table(predicate, mask):
-    """The table of ``predicate`` for goals of which the arguments in ``mask`` are known, as it is now."""
+    """The present table of ``predicate`` for goals whose arguments in ``mask`` are known."""
     relation = predicate.as_relation()
     return relation.table(mask) if relation is not None and relation.exact else _Proved(predicate, mask)
 

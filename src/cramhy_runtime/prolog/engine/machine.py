@@ -5,13 +5,13 @@ next step. A continuation is a step too: what to do when the goal has succeeded.
 the proof is, and a last call leaves nothing behind.
 
 A *choice point* is a step as well, ``(function, continuation, trail height, *arguments)``, on a stack. To fail means to unset the
-variables that were set since the newest one was made, and to go on with it; its function takes it off the stack when it has nothing
-more to try after this. Choice points that count through the rows of a table are lists instead of tuples, and change.
-Cut forgets the choice points above a height.
+variables that were set since the newest choice point was made, and to go on with it. Its function takes it off the stack when this is
+its last alternative. Choice points that count through the rows of a table are lists instead of tuples, and change. Cut forgets the
+choice points above a height.
 
-A machine holds all state of its proof. A Lisp function called in the middle may park its task, or ask other queries: these
-have machines of their own. The machine stops after each solution and goes on when the next one is wanted, so solutions are lazy;
-when all that are left are wanted, it collects them without stopping (`drain`).
+A machine holds all state of its proof. A Lisp function called in the middle may park its task, or ask other queries, which have machines
+of their own. The machine stops after each solution and goes on when the next one is asked for, so solutions are lazy. `drain` collects
+all that are left without stopping.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from ..symbols import PROLOG
 from ..terms.terms import UNSET, Var, undo, unify
 
 BATCH = range(50)
-"""Steps between two looks at what is left of the task's slice; the kernel counts each step as a checkpoint."""
+"""The machine looks at the rest of the task's slice after so many steps. The kernel counts each step as a checkpoint."""
 _TIDY = 5_000
-"""Entries of a trail that are worth tidying."""
+"""A trail is tidied when it has so many entries."""
 DEFAULT_DEPTH = 3_000_000
-"""Goals that may wait for one another. A continuation needs 100 to 300 bytes, so this is half a gigabyte."""
+"""So many goals may wait for one another. A continuation needs 100 to 300 bytes, so this is half a gigabyte."""
 DEPTH_LIMIT = special(PROLOG.intern("*PROLOG-DEPTH-LIMIT*"), DEFAULT_DEPTH)
 
 
 class _Kept:
-    """Stands among weak references for an entry of the trail that is no plain variable, and stays."""
+    """Stands among weak references for an entry of the trail that is not a plain variable. Such an entry stays."""
 
     __slots__ = ("entry",)
 
@@ -64,7 +64,7 @@ class Machine:
         self.goes_on = None  # the continuation of the newest goal that called Lisp, or that nobody has defined: for messages
 
     def prove(self, step):
-        """Prepare to prove what ``step`` does; its continuation must be `SOLVED`."""
+        """Prepare a proof that begins with ``step``, whose last continuation must be `SOLVED`. Returns the machine."""
         self.start = step
         return self
 
@@ -75,13 +75,16 @@ class Machine:
         return machine
 
     def warned_of(self):
-        """A set of what was warned of in this proof and those inside of it: a warning that is repeated tells nothing."""
+        """A set of the warnings given in this proof and those inside of it, so that none is repeated."""
         if self.warned is None:
             self.warned = set()
         return self.warned
 
     def unify(self, *sides):
-        """Make terms the same, two by two: ``unify(a, b, c, d)`` unifies a with b and c with d. All or nothing."""
+        """Make terms the same, two by two: ``unify(a, b, c, d)`` unifies a with b and c with d.
+
+        Returns whether that is possible. If not, no variable is set.
+        """
         trail = self.trail
         height = len(trail)
         for index in range(0, len(sides), 2):
@@ -91,7 +94,7 @@ class Machine:
         return True
 
     def next_solution(self):
-        """Go on to the next solution: True, and variables have its values; False, and there is none."""
+        """Go on to the next solution. Returns True if there is one; then the variables have its values."""
         step = self.start
         self.found = False
         budget.left -= 1
@@ -112,14 +115,14 @@ class Machine:
 
     @staticmethod
     def watch(around):
-        """Let ``around(machine, next_solution)`` do the work of `next_solution` from now on.
+        """Let all machines call ``around(machine, next_solution)`` in place of `next_solution` from now on.
 
-        ``None`` puts the method itself back, so that tracing costs nothing while nothing is traced.
+        ``None`` puts the method itself back, so that tracing costs nothing while no goal is traced.
         """
         Machine.next_solution = _next_solution if around is None else lambda machine: around(machine, _next_solution)
 
     def drain(self, collect):
-        """Find all solutions that are left; ``collect`` is called at each, with the variables set."""
+        """Find all solutions that are left, and call ``collect`` at each, with the variables set."""
         self.collect = collect
         try:
             self.next_solution()
@@ -127,7 +130,7 @@ class Machine:
             self.collect = None
 
     def _rest(self, step):
-        """What is done now and then between two steps: give way to others, forget what nobody needs, look how deep the proof is."""
+        """From time to time between two steps: let other tasks run, tidy the trail, look how deep the proof is."""
         if not self.choices:
             self.trail.clear()
         elif len(self.trail) > self.until_tidy:
@@ -140,9 +143,9 @@ class Machine:
             kernel.checkpoint()
 
     def _depth(self, step):
-        """The number of goals that wait for ``step``, or of choice points if these are more; an error if it is beyond the limit.
+        """The number of goals that wait for ``step``, or of choice points if these are more. Beyond the limit it is an error.
 
-        A goal waits as a continuation of the step. They are counted so seldom that it costs a step some nanoseconds.
+        A goal waits as a continuation of the step. They are counted so seldom that a step costs only some nanoseconds more.
         """
         limit = DEPTH_LIMIT.value
         if limit is None:
@@ -159,9 +162,9 @@ class Machine:
         return too_deep(self, step, limit)
 
     def _tidy(self):
-        """Forget trail entries, above the newest choice point, for variables that only the trail knows: nobody can see them unbound.
+        """Forget trail entries, above the newest choice point, for variables that only the trail refers to: they cannot be seen any more.
 
-        The trail lets go of them for a moment. Which of them live on is what others still know.
+        The trail drops its references for a moment. The variables that live on are referred to elsewhere.
         """
         trail, height = self.trail, self.choices[-1][2]
         watched = [ref(entry) if entry.__class__ is Var else _Kept(entry) for entry in islice(trail, height, None)]
@@ -195,7 +198,7 @@ SOLVED = (_solved, None)
 
 
 def fail(m):
-    """Go back to the newest choice point: its step, or ``None`` when there is none left."""
+    """Go back to the newest choice point. Returns its step, or ``None`` if there is none left."""
     choices = m.choices
     if not choices:
         return None
@@ -208,13 +211,13 @@ def fail(m):
 
 
 def give_up(m, step):
-    """The function of a choice point that has nothing to try."""
+    """The function of a choice point without alternatives."""
     m.choices.pop()
     return fail(m)
 
 
 def proceed(m, step):
-    """The function of a choice point that goes on with its continuation, when all that was tried after it has failed."""
+    """The function of a choice point that goes on with its continuation, when everything tried after it has failed."""
     m.choices.pop()
     return step[1]
 
@@ -226,7 +229,7 @@ def call_again(m, step):
 
 
 def settle(m, height):
-    """Make the choice point at ``height`` one that has nothing to try, whatever was made after it."""
+    """Take the alternatives from the choice point at ``height``. Later choice points stay."""
     choices = m.choices
     if len(choices) == height + 1:
         choices.pop()
@@ -252,7 +255,7 @@ def _resume(m, step):
 
 
 def retry_iterator(m, k, iterator):
-    """Go on with ``k`` for each item of ``iterator``, which sets variables; on backtracking the next item is asked for."""
+    """Go on with ``k`` for each item of ``iterator``, which sets variables. Backtracking asks for the next item."""
     trail = m.trail
     height = len(trail)
     for _ in iterator:

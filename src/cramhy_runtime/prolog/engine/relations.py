@@ -1,10 +1,11 @@
 """Relations: predicates that consist of ground facts only, kept as tables.
 
-A goal says which arguments it knows. For each such combination a table from the known values to rows is made when it is first
-asked for; then answering means to walk the rows that fit and set the unknown arguments. The order of answers is that of the facts.
+Some arguments of a goal are known. For each combination of known arguments, a table from the known values to rows is made when it is
+first needed. To answer a goal, the relation goes through the rows that fit and sets the unknown arguments. Answers come in the order of
+the facts.
 
-The call function of a relation is written for its number of arguments, as a tree of tests which of them are known. Lists among the
-values, and a variable that is given twice, go the general way: rows that may fit, the lists found by their first symbol, are unified.
+The call function of a relation is written for its number of arguments: it is a tree of tests for known arguments. Lists among the
+values, and a variable that occurs twice, are handled in general: rows that may fit (lists are found by their first symbol) are unified.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from ..terms.terms import UNSET, Var, deref, unify
 
 _BY_VALUE = frozenset([int, str, float, DoubleFloat])
 _WRITTEN_OUT = 4
-"""The most arguments for which a call function is written."""
+"""A call function is written for so many arguments at most."""
 
 
 def index_key(atom):
-    """The key of ``atom`` in an index, equal for atoms that are `same_atom`; ``NotImplemented`` for what is compared otherwise."""
+    """The key of ``atom`` in an index, equal for atoms that are `same_atom`. ``NotImplemented`` for objects that are compared otherwise."""
     kind = atom.__class__
     if kind is Symbol or kind is Keyword or atom is None:
         return atom
@@ -30,7 +31,7 @@ def index_key(atom):
 
 
 def column_key(term):
-    """As `index_key`; of a list that begins with a symbol the key that all such lists have."""
+    """As `index_key`. Lists that begin with the same symbol have the same key."""
     if term.__class__ is Cons:
         first = deref(term.car)
         return (first,) if first.__class__ is Symbol or first.__class__ is Keyword else NotImplemented
@@ -38,7 +39,7 @@ def column_key(term):
 
 
 class Relation:
-    """The rows of a relation and the tables made of them. ``exact``: every value is an atom that has a key of its own."""
+    """The rows of a relation and the tables made of them. ``exact`` says that every value is an atom with a key of its own."""
 
     def __init__(self, rows):
         self.rows = rows
@@ -50,9 +51,9 @@ class Relation:
         self._tables = {}
 
     def table(self, mask, kept=None):
-        """Known values → for each row that fits, the values of the columns ``kept``; the bare value when there is one.
+        """A dict: known values → for each row that fits, a tuple with the values of the columns ``kept`` (default: the unknown ones).
 
-        ``mask``: bit i is set when argument i is known; when there is one, its bare value is the key. ``kept``: by default the others.
+        Bit i of ``mask`` is set if argument i is known. A single known or kept value stands without a tuple.
         """
         table = self._tables.get((mask, kept))
         if table is None:
@@ -259,7 +260,7 @@ def _retry(m, step):
 
 
 def _unify_rows(m, k, rows, terms, i):
-    """The general case: an argument is a list, or a variable occurs twice. No choice point is left when only one row fits."""
+    """The general case: an argument is a list, or a variable occurs twice. After the last row no choice point is left."""
     trail = m.trail
     height = len(trail)
     count = len(rows)

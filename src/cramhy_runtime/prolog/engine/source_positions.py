@@ -1,7 +1,7 @@
 """Where clauses and goals stand in the user's text, so that messages can name the rule and the place.
 
-A clause knows the form that made it (see ``terms/origins.py``). Goals are data inside of that form, so their places are found by reading it
-again from its text, when a message needs them.
+A clause knows the form that made it (see ``terms/origins.py``). Goals are data inside of that form. When a message needs the place of a
+goal, the form is read again from its text.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _version = Cell(-1)
 
 
 def _indexed():
-    """Functor → the goals with it that stand in clauses: (clause, path to the goal in the form of the clause, goal)."""
+    """Functor → its goals in clauses: (clause, path to the goal in the form of the clause, goal)."""
     if _version.value != database.version.value:
         _version.value = database.version.value
         _goals.clear()
@@ -51,7 +51,7 @@ def _enter(clause, form, path):
 
 
 def written_goals(goal):
-    """(clause, path, goal as it is written) of the goals in clauses that the term ``goal`` may be an instance of."""
+    """The goals in clauses of which the term ``goal`` may be an instance: (clause, path, goal as it is written)."""
     found = []
     for clause, path, written in _indexed().get(goal.car, ()):
         trail = []
@@ -62,7 +62,7 @@ def written_goals(goal):
 
 
 def goal_position(clause, path):
-    """(file, line, column) of a goal of ``clause``; of the clause where its text cannot be read; ``None`` where nobody knows."""
+    """(file, line, column) of a goal of ``clause``, or of the clause if its text cannot be read, or ``None`` if the place is unknown."""
     position = clause.position
     if position is None or position[0].endswith(".hy"):
         return position
@@ -77,7 +77,7 @@ def goal_position(clause, path):
 
 
 def _read_again(filename, line, column=None):
-    """The form that begins there, read into a package that nobody else sees, and the places of its parts."""
+    """The form that begins there, read into a separate package, and the places of its parts."""
     lines = linecache.getlines(filename)[line - 1 :]
     if not lines or not column:
         return None, {}
@@ -86,9 +86,9 @@ def _read_again(filename, line, column=None):
 
 
 def running(m):
-    """(clause, functor, waiting clauses) of the code that the proof ``m`` runs; the first two are ``None`` where the code does not tell.
+    """(clause, functor, waiting clauses) of the code that the proof ``m`` runs. The first two are ``None`` if the code does not say.
 
-    The functor is known where code is for several clauses. The waiting clauses are those with goals left to prove.
+    The functor is known if the code is for several clauses. The waiting clauses are those with goals left to prove.
     """
     clause = functor = None
     frame = sys._getframe(1)
@@ -106,7 +106,7 @@ def running(m):
 
 
 def _tell_clause(found):
-    """For an error in a proof: which clause was tried, as far as the step that was done tells."""
+    """A text for an error in a proof: which clause was tried, if the step shows it."""
     step = found.get("step") or (None, None)
     function = step[0]
     clause = getattr(function, "clause", None)
@@ -142,11 +142,11 @@ def _mentions(query, goal):
 
 
 class Place:
-    """Where the term ``goal`` is written that the proof ``m`` is about.
+    """The place in the text of the term ``goal``, a goal of the proof ``m``.
 
-    ``position``: (file, line, column), or ``None``; ``clauses``: those that it may be of, none for a goal of the query; ``written``: the
-    goal as it stands there. The last goal of a clause runs in place of its clause, so it is not known whose it is: with ``everywhere`` all
-    clauses are looked at, unless the query has such a goal itself.
+    ``position`` is (file, line, column), or ``None``. ``clauses`` are those to which it may belong, none for a goal of the query.
+    ``written`` is the goal as it is written there. The last goal of a clause runs in place of its clause, so its clause is not known: with
+    ``everywhere`` all clauses are searched, unless the query has such a goal itself.
     """
 
     def __init__(self, m, goal, everywhere=False):
@@ -168,12 +168,12 @@ class Place:
 
     @property
     def where(self):
-        """``at family.lisp:14:3``, or ``None`` for what was typed a moment ago."""
+        """``at family.lisp:14:3``, or ``None`` for a goal that was typed at the prompt."""
         place = describe(self.position)
         return None if not place or not self.clauses and self.position[0].startswith("<repl") else f"at {place}"
 
     def rule(self, words):
-        """``words`` and the clause or clauses: ``It is a goal of clause 2 of family.``; ``None`` for a goal of the query itself."""
+        """``words`` and the clauses: ``It is a goal of clause 2 of family.`` It is ``None`` for a goal of the query itself."""
         if not self.clauses:
             return None
         names = [f"clause {clause_number(clause)} of {show(clause.group)}" for clause in self.clauses[:_SHOWN]]

@@ -1,11 +1,11 @@
-"""A machine that remembers its proof: which clauses were tried for each goal, how far they got, and what they were about then.
+"""A machine that remembers its proof: the clauses that were tried for each goal, how far they got, and the values at that point.
 
-It proves goals from the clauses as they are written, not from the code that they compile to, with the trail, the choice points and the
-control constructs of every other machine; so it finds the same solutions in the same order, and calls the same Lisp functions.
-Built-in predicates run as they are. What it remembers is read by ``explanations.py``.
+It proves goals from the clauses as they are written, not from their compiled code. It uses the trail, the choice points and the control
+constructs of every other machine, so it finds the same solutions in the same order and calls the same Lisp functions. Built-in
+predicates run as they are. ``explanations.py`` reads the record.
 
-Two things are different. The proof is given up after a number of goals, since a proof that goes on for ever wants explaining most.
-And a *dry* proof calls nothing that might do something in the world: such a goal stops its clause, and is marked.
+Two things are different. The proof is given up after a number of goals, since endless proofs need an explanation most. And a *dry* proof
+makes no calls that might change the world: such a goal stops its clause, and is marked.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ AND = sym("AND")
 IF, SOFT_IF, FORALL, FAIL = (sym("CRAM-PROLOG::" + name) for name in ("->", "*->", "FORALL", "FAIL"))
 
 _MOST_UNLIKE = 500
-"""So many clauses whose heads do not match are remembered of a goal."""
+"""So many clauses whose heads do not match are remembered for a goal."""
 
 
 class Attempt:
     """A clause that was tried for a goal, or the goals of a conjunction: how far the proof got in it.
 
-    ``mismatch`` is (number of the argument from 1, what the clause has there, what the goal has), ``(0, ...)`` when the numbers of
-    arguments differ, and ``None`` when the head matched. ``boxes`` holds for each goal of the body the boxes it was proved in;
-    ``live`` the one of each that is part of the proof now. ``reached`` counts the goals that succeeded at least once before the one
-    that never did.
+    ``mismatch`` is (number of the argument from 1, the term of the clause, the term of the goal), ``(0, ...)`` if the numbers of
+    arguments differ, and ``None`` if the head matched. ``boxes`` has for each goal of the body the boxes in which it was proved, and
+    ``live`` has the box of each that is part of the proof now. ``reached`` counts the goals that succeeded at least once, before the
+    first that never did.
     """
 
     __slots__ = ("clause", "goals", "variables", "mismatch", "boxes", "live", "reached")
@@ -49,14 +49,14 @@ class Attempt:
 
     @property
     def culprit(self):
-        """The box of the goal that never succeeded, where it came furthest; ``None`` when every goal did."""
+        """The box in which the goal that never succeeded came furthest, or ``None`` if every goal succeeded."""
         if self.mismatch is not None or self.reached < 0:
             return None
         last = self.boxes[self.reached]
         return None if any(box.exits for box in last) else max(last, key=Goal.score)
 
     def score(self):
-        """How far the proof got here, to be compared with other attempts."""
+        """How far the proof got here, as a tuple to compare with other attempts."""
         if self.mismatch is not None:
             return (-1, self.mismatch[0])
         culprit = self.culprit
@@ -66,13 +66,14 @@ class Attempt:
 
 
 class Goal(ports.Box):
-    """A goal that was called, its box, and all that was tried for it.
+    """The box of a goal that was called, with everything that was tried for it.
 
-    ``shown`` is the goal as it was called, to be printed, and ``values`` the variables of its clause that had values then, as pairs;
-    ``attempts`` the clauses tried; ``inner`` the boxes inside of a control construct; ``exits`` how often it succeeded; ``state`` one of
-    called, exited, failed. ``reason`` says why a built-in failed, and ``near`` from 0 to 1 how nearly it did not. ``trouble`` is
-    ``undefined``, ``empty`` when a predicate has no clauses, or ``dry`` for a goal that was not run. ``unlike`` counts the clauses whose
-    heads do not match; of very many only those are kept that agree in more arguments, ``furthest`` being the first other one.
+    ``shown`` is the goal as it was called, to be printed. ``values`` are pairs, the variables of its clause that had values then.
+    ``attempts`` are the clauses tried, ``inner`` the boxes inside of a control construct, ``exits`` the number of its successes, and
+    ``state`` is called, exited or failed. ``reason`` says why a built-in failed, and ``near``, from 0 to 1, how close it was to success.
+    ``trouble`` is ``undefined``, ``empty`` if a predicate has no clauses, or ``dry`` for a goal that was not run. ``unlike`` counts the
+    clauses whose heads do not match. If there are very many, only those are kept that agree in more arguments than before;
+    ``furthest`` is the number of the argument that differs in the best of them.
     """
 
     __slots__ = (
@@ -100,7 +101,7 @@ class Goal(ports.Box):
 
     @property
     def tried(self):
-        """How many clauses were tried."""
+        """The number of clauses that were tried."""
         return self.unlike + sum(attempt.mismatch is None for attempt in self.attempts)
 
     @property
@@ -140,7 +141,7 @@ class Goal(ports.Box):
 
     @property
     def culprit(self):
-        """Of a control construct that failed, the box inside that tells why."""
+        """The box inside of a failed control construct that shows why it failed, or ``None``."""
         if self.functor is FORALL:  # it is proved as (not (and condition (not action)))
             return self.inner[0].attempts[-1].boxes[1][-1].inner[-1] if self.inner and self.inner[0].exits else None
         never = [box for box in self.inner if not box.exits and box.functor is not FAIL]
@@ -152,7 +153,7 @@ class Goal(ports.Box):
 
 
 class Explaining(Machine):
-    """A proof that is remembered. ``root`` is the box of its goal, ``stopped`` whether it was given up after ``limit`` goals."""
+    """A machine whose proof is remembered in ``record``, a `Record`. ``box`` is the goal that it proves now."""
 
     __slots__ = ("record", "box")
 
@@ -237,7 +238,7 @@ class Explaining(Machine):
 
 
 class Record:
-    """What is remembered of a proof, and when it ends."""
+    """The record of a proof. ``root`` is the box of its goal, and ``stopped`` the box in which it was given up, after ``limit`` goals."""
 
     def __init__(self, limit, dry):
         self.limit, self.dry = limit, dry
@@ -245,7 +246,7 @@ class Record:
 
 
 LISP_CALLS = {functor: functors[functor].handler for functor in (reasons.LISP_FUN, reasons.LISP_PRED)}
-"""The handlers of the calls of Lisp; who watches makes these calls itself, to tell what came of them."""
+"""The handlers of the calls of Lisp. Watchers of a proof make these calls themselves, to report the results."""
 
 
 def start(goal, limit, dry=False):
@@ -316,7 +317,7 @@ _ATOMS = frozenset([Symbol, Keyword, int, str])
 
 
 def _other_constant(patterns, arguments):
-    """The mismatch of a head and a goal with different constants at the first place, which is seen without unifying."""
+    """The mismatch of a head and a goal whose first arguments are different constants, found without unifying."""
     if patterns.__class__ is not Cons or not arguments:
         return None
     wanted, given = patterns.car, deref(arguments[0])
@@ -340,7 +341,7 @@ def _proper_length(cell):
 
 
 def _match(patterns, arguments, trail):
-    """Unify the arguments of a clause's head with those of the goal: ``None``, or where they differ first (see `Attempt`)."""
+    """Unify the arguments of a clause's head with those of the goal. Returns ``None``, or the first mismatch (see `Attempt`)."""
     given = len(arguments)
     cell, number = patterns, 0
     while cell.__class__ is Cons and number <= given:

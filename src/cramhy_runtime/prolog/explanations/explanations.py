@@ -1,9 +1,9 @@
-"""``(explain goal)``: why a goal holds, or why it does not, told for a student.
+"""``(explain goal)``: an explanation for a student of why a goal holds, or why it does not.
 
-A goal that fails has mostly failed in many ways: each clause of its predicate was tried and stopped somewhere. The one that came
-furthest is told with its goals, which of them hold, the first that never did, what the variables were then, and so on into that goal,
-down to the built-in or the missing fact at the bottom of it. The other clauses get a line each. Of a goal that holds the clauses are
-told that prove it.
+A goal that fails has mostly failed in many ways: each clause of its predicate was tried and stopped somewhere. The text shows the clause
+that came furthest: the goals that hold, the first that never did, and the values of the variables then. It goes on into that goal, down
+to the built-in or the missing fact at the bottom. The other clauses get a line each. For a goal that holds, the text shows the clauses
+that prove it.
 
 From Python `explain` returns an `Explanation`, whose ``str`` is that text; in Lisp the text is printed.
 """
@@ -28,22 +28,22 @@ if TYPE_CHECKING:
     from ..engine.database import Clause
 
 LIMIT = 10_000
-"""So many goals are proved before a proof is taken for endless."""
+"""A proof is given up as endless after so many goals."""
 _MOST_OTHERS, _MOST_DEPTH, _MOST_VALUES, _MOST_LINES, _ENDS = 8, 6, 6, 40, 4
 _NOT, EXPLAIN = sym("NOT"), sym("CRAM-PROLOG::EXPLAIN")
 _FIRST_WORDS = "there it none nobody the one what no element".split()
 
 _goal_makers = []
 to_explain = []
-"""What ``(explain)`` explains: the last thing that an error message told to be unproved; at most one."""
+"""The thing that ``(explain)`` explains: the one that the last such error message was about; a list with at most one element."""
 
 
 class Explanation:
-    """What came of a proof, and why. ``str`` of it is the text for the user.
+    """The outcome of a proof, and the reasons. ``str`` of it is the text for the user.
 
-    ``outcome`` is ``"holds"``, ``"fails"``, ``"given up"`` (after so many goals) or ``"error"``; ``bindings`` a dict of the goal's
-    variables when it holds; ``clause`` the `Clause` that proves it, or that came furthest; ``goal`` and ``reason`` the text of the goal
-    at the bottom of the failure and why it fails; ``problem`` the condition that ended the proof.
+    ``outcome`` is ``"holds"``, ``"fails"``, ``"given up"`` (after too many goals) or ``"error"``. ``bindings`` is a dict of the goal's
+    variables if it holds. ``clause`` is the `Clause` that proves it, or that came furthest. ``goal`` is the text of the goal at the
+    bottom of the failure, and ``reason`` says why that one fails. ``problem`` is the condition that ended the proof.
     """
 
     def __init__(
@@ -73,13 +73,14 @@ class Explanation:
 
     @property
     def holds(self) -> bool:
+        """Whether the goal has a solution."""
         return self.outcome == "holds"
 
     def __str__(self) -> str:
         return self.text
 
     def hint(self) -> str:
-        """The text for an error that tells the goal itself: the clause that came furthest, and those that came as far."""
+        """The text for an error that itself names the goal: the clause that came furthest, and those that came as far."""
         lines = self.text.splitlines()[1:]
         if self.clause is not None and len(self.root.attempts) > 1:
             best = _furthest(self.root)
@@ -92,9 +93,10 @@ class Explanation:
 
 
 def explain(goal: object, limit: int = LIMIT, dry: bool = False) -> Explanation:
-    """The `Explanation` of ``goal``: Lisp data, quoted as for ``prolog``, or something with a goal of its own, such as a designator.
+    """The `Explanation` of ``goal``: Lisp data, quoted as for ``prolog``, or an object with a goal, such as a designator.
 
-    limit: the number of goals after which the proof is given up. dry: whether to leave out goals that might do something.
+    limit: the number of goals after which the proof is given up, 1 or more. dry: whether to leave out goals that might change
+    something. Another goal or limit is an error.
     """
     goal = goal_for(goal)
     if limit.__class__ is not int or limit < 1:
@@ -116,9 +118,9 @@ def explain(goal: object, limit: int = LIMIT, dry: bool = False) -> Explanation:
 
 
 def print_explanation(goal=UNSUPPLIED, *, limit=LIMIT):
-    """``(explain &optional goal &key limit)``: print why ``goal`` holds or fails to ``*standard-output*``; no values.
+    """``(explain &optional goal &key limit)``: print to ``*standard-output*`` why ``goal`` holds or fails. Returns no values.
 
-    Without a goal: the one that the last error told of.
+    Without a goal, it is the goal of the last error; it is an error if there was none.
     """
     if goal is UNSUPPLIED:
         goal = (
@@ -134,18 +136,18 @@ def print_explanation(goal=UNSUPPLIED, *, limit=LIMIT):
 
 
 def offer(thing):
-    """The form that explains ``thing``, for an error message: ``(explain)`` takes it from now on."""
+    """The form that explains ``thing``, for an error message. From now on, ``(explain)`` is about it."""
     to_explain[:] = [thing]
     return "(explain)" if PACKAGE.value.lookup("EXPLAIN")[0] is EXPLAIN else "(prolog:explain)"
 
 
 def explained_by(cls, goal):
-    """Objects of ``cls`` are explained by ``goal(object)``, a goal that finds what they stand for, or a text if there is none."""
+    """Explain objects of ``cls`` by ``goal(object)``: a goal that resolves the object, or a text if there is no such goal."""
     _goal_makers.append((cls, goal))
 
 
 def goal_for(thing):
-    """The goal that explains ``thing``, or a text."""
+    """The goal that explains ``thing``, or a text. Objects of other classes are an error."""
     for cls, goal in _goal_makers:
         if isinstance(thing, cls):
             return goal(thing)
@@ -167,7 +169,7 @@ def _furthest(box):
 
 
 def _bottom(box):
-    """The box at the bottom of a failure: down the goals that tell why."""
+    """The box at the bottom of a failure, found by following `_culprit`."""
     while True:
         deeper = _culprit(box)
         if deeper is None:
@@ -176,14 +178,14 @@ def _bottom(box):
 
 
 def _culprit(box):
-    """The goal inside that tells why the goal of ``box`` failed, or ``None`` when that stands in the box itself."""
+    """The goal inside that shows why the goal of ``box`` failed, or ``None`` if the reason is in the box itself."""
     if box.attempts:
         return _furthest(box).culprit
     return box.culprit if box.functor is not _NOT else None
 
 
 def _reason(box):
-    """Why a goal failed that has nothing inside which tells it: a clause of a sentence, or ``None``."""
+    """Why a goal without a culprit failed: a clause of a sentence, or ``None``."""
     if box.trouble == "undefined":
         return _undefined(box)
     if box.trouble == "empty":
@@ -226,7 +228,7 @@ def _mismatch(attempt):
 
 
 def _nearest(attempts):
-    """Of attempts whose heads do not match the one that is most like the goal."""
+    """The attempt that is most like the goal, among attempts whose heads do not match."""
     furthest = max(attempt.mismatch[0] for attempt in attempts)
     best = [attempt for attempt in attempts if attempt.mismatch[0] == furthest]
     given = best[0].mismatch[2]
@@ -239,7 +241,7 @@ def _nearest(attempts):
 
 
 def _tell(box, depth=0):
-    """Lines that tell why the goal of ``box`` failed, without the goal itself."""
+    """Lines that say why the goal of ``box`` failed, without the goal itself."""
     if depth == _MOST_DEPTH:
         bottom = _bottom(box)
         return [f"... and so on, down to {_shown(bottom)}" + (f": {_reason(bottom)}" if _reason(bottom) else "")]
@@ -281,7 +283,7 @@ def _tell_clauses(box, best, depth):
 
 
 def _others(box, best, as_far=False):
-    """Lines for the clauses but ``best``, those that stopped for the same reason together; ``as_far``: only those that came as far."""
+    """Lines for the clauses except ``best``, one for each reason. With ``as_far``, only for those that came as far."""
     stopped = {}
     for attempt in box.attempts:
         if attempt is not best and not (as_far and attempt.reached < best.reached):
@@ -295,7 +297,7 @@ def _others(box, best, as_far=False):
 
 
 def _place(clause, told):
-    """Where ``clause`` stands, shortly when that is the file of the clause ``told``."""
+    """The place of ``clause``, in short if it is in the file of the clause ``told``."""
     position = clause.position
     if position is None:
         return ""
@@ -316,7 +318,7 @@ def _brief(attempt):
 
 
 def _tell_body(attempt, depth):
-    """The goals of a body, each with what came of it."""
+    """Lines for the goals of a body, each with its outcome."""
     written = list(explaining.flat(attempt.clause.goals)) if attempt.clause is not None else attempt.goals
     lines = []
     for position, goal in enumerate(written):
@@ -360,7 +362,7 @@ def _tell_success(explanation, record):
 
 
 def _proof(root, depth):
-    """The goals of a proof, each with the clause that proves it, those of its body below it. The goals have the values of the solution."""
+    """Lines for the goals of a proof, each with the clause that proves it and the goals of its body below it."""
     lines, stack, names = [], [(root, 0)], Names()
     while stack:
         box, depth = stack.pop()
@@ -378,7 +380,7 @@ def _proof(root, depth):
 
 
 def _chain(box):
-    """The goals that the proof is in, the outermost first."""
+    """The goals around ``box`` and its own, the outermost first."""
     chain = []
     while box is not None:
         chain.append(box)

@@ -1,10 +1,10 @@
-"""Why a built-in predicate failed, in words: what the explainer says of a goal that has no clauses to look into.
+"""Reasons in words why a built-in predicate failed, for goals that have no clauses to look into.
 
-``@explains(functor)`` defines a function of the machine and the argument terms; the bindings are those that the goal was called with. It
-returns the reason, or a pair of it and a number from 0 to 1 that says how nearly the goal succeeded: a property whose name is
-misspelled is nearer than one that is not there at all. Rooms above add reasons for their predicates.
+``@explains(functor)`` defines a function of the machine and the argument terms, with the bindings of the call. It returns the reason, or
+a pair of the reason and a number from 0 to 1 that says how close the goal was to success: a property whose name is misspelled is closer
+than one that is missing. Rooms above add reasons for their predicates.
 
-``declare_harmless`` names predicates that only look at their arguments and at what is known, so that proving them twice does nothing.
+``declare_harmless`` names predicates that only look at their arguments and at facts, so that proving them twice changes nothing.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _harmless: set = set()
 
 
 def explains(*functors):
-    """Decorator: ``f(machine, *terms)`` says why a goal with one of ``functors`` failed."""
+    """Decorator: the function ``f(machine, *terms)`` says why a goal with one of ``functors`` failed."""
 
     def define(function):
         for functor in functors:
@@ -34,12 +34,12 @@ def explains(*functors):
 
 
 def declare_harmless(*functors):
-    """Goals with these functors may be proved where nothing must happen."""
+    """Allow goals with these functors in dry proofs, which must change nothing."""
     _harmless.update(sym(functor) for functor in functors)
 
 
 def harmless(goal):
-    """Whether to prove ``goal`` does nothing but look."""
+    """Whether a proof of ``goal`` changes nothing."""
     if goal.car is LISP_PRED or goal.car is LISP_FUN:
         function = goal.cdr.car if goal.cdr.__class__ is Cons else None
         return deref(function) in _HARMLESS_FUNCTIONS
@@ -47,7 +47,7 @@ def harmless(goal):
 
 
 def why(m, goal):
-    """(reason, nearness) for a goal that failed; the reason is ``None`` when there is nothing to say."""
+    """(reason, nearness) for a goal that failed. The reason is ``None`` if none is known."""
     if goal.__class__ is not Cons:
         return None, 0
     function = _reasons.get(goal.car)
@@ -65,7 +65,7 @@ def why(m, goal):
 
 
 def difference(a, b):
-    """Where two terms that do not unify differ first: a text such as ``driving is not moving``."""
+    """A text about the first difference of two terms that do not unify, such as ``driving is not moving``."""
     names, place = Names(), ""
     a, b = deref(a), deref(b)
     while a.__class__ is Cons and b.__class__ is Cons:
@@ -96,12 +96,12 @@ def _agree(a, b):
 
 
 def other_count(functor, given, known):
-    """The reason of a goal with ``given`` arguments, where ``functor`` is known with the numbers ``known``."""
+    """The reason for a goal with ``given`` arguments, if ``functor`` takes the numbers of arguments in ``known``."""
     return f"it has {given} argument{'' if given == 1 else 's'}, and {show(functor)} takes {' or '.join(map(str, sorted(known)))}"
 
 
 def spelled_like(name, known):
-    """(those of the symbols ``known`` whose names are like that of ``name``, the nearest first)."""
+    """The symbols among ``known`` whose names are like that of ``name``, the nearest first."""
     by_name = {symbol.name: symbol for symbol in known}
     return [by_name[near] for near in near_names(name.name, by_name)]
 
@@ -114,20 +114,20 @@ def _call(function, values):
 
 
 def returned(function, values, value, *wanted):
-    """The reason of a ``lisp-fun`` or ``lisp-pred`` whose value did not fit."""
+    """The reason for a ``lisp-fun`` or ``lisp-pred`` whose value did not fit."""
     value = value[0] if isinstance(value, MultipleValues) and value else value
     text = f"{_call(function, values)} returned {show(value)}"
     return text + (f", which is not {show(wanted[0])}" if wanted else "")
 
 
 def signalled(function, values, problem):
-    """The reason of one that ended with an error."""
+    """The reason for one that ended with an error."""
     text = " ".join(str(problem).split()) or type(problem).__name__
     return f"{_call(function, values)} signalled an error: {text.rstrip('.')}"
 
 
 def call_lisp_goal(m, functor, terms):
-    """Prove a goal of ``lisp-fun`` or ``lisp-pred`` as the built-in does: whether it succeeds, and the reason if not."""
+    """Prove a goal of ``lisp-fun`` or ``lisp-pred`` as the built-in does. Returns whether it succeeds, and the reason if not."""
     if not terms:
         return False, None
     if functor is LISP_PRED:

@@ -1,7 +1,7 @@
-"""What is said of a goal that nobody has defined: the original's warning, where the goal stands, and what may be meant.
+"""The warning about a goal whose functor is not defined: the original's text, the place of the goal, and similar names.
 
-A functor is a symbol, package and all, so a name of a package that shadows it is another functor. The warning comes once for each
-place of a goal in a proof, not again when the proof comes back there. Source: prolog.md 5.1, section 1.
+A functor is a symbol with its package, so a symbol of the same name in another package is another functor. The warning comes once for
+each place of a goal in a proof, not again when the proof comes back there. Source: prolog.md 5.1, section 1.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from ..terms.terms import raw
 
 
 def defined_functors():
-    """The functors of which goals can have solutions, all but ``t``, which is a functor, too, but Python's ``True`` and like no other."""
+    """The functors whose goals can have solutions, except ``t``, which is Python's ``True``."""
     return [*control.CONTROL, *(functor for functor, entry in database.functors.items() if entry.defined and functor is not True)]
 
 
 def advice(functor):
-    """What may be meant where nobody has defined ``functor``: a sentence without its full stop, or ``None``."""
+    """A hint about ``functor``, which is not defined: a sentence without its full stop, or ``None``."""
     if functor is None:
         return "nil is not a goal"
     if not isinstance(functor, Symbol) or variable(functor):
@@ -46,7 +46,7 @@ def advice(functor):
 
 
 def warn_undefined(m, goal):
-    """Warn of the goal term ``goal``, whose functor nobody has defined; once for each place in a proof."""
+    """Warn of the goal term ``goal``, whose functor is not defined, once for each place in a proof."""
     functor = None if goal is None else goal.car
     place = Place(m, goal, everywhere=True)
     key = (functor if place.written is None else id(place.written), len(place.clauses))
@@ -62,12 +62,12 @@ def warn_undefined(m, goal):
 
 
 def warn_of_misspelled_functors(group, extendable, defined):
-    """Style-warn of functors that the new fact group ``group`` lists as ``extendable``, or has clauses of (``defined``), where others
-    may be meant.
+    """Style-warn of functors in the new fact group ``group`` that are probably misspelled: in its list ``extendable``, or in its clauses
+    (``defined``).
 
-    A list may name functors that nobody has defined yet; so may a program say before what it will define. But a name that is
-    almost that of a predicate which is there to be extended, or the same in another package, is a slip as a rule, and nothing else
-    would tell of it: the clauses would be there, and nobody would ask them.
+    The list may name functors that are not defined yet, since a program may declare them first. But a name that is almost that of a
+    predicate that is there to be extended, or the same name in another package, is usually a mistake. Without the warning the user
+    would not notice it: the clauses would exist, and no goal would reach them.
     """
     known = database.functors
     alone = [
@@ -101,7 +101,7 @@ def warn_of_misspelled_functors(group, extendable, defined):
 
 
 def _written(functor, qualified=False):
-    """``functor`` as one writes it in the package that is current; with its package in any case if ``qualified``."""
+    """``functor`` as users write it in the current package; always with its package if ``qualified``."""
     package = functor.package
     if package is None or not qualified and CURRENT.value.lookup(functor.name)[0] is functor:
         return functor.name.lower()

@@ -1,7 +1,7 @@
-"""The ground that reasoning from Python stands on: it needs no plan, no session and no kernel, and works in any of them.
+"""Queries from Python without a plan, a session or a kernel; they work in any of them as well.
 
-What is called on the way may need a kernel: a list that is computed when it is looked at, or a designator, which a task computes. So
-whatever Python asks is asked inside of `reasoning`.
+Code that a query calls may need a kernel: a lazy list, or a designator, which a task computes. So all queries from Python run inside of
+`reasoning`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,6 @@ from cramhy_runtime import kernel
 
 @contextmanager
 def reasoning() -> Iterator[None]:
-    """While the block runs there is a kernel: the active one, or one for the moment."""
+    """Run the block with a kernel: the active one, or a temporary one."""
     with kernel.at_hand():
         yield

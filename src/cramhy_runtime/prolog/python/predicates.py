@@ -1,6 +1,6 @@
 """Predicates written in Python: decorators that make a goal of a function.
 
-    @predicate                          # solutions one after the other, each when it is wanted
+    @predicate                          # solutions one after the other, each when it is asked for
     def neighbour(room: str):
         yield "kitchen", 3.0
         yield "hall", 5.5
@@ -11,13 +11,13 @@
     @test                               # it holds or not, by Python's truth
     def near(metres: float): return metres < 4
 
-``neighbour("office", V.room, V.metres) & near(V.metres) & hours(V.metres, V.h)`` is a goal: the parameters of the function are
-arguments that must have a value when the goal is reached; the arguments behind them are unified with what it gives, and several of them
-with the parts of a tuple. The functor is the name of the function, in the package PYTHON-USER or where ``name=`` says, so rules of
-Lisp can use it. The function itself is ``neighbour.function``.
+``neighbour("office", V.room, V.metres) & near(V.metres) & hours(V.metres, V.h)`` is a goal. The parameters of the function are
+arguments that must have a value when the goal is reached. The arguments after them are unified with the result: one argument with the
+value, several with the parts of a tuple. The functor is the name of the function in the package PYTHON-USER, or the one in ``name=``, so
+rules of Lisp can use it. The function itself is ``neighbour.function``.
 
-What the function raises comes out of the query, with a note that says in which goal; a goal fails only because there is no solution.
-Facts can be added to such a predicate by a group that ``extends`` it. Source of what a predicate is: prolog.md 5 and 11.
+An exception of the function leaves the query, with a note that names the goal; a goal fails only because there is no solution. A group
+that ``extends`` such a predicate can add facts to it. Source: prolog.md 5 and 11.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ LISP_FUN, LISP_PRED = sym("CRAM-PROLOG::LISP-FUN"), sym("CRAM-PROLOG::LISP-PRED"
 
 
 class UnboundVariable(ValueError):
-    """A predicate written in Python was called with a variable in place of an argument that it needs."""
+    """A predicate written in Python was called with an unset variable for an argument whose value it needs."""
 
 
 class Predicate(Name, Generic[F]):
-    """A predicate written in Python: called, it makes a goal. ``function`` is the function."""
+    """A predicate written in Python. A call of it makes a goal. ``function`` is the Python function."""
 
     __slots__ = ("function", "kind", "least", "most", "nothing", "parameters")
     __class_getitem__ = subscripted
@@ -67,7 +67,7 @@ class Predicate(Name, Generic[F]):
 
     @property
     def where(self) -> str:
-        """Its name and place, for messages."""
+        """The name and place of the function, for messages."""
         code = getattr(self.function, "__code__", None)
         place = f" ({code.co_filename}:{code.co_firstlineno})" if code is not None else ""
         return f"the @{self.kind} {getattr(self.function, '__name__', self.python_name)}{place}"
@@ -75,7 +75,10 @@ class Predicate(Name, Generic[F]):
     # ------------------------------------------------------------------------------------------------------------- its goals
 
     def split(self, m: Machine, terms: tuple[object, ...]) -> tuple[list[object], tuple[object, ...]]:
-        """(values of the arguments for the function, terms that its solutions are unified with)"""
+        """(The arguments for the function, the terms to unify with its solutions).
+
+        An argument without a value is an `UnboundVariable`, and a wrong number of arguments a TypeError.
+        """
         if self.kind == "test":
             count = len(terms)
         elif self.kind == "function":
@@ -94,22 +97,24 @@ class Predicate(Name, Generic[F]):
         return python_arguments(inputs, self.nothing, list), terms[count:]
 
     def needs_a_value(self) -> str:
+        """The advice for an `UnboundVariable`."""
         where = self.where
         return f"{where[0].upper()}{where[1:]} needs it: put a goal that gives the variable a value in front."
 
     def refuse_count(self, m: Machine, terms: tuple[object, ...]) -> NoReturn:
+        """Raise the TypeError for a wrong number of arguments."""
         given = f"The goal {self.goal_text(m, terms)} has {len(terms)} argument{'' if len(terms) == 1 else 's'}"
         expected = [*self.parameters, *({"test": [], "function": ["its result"]}.get(self.kind, ["what it yields"]))]
         raise TypeError(f"{given}; {self.where} has {', '.join(expected) or 'none'}.")
 
     def goal_text(self, m: Machine, terms: tuple[object, ...]) -> str:
-        """The goal, as a message shows it: with values where there are some."""
+        """The goal as messages show it, with the values of variables."""
         if self.symbol in (LISP_FUN, LISP_PRED):
             terms = (Symbol(getattr(self.function, "__name__", str(self.function))), *terms)
         return show(Cons(self.symbol, list_from([resolve(term, m.names) for term in terms])))
 
     def called(self, m: Machine, terms: tuple[object, ...], step: Callable[[], T]) -> T:
-        """``step()``, whose exceptions are told where they came up."""
+        """The result of ``step()``. Its exceptions get a note that names the goal."""
         try:
             return step()
         except UnboundVariable:
@@ -121,7 +126,7 @@ class Predicate(Name, Generic[F]):
             raise
 
     def unify(self, m: Machine, outputs: tuple[object, ...], value: object) -> bool:
-        """Make the output terms what the function gave."""
+        """Unify the output terms with the result ``value`` of the function. Returns whether that is possible."""
         if len(outputs) == 1:
             return bool(m.unify(outputs[0], import_term(to_lisp(value), {})))
         if not outputs:
@@ -133,7 +138,7 @@ class Predicate(Name, Generic[F]):
         return bool(m.unify(*pairs))
 
     def solutions(self, m: Machine, *terms: object) -> Iterator[None]:
-        """What the engine calls for a `predicate`: a generator that yields whenever it has set the variables of a solution."""
+        """The generator for the engine, for a `predicate`: it sets the variables of a solution and yields."""
         inputs, outputs = self.split(m, terms)
         found = self.called(m, terms, lambda: self._iterator(self.function(*inputs)))
         while True:
@@ -151,14 +156,14 @@ class Predicate(Name, Generic[F]):
         return iter(result)
 
     def value(self, m: Machine, *terms: object) -> bool:
-        """What the engine calls for a `function`."""
+        """The test for the engine, for a `function`."""
         if not terms:
             self.refuse_count(m, terms)
         inputs, outputs = self.split(m, terms)
         return bool(self.called(m, terms, lambda: self.unify(m, outputs, self.function(*inputs))))
 
     def holds(self, m: Machine, *terms: object) -> bool:
-        """What the engine calls for a `test`."""
+        """The test for the engine, for a `test`."""
         inputs, _ = self.split(m, terms)
         return bool(self.called(m, terms, lambda: bool(self.function(*inputs))))
 
@@ -174,7 +179,10 @@ def predicate(function: F, /) -> Predicate[F]: ...
 @overload
 def predicate(*, name: Name | Symbol | None = None) -> Callable[[F], Predicate[F]]: ...
 def predicate(function: Any = None, /, *, name: Any = None) -> Any:
-    """Decorator: the function is a generator of solutions, or returns a list of them; ``None`` is none."""
+    """Decorator: make a predicate of a generator of solutions, or of a function that returns a list of them; ``None`` is an empty list.
+
+    name: the name of the predicate, if it is not that of the function. A name of a package of cramhy is a TypeError.
+    """
     return _decorated(function, "predicate", name)
 
 
@@ -183,7 +191,7 @@ def function(function: F, /) -> Predicate[F]: ...
 @overload
 def function(*, name: Name | Symbol | None = None) -> Callable[[F], Predicate[F]]: ...
 def function(function: Any = None, /, *, name: Any = None) -> Any:
-    """Decorator: the last argument of the goal is what the function returns."""
+    """Decorator: make a predicate whose last argument is the function's result. ``name`` is as in `predicate`."""
     return _decorated(function, "function", name)
 
 
@@ -192,7 +200,7 @@ def test(function: F, /) -> Predicate[F]: ...
 @overload
 def test(*, name: Name | Symbol | None = None) -> Callable[[F], Predicate[F]]: ...
 def test(function: Any = None, /, *, name: Any = None) -> Any:
-    """Decorator: the goal holds if what the function returns is true for Python."""
+    """Decorator: make a predicate that holds if the function's result is true in Python. ``name`` is as in `predicate`."""
     return _decorated(function, "test", name)
 
 
@@ -221,7 +229,7 @@ def _define(function: F, kind: str, name: Any) -> Predicate[F]:
 
 
 def inline(kind: str, function: F) -> Predicate[F]:
-    """A predicate for a callable that stands in a goal, where ``lisp-fun`` has a function."""
+    """A predicate for a callable that stands in a goal, as the function of ``lisp-fun`` does."""
     return Predicate(LISP_FUN if kind == "function" else LISP_PRED, function, kind)
 
 

@@ -8,9 +8,9 @@
     for answer in solve(P.ancestor("tom", V.who)):
         print(answer.who)
 
-A group is defined as a whole when its block ends, and not at all when the block fails; it replaces the group of that name, if there is
-one. Answers come one after the other, each when it is asked for. None of this needs a plan or a kernel; what is called on the way may.
-Source: prolog.md sections 5 and 6.
+A group is defined as a whole when its block ends, and not at all if the block fails. It replaces the group of that name, if there is
+one. Answers come one after the other, each when it is asked for. Queries need neither a plan nor a kernel, though code that they call
+may need one. Source: prolog.md sections 5 and 6.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ import_predicates(*control.CONTROL, *functors, sym("CRAM-PROLOG::EXPLAIN"), ANON
 
 
 class UnknownPredicate(LookupError):
-    """A query asks a predicate that nobody has defined."""
+    """A query uses a predicate that is not defined."""
 
 
 # ---------------------------------------------------------------------------------------------------------------- fact groups
 
 
 class FactGroup:
-    """The facts and rules of a group while its ``with`` block runs; made by `fact_group`."""
+    """The facts and rules of a group while its ``with`` block runs. `fact_group` makes it."""
 
     def __init__(self, name: str | Name | Symbol, extends: Iterable[Name | Symbol]):
         self.name = _group_name(name)
@@ -60,12 +60,15 @@ class FactGroup:
         self.clauses: list[Cons] = []
 
     def fact(self, *heads: Goal) -> None:
-        """What holds without conditions, one or more of them: ``P.parent("tom", "bob")``."""
+        """Add one or more facts, which hold without conditions: ``P.parent("tom", "bob")``. Anything but a goal is a TypeError."""
         for head in heads:
             self.rule(head)
 
     def rule(self, head: Goal, *goals: Goal) -> None:
-        """``head`` holds if all ``goals`` hold, which are proved from left to right. Variables belong to this rule only."""
+        """Add a rule: ``head`` holds if all ``goals`` hold, which are proved from left to right. Its variables belong to this rule only.
+
+        Anything but a goal is a TypeError.
+        """
         self.clauses.append(Cons(goal_form(head), list_from([goal_form(goal) for goal in goals])))
 
     def __enter__(self) -> Self:
@@ -93,14 +96,15 @@ class FactGroup:
 def fact_group(name: str | Name | Symbol, extends: Iterable[Name | Symbol] = ()) -> FactGroup:
     """``with fact_group("family") as family:`` collects facts and rules, and defines the group when the block ends.
 
-    name: what a later group must be called to replace it; extends: the predicates of other groups that this one adds to. If the block
-    fails, or the group cannot be defined, what was in force before stays so. Errors: SimpleError for a predicate that is not listed.
+    name: the name of the group; a later group of the same name replaces it. extends: the predicates of other groups to which this one
+    adds clauses. If the block fails, or the group cannot be defined, the clauses from before stay in force. Clauses for a predicate of
+    another group that ``extends`` does not list are a SimpleError. Source: prolog.md 6.
     """
     return FactGroup(name, extends)
 
 
 def remove_fact_group(name: str | Name | Symbol) -> None:
-    """Remove what the group ``name`` says; an unknown name does nothing."""
+    """Remove all clauses of the group ``name``. An unknown name does nothing. A name that is not a string or `Name` is a TypeError."""
     facts.remove_fact_group(_group_name(name))
 
 
@@ -117,7 +121,7 @@ def _group_name(name: Any) -> Symbol:
 class Answer(Mapping[str, Any]):
     """One answer of a query: the values of its variables, as attributes and as items. Lists are Python lists, nil is ``[]``.
 
-    A variable that the answer leaves open is not there.
+    It has no item for a variable that the answer leaves open.
     """
 
     __slots__ = ("_values",)
@@ -144,7 +148,7 @@ class Answer(Mapping[str, Any]):
         return len(self._values)
 
     def __bool__(self) -> bool:
-        """An answer is true, also when there was nothing to find out."""
+        """An answer is true, even without variables."""
         return True
 
     def __repr__(self) -> str:
@@ -156,10 +160,10 @@ def _variable_name(symbol: Symbol) -> str:
 
 
 def solve(*goals: Goal) -> Iterator[Answer]:
-    """Iterate over the answers to the question whether all ``goals`` hold together; the next is searched for when it is asked for.
+    """Iterate over the answers to the question whether all ``goals`` hold together. The next answer is searched for on demand.
 
-    Errors: TypeError for what is no goal; UnknownPredicate if nobody has defined a predicate of the question; whatever a predicate
-    written in Python raises.
+    Errors: TypeError for anything but a goal; `UnknownPredicate` if a predicate of the question is not defined; all exceptions of
+    predicates written in Python. Source: prolog.md 5.
     """
     return _answers(_question(goals))
 
@@ -178,12 +182,12 @@ def _answers(question: Cons) -> Iterator[Answer]:
 
 
 def first(*goals: Goal) -> Answer | None:
-    """The first answer to `solve`; ``None`` if there is none. An answer is true, whatever is in it."""
+    """The first answer of `solve`, or ``None``. An answer is always true. Errors are as in `solve`."""
     return next(solve(*goals), None)
 
 
 def holds(*goals: Goal) -> bool:
-    """Whether there is an answer."""
+    """Whether all ``goals`` hold together. Errors are as in `solve`."""
     return first(*goals) is not None
 
 
@@ -194,7 +198,7 @@ def findall(template: list[object], *goals: Goal) -> list[list[Any]]: ...
 @overload
 def findall(template: object, *goals: Goal) -> list[Any]: ...
 def findall(template: object, *goals: Goal) -> list[Any]:
-    """What ``template`` is in each answer, in order: a variable is its value, a tuple or list of them one of their values.
+    """The list of ``template`` in each answer, in order, with values in place of its variables. Errors are as in `solve`.
 
     findall(V.who, P.ancestor("tom", V.who))        findall((V.x, V.y), P.parent(V.x, V.y))
     """
@@ -210,9 +214,10 @@ def _instance(template: Any, answer: Answer) -> Any:
 
 
 def explain(question: object) -> Explanation:
-    """Why a goal, or a designator, has a solution or none: an object whose text tells it. The goal is proved anew for that.
+    """An explanation of why a goal, or a designator, has a solution or none. The goal is proved again for that.
 
-    ``explain(goal).holds`` is the outcome, ``.reason`` why the goal at the bottom failed; ``print(explain(goal))``.
+    ``print(explain(goal))`` shows the text. ``explain(goal).holds`` is the outcome, and ``.reason`` says why the goal at the bottom
+    failed. Anything but a goal or a designator is an error.
     """
     with in_python_names():
         told: Explanation = explanations.explain(question.form if isinstance(question, Goal) else question)

@@ -1,17 +1,17 @@
-"""Terms as Python writes them: ``P.parent("tom", V.who)`` is the goal ``(parent "tom" ?who)``.
+"""Terms in Python's notation: ``P.parent("tom", V.who)`` is the goal ``(parent "tom" ?who)``.
 
 * ``V.who`` is the variable ``?who``, and ``V._`` the one that matches anything.
-* ``P.parent`` is the name ``parent``: called, it makes a goal; among arguments it stands for the symbol. Names that are built-in
-  predicates are those (``P.member``, ``P.findall``, ``P.not_``); others are symbols of the package PYTHON-USER, so that Lisp code can
+* ``P.parent`` is the name ``parent``. A call of it makes a goal; among arguments it stands for the symbol. Names of built-in
+  predicates stand for these (``P.member``, ``P.findall``, ``P.not_``). Others are symbols of the package PYTHON-USER, so Lisp code can
   write ``python-user:parent``. ``names("TUT")`` gives the names of another package.
 * ``kw.driving`` is the keyword ``:driving``, the object itself. A Python string is a string, and equal to no name.
 * A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are the empty list,
   ``nil``: Lisp has one object for them. ``True`` is ``t``, and neither 1 nor 1.0.
-* A function is a symbol with that function, so that it can be called from a rule, and by ``perform``. Anything else, named tuples
-  too, is itself: two terms with such objects are the same if the objects are.
+* A function is a symbol with that function, so rules and ``perform`` can call it. Any other object, also a named tuple, stands for
+  itself: two terms with such objects are the same if the objects are the same.
 
-Goals are joined by ``&``, ``|`` and ``~``, numbers compared by ``<`` and its like. As with fluents, ``==`` asks whether two things are
-the same object, and ``and``, ``or``, ``not`` are refused. Python sees lists of Lisp as Python lists (`to_python`).
+``&``, ``|`` and ``~`` combine goals, and ``<``, ``>``, ``<=`` and ``>=`` compare numbers. As with fluents, ``==`` asks whether two things
+are the same object, and ``and``, ``or``, ``not`` are errors. Python sees lists of Lisp as Python lists (`to_python`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _FUNCTIONS = (FunctionType, BuiltinFunctionType, MethodType, functools.partial)
 
 
 class Goal:
-    """A goal, or the head of a rule: made by calling a name, or by an operator."""
+    """A goal, or the head of a rule. A call of a name makes it, or an operator. ``form`` is the Lisp data."""
 
     __slots__ = ("form",)
 
@@ -76,7 +76,7 @@ def _joined(operator: str, first: Goal, second: Any) -> Goal:
 
 
 def goal_form(goal: Any) -> Cons:
-    """The Lisp data of ``goal``; what is no goal is a TypeError that says what to write."""
+    """The Lisp data of ``goal``. Anything but a goal is a TypeError that says what to write."""
     if isinstance(goal, Goal):
         return goal.form
     if isinstance(goal, Cons):
@@ -93,7 +93,7 @@ def _hint_about(thing: Any) -> str:
 
 
 class Variable:
-    """A variable of Prolog: what ``V.who`` gives, always the same object for the same name."""
+    """A variable of Prolog, such as ``V.who``. The same name always gives the same object."""
 
     __slots__ = ("symbol",)
 
@@ -102,7 +102,7 @@ class Variable:
 
     @property
     def name(self) -> str:
-        """Its Python name: an answer has an attribute called so."""
+        """Its Python name, which is also the name of the attribute in an answer."""
         return python_name(self.symbol.name[1:])
 
     def __iter__(self) -> Iterator[Tail]:
@@ -129,7 +129,7 @@ class Variable:
 
 
 class Tail:
-    """The rest of a list that ends in ``rest``: a variable (``*V.rest``), or, in an answer, what a dotted list ends in."""
+    """The rest of a list that ends in ``rest``: a variable (``*V.rest``), or, in an answer, the end of a dotted list."""
 
     __slots__ = ("rest",)
 
@@ -158,7 +158,7 @@ class Variables:
         return self.of(ANONYMOUS if name == "_" else USER.intern("?" + lisp_name(name)))
 
     def of(self, symbol: Symbol) -> Variable:
-        """The variable of a symbol of Lisp; one without a package is met once only, and not remembered."""
+        """The variable of a symbol of Lisp. Variables of symbols without a package are not remembered."""
         if symbol.package is None:
             return Variable(symbol)
         found = self._made.get(symbol)
@@ -171,7 +171,7 @@ V = Variables()
 
 
 class Name:
-    """A name of a predicate, or a symbol as a value. It is equal to its symbol, which is what answers have."""
+    """A name of a predicate, or a symbol as a value. It is equal to its symbol, and answers contain symbols."""
 
     __slots__ = ("symbol",)
 
@@ -180,6 +180,7 @@ class Name:
 
     @property
     def python_name(self) -> str:
+        """The name as Python writes it, such as ``lisp_fun``."""
         return python_name(self.symbol.name)
 
     def __call__(self, *arguments: object) -> Goal:
@@ -196,7 +197,7 @@ class Name:
 
 
 class Names:
-    """The names of a Lisp package as attributes; ``["*->"]`` reaches those that Python cannot write."""
+    """The names of a Lisp package as attributes. Items, such as ``["*->"]``, are the names that Python cannot write."""
 
     def __init__(self, package: Package):
         self._package = package
@@ -235,7 +236,7 @@ kw = Keywords()
 
 
 def names(package: str) -> Names:
-    """The names of the Lisp package ``package``: ``names("TUT").drive``. A LookupError if there is none of that name."""
+    """The names of the Lisp package ``package``: ``names("TUT").drive``. If there is no such package, it is a LookupError."""
     with reasoning():
         found = find_package(package.upper())
     if found is None:
@@ -246,7 +247,7 @@ def names(package: str) -> Names:
 
 
 def import_predicates(*symbols: Any) -> None:
-    """Let ``P`` have these symbols under their names. Where Python code has used such a name for its own, it keeps it, with a warning."""
+    """Give ``P`` these symbols under their names. If Python code has used such a name already, it keeps its own symbol, with a warning."""
     for symbol in symbols:
         known = USER.external.get(symbol.name)
         if known is None:
@@ -264,7 +265,7 @@ _owners: dict[Symbol, str] = {}
 
 
 def claim(symbol: Symbol, function: Any, kind: str) -> None:
-    """Note that ``function`` defines ``symbol``, a ``kind``; that a function of another module has done so is a warning at its place."""
+    """Note that ``function`` defines ``symbol``, a ``kind``. If a function of another module did so before, warn at the place of this."""
     module = getattr(function, "__module__", "")
     before = _owners.get(symbol, module)
     _owners[symbol] = module
@@ -280,10 +281,12 @@ def claim(symbol: Symbol, function: Any, kind: str) -> None:
 
 
 def lisp_name(name: str) -> str:
+    """The Lisp name for a Python name: ``lisp_fun`` becomes ``LISP-FUN``, and ``not_`` becomes ``NOT``."""
     return (name.rstrip("_") or name).replace("_", "-").upper()
 
 
 def python_name(name: str) -> str:
+    """The Python name for a Lisp name: ``LISP-FUN`` becomes ``lisp_fun``."""
     return name.lower().replace("-", "_")
 
 
@@ -291,10 +294,10 @@ def python_name(name: str) -> str:
 
 
 def make_goal(functor: Symbol, arguments: tuple[object, ...]) -> Goal:
-    """The goal of ``functor`` with ``arguments``, which are made Lisp data.
+    """The goal of ``functor`` with ``arguments``, which are converted to Lisp data.
 
-    A Python callable where ``lisp-fun`` or ``lisp-pred`` has the name of a function is called as Python calls it: what it raises is
-    raised, where an error in a function of Lisp is a warning, and the goal fails.
+    A Python callable as the function of ``lisp-fun`` or ``lisp-pred`` is called as Python calls it: its exceptions are raised. An error
+    in a function of Lisp is a warning, and the goal fails.
     """
     if functor in _CALLS and arguments and callable(arguments[0]) and not isinstance(arguments[0], Name):
         return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:]))))
@@ -331,7 +334,7 @@ def _lisp_list(items: Any) -> Any:
 
 
 def to_python(thing: Any, empty: Any = None) -> Any:
-    """What Python sees of Lisp data: lists as Python lists, variables as `Variable`, texts as ``str``; ``empty`` for nil."""
+    """The Python data for Lisp data: Python lists, `Variable` objects and ``str``. For nil it is ``empty``; ``list`` means ``[]``."""
     kind = thing.__class__
     if thing is None:
         return [] if empty is list else empty
@@ -362,7 +365,7 @@ def _python_list(lst: Cons, empty: Any) -> list[Any]:
 
 
 def function_symbol(function: Callable[..., Any]) -> Symbol:
-    """A symbol whose function is ``function``: the same one each time, where the function can remember it."""
+    """A symbol whose function is ``function``: the same symbol each time, if the function can remember it."""
     known = getattr(function, "__dict__", None)
     found = known.get("__lisp_symbol__") if known is not None else None
     if found is None:
@@ -381,7 +384,7 @@ _builtins: dict[Any, Symbol] = {}
 
 
 class _LispFunction:
-    """A Python function as Lisp code calls it: with Lisp data, of which the function gets what Python sees."""
+    """A Python function for Lisp code. It is called with Lisp data, which it converts for the function."""
 
     __slots__ = ("called_from_lisp", "nothing")
 
@@ -394,7 +397,7 @@ class _LispFunction:
 
 
 def what_nil_means(function: Any, default: Any) -> list[Any]:
-    """What each parameter of ``function`` gets for nil: by its annotation False for ``bool``, ``[]`` for ``list``; else ``default``."""
+    """The value of each parameter of ``function`` for nil, by its annotation: False for ``bool``, ``[]`` for ``list``, or ``default``."""
     code = getattr(function, "__code__", None)
     if code is None:
         return []
@@ -403,7 +406,7 @@ def what_nil_means(function: Any, default: Any) -> list[Any]:
 
 
 def nil_as(annotation: Any, default: Any) -> Any:
-    """What nil is where ``annotation``, a type or the text of one, is expected; ``list`` stands for a new empty list."""
+    """The value for nil where ``annotation``, a type or its text, is expected; ``list`` stands for a new empty list."""
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
     if text == "bool":
         return False
@@ -413,7 +416,7 @@ def nil_as(annotation: Any, default: Any) -> Any:
 
 
 def python_arguments(arguments: Any, nothing: list[Any], default: Any) -> list[Any]:
-    """The Python arguments for ``arguments``, Lisp data, by what nil means for each."""
+    """The Python arguments for ``arguments``, which are Lisp data. ``nothing`` has the value for nil for each, see `what_nil_means`."""
     if not nothing:
         return [to_python(argument, default) for argument in arguments]
     return [
@@ -427,13 +430,13 @@ def python_arguments(arguments: Any, nothing: list[Any], default: Any) -> list[A
 
 @contextmanager
 def in_python_names() -> Iterator[None]:
-    """What is printed while the block runs has no packages where Python has none: it is printed as in PYTHON-USER."""
+    """Print symbols within the block as in the package PYTHON-USER, so that names of Python code have no package."""
     with reasoning(), binding(CURRENT, USER):
         yield
 
 
 def show(form: Any) -> str:
-    """Lisp data as text for Python people: in small letters, without packages; objects as Python shows them."""
+    """Lisp data as text for Python programmers: in small letters, without packages, and with objects as Python shows them."""
     if isinstance(form, Cons):
         parts, cell, limit = [], form, 30
         while cell.__class__ is Cons and limit:

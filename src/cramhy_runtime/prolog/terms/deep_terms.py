@@ -1,8 +1,8 @@
 """Terms that are nested deeper than Python recurses, and terms without end.
 
-The functions of ``terms.py`` recurse along the elements of lists, which is quickest for terms as people write them. Where Python has no
-stack left they come here: `rebuild` needs none. A variable that was unified with a term that contains it makes a term without end, for
-there is no occurs check (prolog.md 2.4); who goes through very many cells, or has no stack left, asks `refuse_cycle` whether it is one.
+The functions of ``terms.py`` recurse along the elements of lists, which is quickest for terms as people write them. If Python has no
+stack left, they call `rebuild`, which needs none. There is no occurs check (prolog.md 2.4), so a variable that is unified with a term
+that contains it makes a term without end. Code that goes through very many cells, or has no stack left, calls `refuse_cycle` to find out.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from cramhy_runtime.ground.conditions import StorageCondition, error
 from cramhy_runtime.ground.data import Cons
 
 CYCLE_SUSPECTED = 1_000_000
-"""So many cells are gone through before it is asked whether they end."""
+"""After so many cells, code asks whether they end."""
 
 
 LIST_SUSPECTED = 200_000
-"""So many elements of one list are gone through before it is asked whether it ends, which is quicker to find out."""
+"""After so many elements of one list, code asks whether the list ends, which is quicker to find out."""
 _ENDLESS = "A variable was unified with a list that contains it, which makes the list endless."
 
 
 def refuse_endless(lst, contents):
-    """Signal an error if following the rests of ``lst`` comes back. ``contents``: see `refuse_cycle`."""
+    """Signal an error if ``lst`` is circular. For ``contents`` see `refuse_cycle`."""
     slow, fast, both = lst, lst, False
     while True:
         fast = contents(fast.cdr) if fast.__class__ is Cons else contents(fast)
@@ -34,7 +34,7 @@ def refuse_endless(lst, contents):
 
 
 def refuse_cycle(term, contents):
-    """Signal an error if ``term`` contains itself. ``contents(term)`` is what a term that is no cons stands for, or the term."""
+    """Signal an error if ``term`` contains itself. ``contents(term)`` is the value of a term that is not a cons, or the term."""
     inside, done, waiting = set(), set(), [(term, False)]
     while waiting:
         item, leaving = waiting.pop()
@@ -53,7 +53,7 @@ def refuse_cycle(term, contents):
 
 
 def rebuild(term, contents, leaf):
-    """``term`` with ``leaf(part)`` in place of each part that is no cons; unchanged conses are shared. A cycle is an error."""
+    """A copy of ``term`` with ``leaf(part)`` for each part that is not a cons. Unchanged conses are shared. A cycle is an error."""
     refuse_cycle(term, contents)
     results, waiting = [], [(term, False)]
     while waiting:

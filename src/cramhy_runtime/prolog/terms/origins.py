@@ -1,7 +1,7 @@
-"""Which code of the user's made something: cheap to note, and a place in the text when somebody asks.
+"""The user's code that made something: cheap to note, and converted to a place in the text when a message needs it.
 
-File, line and column of running code are found by counting through its instructions, which is too slow to do for every fact of a large
-group. So the code and how far it had come are noted, and looked up when a message names the place.
+Finding the file, line and column of running code means counting through its instructions, which is too slow for every fact of a large
+group. So the code and the number of the instruction are noted, and looked up when a message names the place.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import sys
 from cramhy_runtime.ground.source_places import code_position, is_user_file
 
 _FRAMES = 2
-"""So many frames of the user's are remembered: the innermost may be in code that a macro made, which has no place of its own."""
+"""So many frames of the user are remembered: the innermost may be in code that a macro made, which has no place of its own."""
 
 
 def origin():
-    """What the user's code that runs now is: `position_of_origin` makes a place of it."""
+    """The user's code that runs now, in a form for `position_of_origin`."""
     found, frame = [], sys._getframe(1)
     while frame is not None and len(found) < _FRAMES:
         if is_user_file(frame.f_code.co_filename):

@@ -1,11 +1,11 @@
 """Terms of the engine: Lisp data in which variables are `Var` objects.
 
-The original binds symbols in association lists and copies. Here a variable of a query or of a clause in use is an object that
-points to its value, and a trail remembers what to unset; that is what makes inference fast. Everything else of a term is Lisp
-data, shared, not copied. At the border `import_term` turns symbols into variables and `resolve` turns terms back into Lisp data;
-a variable without a value comes out as a symbol: of the query its own, of a clause an uninterned one.
+The original binds symbols in association lists and copies them. Here a variable of a query or of a clause in use is an object that
+points to its value, and a trail remembers the variables to unset. This makes inference fast. All other parts of a term are Lisp data,
+shared, not copied. `import_term` turns symbols into variables, and `resolve` turns terms back into Lisp data. A variable without a value
+becomes a symbol: a variable of the query its own symbol, a variable of a clause an uninterned one.
 
-A `LazyTail` in a term stands for the list that it will compute: looking at it forces it, one element at a time.
+A `LazyTail` in a term stands for the list that it will compute. Looking at it forces one element at a time.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from .deep_terms import CYCLE_SUSPECTED, LIST_SUSPECTED, rebuild, refuse_cycle, 
 
 _CELLS = range(CYCLE_SUSPECTED)
 _TURNS = 200_000
-"""Lists in lists, or parts of a list, that are unified before it is asked whether they end."""
+"""After unifying so many lists in lists, or parts of a list, `unify` asks whether they end."""
 
 UNSET = type("Unset", (), {"__repr__": lambda self: "#<unset>", "__slots__": ()})()
-"""The value of a variable that has none."""
+"""The mark for a variable without a value."""
 
 
 class Var:
-    """A logic variable. ``ref`` is its value, another variable included, or `UNSET`; ``name`` the symbol that shows it.
+    """A logic variable. ``ref`` is its value, which may be another variable, or `UNSET`; ``name`` is the symbol that shows it.
 
-    ``written`` is the symbol that it has in the text of a clause, where goals are watched.
+    ``written`` is its symbol in the text of a clause, while goals are watched.
     """
 
     ref = UNSET
@@ -40,13 +40,13 @@ class Var:
 
 
 class TermTail(LazyTail):
-    """The lazy tail of a list that ``findall`` bound: its elements may contain `Var` objects, and it is finite as a rule."""
+    """The lazy tail of a list of ``findall``. Its elements may contain `Var` objects, and usually it is finite."""
 
     __slots__ = ()
 
 
 class Restore:
-    """A trail entry that puts an old value back, where a built-in changed a variable that had one."""
+    """A trail entry that puts an old value back, for a built-in that changed a variable with a value."""
 
     __slots__ = ("variable", "old")
 
@@ -67,7 +67,7 @@ def symbol_of(variable):
 
 
 def deref(term):
-    """What ``term`` stands for: follows variables and computes lazy tails, one level."""
+    """The value of ``term``: follow variables and compute lazy tails, on one level."""
     while True:
         kind = term.__class__
         if kind is Var:
@@ -85,7 +85,7 @@ def deref(term):
 
 
 def import_term(term, table):
-    """The term for Lisp data: symbols that are variables become `Var` objects, the same one for the same symbol in ``table``."""
+    """The term for Lisp data. Symbols that are variables become `Var` objects, one for each symbol in the dict ``table``."""
     kind = term.__class__
     if kind is Symbol or kind is Keyword:
         if term.name[:1] != "?":
@@ -138,9 +138,9 @@ def import_term(term, table):
 
 
 def resolve(term, names=None):
-    """Lisp data for a term: every variable replaced by its value. Ground data is returned as it is.
+    """Lisp data for a term, with values in place of variables. Ground data is returned as it is.
 
-    With ``names``, a table symbol → `Var`, unset variables are entered there, so that `import_term` recognises them.
+    Unset variables are entered in ``names``, a dict symbol → `Var`, if it is given, so that `import_term` recognises them.
     """
     while True:
         kind = term.__class__
@@ -175,7 +175,7 @@ def _resolved_part(part, names):
 
 
 def value_of(term):
-    """What ``term`` stands for: follows variables and the tails that are computed already, and computes nothing."""
+    """The value of ``term``: follow variables and lazy tails that are computed already, without computing others."""
     while True:
         kind = term.__class__
         if kind is Var and term.ref is not UNSET:
@@ -238,7 +238,7 @@ def _resolve_list(term, names):
 
 
 def raw(term, names):
-    """Lisp data for a term as it is written: variables become symbols even when they have a value."""
+    """Lisp data for a term as it is written: variables become symbols even if they have a value. They are entered in ``names``."""
     kind = term.__class__
     if kind is Var:
         symbol = symbol_of(term)
@@ -260,9 +260,9 @@ def raw(term, names):
 
 
 def copy_term(term, mapping):
-    """A term like ``term`` with values in place of set variables and ``mapping[variable]`` in place of unset ones.
+    """A copy of ``term`` with values in place of set variables and ``mapping[variable]`` in place of unset ones.
 
-    Variables that ``mapping`` lacks are entered with a new `Var`. The copy does not change when bindings are undone.
+    Missing variables are entered in ``mapping`` with a new `Var`. The copy does not change when bindings are undone.
     """
     term = deref(term) if term.__class__ is not Cons else term
     kind = term.__class__
@@ -304,7 +304,7 @@ def copy_term(term, mapping):
 
 
 def unset_variables(term, found):
-    """Enter the unset variables of ``term`` in the dict ``found``, in order of occurrence."""
+    """Enter the unset variables of ``term`` in the dict ``found``, in order of occurrence, and return it."""
     stack, count = [term], 0
     while stack:
         item = stack.pop()
@@ -327,7 +327,7 @@ def unset_variables(term, found):
 
 
 def ground(term):
-    """Whether no unset variable is in ``term``."""
+    """Whether ``term`` contains no unset variables."""
     return not unset_variables(term, {})
 
 
@@ -335,7 +335,8 @@ def ground(term):
 
 
 def unify(a, b, trail):
-    """Make both terms the same by setting variables, noted on ``trail``. False when that is impossible; no occurs check."""
+    """Make both terms the same by setting variables, which are noted on ``trail``. Returns False if that is impossible. It makes no
+    occurs check."""
     pending, turns = None, 0
     while True:
         while a.__class__ is Var:
@@ -418,7 +419,7 @@ def undo(trail, height):
 
 
 def elements(term):
-    """The elements of a list term, each as it stands; the list must end in ``nil`` (see `list_end`)."""
+    """Iterate over the elements of a list term, which are not dereferenced. The list must end in ``nil`` (see `list_end`)."""
     cell, count = deref(term), 0
     while cell.__class__ is Cons:
         yield cell.car
@@ -429,7 +430,7 @@ def elements(term):
 
 
 def list_end(term):
-    """What ends the list ``term``: ``None`` when it is proper."""
+    """The end of the list ``term``: ``None`` if it is a proper list."""
     cell, count = deref(term), 0
     while cell.__class__ is Cons:
         cell = deref(cell.cdr)

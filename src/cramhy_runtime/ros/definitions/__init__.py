@@ -1,1 +1,1 @@
-"""Message and service definitions, as ROS packages keep them: ``PACKAGE/msg/*.msg`` and ``PACKAGE/srv/*.srv``."""
+"""Message and service definitions, in the layout of ROS packages: ``PACKAGE/msg/*.msg`` and ``PACKAGE/srv/*.srv``."""

@@ -1,13 +1,13 @@
-"""roslisp: what a Lisp program sees of the graph, as functions of the one node that the program has.
+"""roslisp: the functions of a Lisp program on the graph. The program has one node.
 
-The graph below knows nothing of it and can be used without. Where the parts are, from the ground up:
+The graph does not depend on this folder. Where the parts are, from the ground up:
 
-* `master`    the master's address;  `clock` what time it is;  `log_file`, `logging` the log;  `errors` the conditions
-* `node`      the node's life and its names;  `parameter_values`, `structs` what Lisp values are as parameters
+* `master`    the master's address;  `clock` the time;  `log_file`, `logging` the log;  `errors` the conditions
+* `node`      the node's life and its names;  `parameter_values`, `structs` Lisp values as parameters
 * `topics`, `services`, `parameters`, `time`, `utilities`   the functions, as in the sections 6, 7, 8, 9, 11 of roslisp.md
 
-The names that Lisp programs use for all this stand in ``languages/commonlisp/faces/ros/package.py``; how these objects print, in
-``languages/commonlisp/faces/ros/roslisp_printing.py``.
+``languages/commonlisp/faces/ros/package.py`` has the names for Lisp programs, ``languages/commonlisp/faces/ros/roslisp_printing.py``
+prints these objects.
 """
 
 from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package

@@ -1,8 +1,8 @@
-"""The conditions of roslisp, and the way it reports its own errors.
+"""The conditions of roslisp, and how it reports its own errors.
 
-Two habits of roslisp are kept because programs rely on them: most errors are logged at level ERROR on the root topic before
-they are signalled with the same text (`ros_error`), and ``ros-rpc-error``, the complaint of the master, is no subclass of
-``error``, so a handler for errors does not see it (roslisp.md 7.1 and trap 6).
+Programs rely on two habits of roslisp. Most errors are logged at level ERROR on the root topic, and then signalled with the same
+text (`ros_error`). ``ros-rpc-error``, the master's error, is not a subclass of ``error``, so a handler for errors does not see
+it (roslisp.md 7.1 and trap 6).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RosRpcError(Condition):
-    """The master refused a call. ``call`` is the text of the call, ``code``, ``message`` and ``result`` its answer."""
+    """The master refused a call. ``call``: the text of the call. ``code``, ``message``, ``result``: the master's answer."""
 
     lisp_name = "ROSLISP::ROS-RPC-ERROR"
 
@@ -44,13 +44,13 @@ class RosRpcError(Condition):
 
 
 class ServiceError(SimpleError):
-    """Signalled by a service callback to refuse a request with a text of its own."""
+    """A service callback signals this to refuse a request with its own text."""
 
     lisp_name = "ROSLISP::SERVICE-ERROR"
 
 
 class ServiceCallError(Error):
-    """A call of a persistent service failed; ``message`` tells why."""
+    """A call of a persistent service failed. ``message`` says why."""
 
     lisp_name = "ROSLISP::SERVICE-CALL-ERROR"
     initargs = {"MESSAGE": "message"}
@@ -61,22 +61,25 @@ class ServiceCallError(Error):
 
 
 def ros_error(control: str, *arguments: object, hint: str | Callable[[], str] | None = None) -> NoReturn:
-    """Log the format control at level ERROR on the root topic, then signal it as a simple error.
+    """Log the format ``control`` with ``arguments`` at level ERROR on the root topic, then signal it as a simple error.
 
-    hint: what to try, or a function that gives it; it is shown below the error and is no part of its text.
+    ``hint``: what to try, or a function that returns it. Users see it below the error; it is not part of the error's text.
     """
     logging.log_text(logging.ERROR, None, format_to_string(control, *arguments))
     conditions.error(SimpleError(control, *arguments), hint=hint)
 
 
 def close_names(name: str, names: Iterable[str], otherwise: str) -> str:
-    """The hint for a name that is not there: those of ``names`` that look like it, or the sentence ``otherwise``."""
+    """The hint for an unknown ``name``: similar names from ``names``, or the sentence ``otherwise``."""
     close = near_names(name, names)
     return f"Did you mean {' or '.join(close)}?" if close else otherwise
 
 
 def rpc_error(call: str, code: int, message: str, result: object = "", hint: str | None = None) -> None:
-    """Signal the master's refusal of ``call``, with the restart ``Ignore and continue``. hint: what to try, when it is not the usual."""
+    """Signal that the master refused ``call``, as a ``ros-rpc-error`` with the restart ``Ignore and continue``.
+
+    ``code``, ``message``, ``result``: the master's answer. ``hint``: what to try, instead of the usual hint.
+    """
     problem = RosRpcError(call, master_uri(), code, message, result)
     if hint is not None:
         problem.hint = hint

@@ -19,7 +19,7 @@ _file: Cell[TextIO | None] = Cell(None, fresh=True)
 
 
 def place(naming: Naming, now: float) -> Path | None:
-    """The path of the log file of a node with that `Naming`, or ``None``: ``__log:=``, or below ``$ROS_LOG_DIR``."""
+    """The path of a node's log file: from ``__log:=``, else below ``$ROS_LOG_DIR``, else ``None``. ``now``: seconds since 1970."""
     if naming.log_file is not None:
         return Path(naming.log_file)
     if os.environ.get("ROS_LOG_DIR"):
@@ -28,14 +28,14 @@ def place(naming: Naming, now: float) -> Path | None:
 
 
 def start(path: Path) -> None:
-    """Write to ``path`` from now on; folders are made. `OSError` when it cannot be written."""
+    """Write the log to ``path`` from now on; missing folders are made. Raises `OSError` if the file cannot be written."""
     stop()
     path.parent.mkdir(parents=True, exist_ok=True)
     _file.value = open(path, "a", encoding="utf-8", errors="backslashreplace")
 
 
 def write(line: str) -> str | None:
-    """Add a line, if there is a log file. Returns why that is the end of the log, a text, or ``None`` when all is well."""
+    """Add ``line`` to the log file, if there is one. If writing fails, the log ends; returns the reason as text, else ``None``."""
     if _file.value is None:
         return None
     try:
@@ -49,7 +49,7 @@ def write(line: str) -> str | None:
 
 
 def stop() -> None:
-    """Close it."""
+    """Close the log file."""
     file, _file.value = _file.value, None
     if file is not None:
         try:

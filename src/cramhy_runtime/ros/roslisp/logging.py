@@ -1,8 +1,8 @@
-"""Logging as roslisp does it: levels per topic, a line on standard output, and a message on ``/rosout``.
+"""Logging as in roslisp: levels per topic, a line on standard output, and a message on ``/rosout``.
 
 ``(ros-info (turtle) "text")`` prints ``[(TURTLE) INFO] 1292688669.674: text`` on a line of its own. The topic is a path in a
-tree: a level set for ``(a)`` counts for ``(a b)`` unless that has its own. Levels belong to the session and not to the node.
-Source: roslisp.md 4. The macros evaluate their arguments only when `enabled` says so.
+tree: a level set for ``(a)`` holds for ``(a b)`` too, unless that has its own. Levels belong to the session, not to the node.
+The macros evaluate their arguments only if `enabled` is true. Source: roslisp.md 4.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ __all__ = ["DEBUG", "ERROR", "FATAL", "INFO", "WARN"]
 
 
 def topic_path(topic: Any) -> Path:
-    """A topic as a tuple of upper-case names: a list, one symbol or string, nil for the root, or a tuple."""
+    """A log topic as a tuple of upper-case names. ``topic``: a list or tuple, one symbol or string, or nil for the root."""
     if topic is None:
         return ()
     if isinstance(topic, (Cons, tuple, list)):
@@ -43,7 +43,7 @@ def _levels() -> dict[Path, int]:
 
 
 def level_of(path: Path) -> int:
-    """The level in force for the topic ``path``, a tuple of names."""
+    """The level (1, 2, 4, 8, 16) in force for the topic ``path``, a tuple of names."""
     levels = _levels()
     if not levels:
         return INFO
@@ -60,14 +60,17 @@ def enabled(level: int, topic: object) -> bool:
 
 
 def ros_log(level: int, topic: object, control: str, *arguments: object) -> int | None:
-    """Log the format control with its arguments, if the level passes; the number of ``/rosout`` subscribers, or nil."""
+    """Log the format ``control`` with ``arguments``, if the topic's level allows ``level``.
+
+    Returns the number of ``/rosout`` subscribers, or nil if nothing is logged or no node runs. Source: roslisp.md 4.
+    """
     if not enabled(level, topic):
         return None
     return _print(level, topic, format_to_string(control, *arguments))
 
 
 def log_text(level: int, topic: object, text: str) -> int | None:
-    """Log a finished text from the runtime itself. ``topic``: a tuple of symbol names (taken from ROSLISP), or nil."""
+    """Log a finished ``text`` from the runtime itself, as `ros_log`. ``topic``: as there, or a tuple of symbol names in ROSLISP."""
     if not enabled(level, topic):
         return None
     if isinstance(topic, tuple):
@@ -104,7 +107,7 @@ def _print(level: int, topic: Any, text: str) -> int | None:
 
 
 def level_code(level: int | Symbol | str) -> int:
-    """The number of a level given as keyword, number, or upper-case string."""
+    """The number of a level, given as keyword, number, or upper-case string. Anything else is an error."""
     if level.__class__ is int:
         return level
     if isinstance(level, Symbol):
@@ -119,7 +122,10 @@ def level_code(level: int | Symbol | str) -> int:
 
 
 def set_debug_level(name: object, level: int | Symbol | str) -> int | None:
-    """Set the level of a topic (list or symbol). With a node running the parameter ``~debug/…/level`` is set too: 0."""
+    """Set the level of the log topic ``name``, a list or symbol. If a node runs, its parameter ``~debug/…/level`` is set too.
+
+    Returns 0 if a node runs, else nil.
+    """
     path, code = topic_path(name), level_code(level)
     _levels()[path] = code
     here = graph.active().lisp_node
@@ -132,7 +138,7 @@ def set_debug_level(name: object, level: int | Symbol | str) -> int | None:
 
 
 def set_debug_levels(*names_and_levels: Any) -> int | None:
-    """``NAME1 LEVEL1 …``, what the macro ``set-debug-levels`` calls with quoted names."""
+    """Set several levels: ``NAME1 LEVEL1 …``. The macro ``set-debug-levels`` calls it with quoted names."""
     result = None
     for index in range(0, len(names_and_levels), 2):
         result = set_debug_level(names_and_levels[index], names_and_levels[index + 1])
@@ -140,14 +146,14 @@ def set_debug_levels(*names_and_levels: Any) -> int | None:
 
 
 def debug_level(name: object) -> int:
-    """The number of the level in force; the topic is given as a reversed list of keywords, ``(:tcp :roslisp)``."""
+    """The number of the level in force for a log topic. ``name``: a reversed list of keywords, ``(:tcp :roslisp)``."""
     if isinstance(name, Cons):
         return level_of(tuple(reversed(topic_path(name))))
     return level_of(())
 
 
 def print_debug_levels() -> None:
-    """Print the table of levels; topics appear reversed, as in the original."""
+    """Print the table of levels, with the topics reversed as in the original."""
     levels = {(): INFO, **_levels()}
     lines = []
     for path, code in levels.items():
@@ -158,7 +164,7 @@ def print_debug_levels() -> None:
 
 
 def read_levels(here: Node) -> None:
-    """Take over the levels that stand as parameters below ``~debug/`` (at node start, and by ``~reset_debug_levels``)."""
+    """Set the levels from the node's parameters below ``~debug/``; for the node's start and ``~reset_debug_levels``."""
     prefix = here.resolve("~debug/").rstrip("/") + "/"
     for name in here.graph.parameters.names():
         if name.startswith(prefix) and name.endswith("/level"):

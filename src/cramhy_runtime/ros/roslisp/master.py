@@ -1,9 +1,9 @@
-"""The address of the master: what ``start-ros-node`` was given, what ``*default-master-uri*`` or ``ROS_MASTER_URI`` say.
+"""The address of the master: from ``start-ros-node``, ``*default-master-uri*`` or ``ROS_MASTER_URI``.
 
-The master is the graph in this process, and its address is that of the environment, or port 11311 of this machine. A program may
-name another one. Then somebody is asked for who is not there, and the program gets the error of the connection that was tried; if
-somebody answers, it is the master of a real ROS, which sessions reach by another way (`connection_problem`).
-Source: roslisp.md 2.1 step 6, 2.5, 8.4.
+The master is the graph in this process. Its address is that in the environment, or port 11311 of this machine. If a program names
+another address, `connection_problem` tries to connect. Usually no master is there, and the program gets the error of the
+connection. If one answers, it is the master of a real ROS, which sessions reach by another way. Source: roslisp.md 2.1 step 6,
+2.5, 8.4.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Uri:
 
 
 def make_uri(address: str, port: int) -> Uri:
-    """An address as ``start-ros-node`` takes it."""
+    """An address for ``start-ros-node``: host ``address`` and number ``port``."""
     return Uri(address, port)
 
 
@@ -50,7 +50,10 @@ def master_uri() -> Uri | None:
 
 
 def chosen_uri(given: Text | Uri | None = None) -> Uri:
-    """The `Uri` that a node starts with: ``given`` (text, a `Uri`, or ``None``), else the user's default, else the environment's."""
+    """The `Uri` for a starting node: ``given`` (text, a `Uri`, or ``None``), else the user's default, else the environment's.
+
+    A malformed address is an error.
+    """
     if isinstance(given, Uri):
         return Uri(_dotted(given.address), given.port)
     if given is None:
@@ -84,9 +87,9 @@ def is_here(uri: Uri | None) -> bool:
 
 
 def connection_problem(uri: Uri | None) -> str | None:
-    """Why the master at ``uri`` cannot be worked with, as text, or ``None`` when it is the one in this process.
+    """The reason, as text, why the node cannot use the master at ``uri``; ``None`` for the master in this process.
 
-    Somewhere else a connection is tried, for a second at most.
+    For another address, it tries to connect for one second at most.
     """
     return None if is_here(uri) else kernel.run_blocking(_try_to_connect, str(uri.address), uri.port)
 

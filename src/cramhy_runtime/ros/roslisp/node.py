@@ -1,7 +1,7 @@
-"""The node of the Lisp program: starting it, shutting it down, asking for it.
+"""Start, shut down and find the node of the Lisp program.
 
-`start_ros_node` prints the six lines of the original. In virtual time the 1.09 s that the original takes pass on the clock, so
-that stamps look as on the slides; nobody waits for them. In wall time the node is up at once. Source: roslisp.md 2.
+`start_ros_node` prints the six lines of the original. In virtual time, the clock advances by the 1.09 s that the original takes,
+so stamps look as on the slides. In wall time, the node starts at once. Source: roslisp.md 2.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 STARTUP_SECONDS = 1.094
-"""What starting a node took when the golden transcript was recorded."""
+"""Seconds that starting a node took in the golden transcript."""
 SHUTDOWN_SECONDS = 3.5
-"""How long the cleanup of callbacks is waited for: what shutting a node down takes in the original."""
+"""Seconds to wait at most for the cleanup of callbacks: shutting a node down takes as long in the original."""
 ROSOUT_DELAY = 0.05
-"""Seconds until the log collector has connected to a new node: its first log calls reach nobody."""
+"""Seconds until the log collector has connected to a new node. Before that, log calls reach no subscriber."""
 
 NODE_NAME = special("ROSLISP::*ROS-NODE-NAME*")
 RUNNING_FROM_COMMAND_LINE = special("ROSLISP::*RUNNING-FROM-COMMAND-LINE*")
 
 
 def node_status() -> Keyword:
-    """``:running`` or ``:shutdown``."""
+    """The status of the node: ``:running`` or ``:shutdown``."""
     return sym(":SHUTDOWN") if graph.active().lisp_node is None else sym(":RUNNING")
 
 
 def require_node() -> graph.Node:
-    """The node of the Lisp program. Without one: the continuable error that offers to start a dummy."""
+    """The node of the Lisp program. Without one, it is an error with a restart that starts a dummy node."""
     here = graph.active().lisp_node
     while here is None:
         problem = SimpleError("Node status is SHUTDOWN")
@@ -60,7 +60,7 @@ def require_node() -> graph.Node:
 
 
 def fully_qualified_name(name: Text) -> str:
-    """The global name that ``name`` means to the node; works without a node too."""
+    """The global name of ``name`` for the node. It works without a node too. Source: roslisp.md 3."""
     here = graph.active().lisp_node
     if not isinstance(name, (str, LispString)):
         return conditions.type_error(name, "STRING", "\nwhen binding ROSLISP::NAME")
@@ -72,10 +72,11 @@ def fully_qualified_name(name: Text) -> str:
 def start_ros_node(
     name: Text, *, master_uri: Text | master.Uri | None = None, anonymous: bool | None = None, cmd_line_args: Any = None, **others: object
 ) -> int | None:
-    """Start the node ``name``. Returns the number of ``/rosout`` subscribers, usually 0.
+    """Start the node ``name``. A running node is shut down first. Returns the number of ``/rosout`` subscribers, usually 0.
 
-    anonymous: append microseconds and seconds. cmd_line_args: a list of strings, or one string. master_uri: a string or a
-    `Uri`. Others are ignored, but for two that are errors since long.
+    ``anonymous``: append microseconds and seconds to the name. ``cmd_line_args``: a list of strings, or one string.
+    ``master_uri``: a string or a `Uri`. Other arguments are ignored, except two old ones, which are errors. A master that cannot be
+    reached is an error. Source: roslisp.md 2.
     """
     for gone in ("xml-rpc-port", "pub-server-port"):
         if gone.replace("-", "_") in others:
@@ -189,7 +190,10 @@ def _open_log_file(naming: names.Naming) -> None:
 
 
 def shutdown_ros_node() -> None:
-    """Shut the node down: its topics, services and tasks end. NIL when none is running. An executable ends with its node."""
+    """Shut the node down, with its topics, services and tasks. If none runs, do nothing. An executable ends with its node.
+
+    Returns nil. Source: roslisp.md 2.
+    """
     here = graph.active().lisp_node
     if here is None:
         return None
@@ -213,7 +217,10 @@ def _ended() -> None:
 
 
 def with_ros_node(name: Text, body: Callable[[], T], *, spin: bool | None = None, **options: Any) -> T:
-    """Run ``body`` with a node, and shut it down on every way out. With ``spin`` wait for ever after the body."""
+    """Run ``body`` with the node ``name``, and shut the node down however ``body`` ends. Returns the values of ``body``.
+
+    ``spin``: if true, wait for ever after the body. ``options``: as for `start_ros_node`. Source: roslisp.md 2.
+    """
 
     def shut_down(condition=None):
         text = "About to shutdown" if condition is None else f"About to shutdown due to condition {condition}"
@@ -223,7 +230,7 @@ def with_ros_node(name: Text, body: Callable[[], T], *, spin: bool | None = None
         start_ros_node(name, **options)
         result = body()
         while truth(spin):
-            kernel.park("nothing: the node spins until somebody ends it", kernel.now() + 100)
+            kernel.park("nothing: the node spins until it is shut down", kernel.now() + 100)
         return result
 
     try:
@@ -234,13 +241,13 @@ def with_ros_node(name: Text, body: Callable[[], T], *, spin: bool | None = None
 
 
 def standalone_exec_debug_hook(condition: BaseException, hook: object = None) -> None:
-    """Debugger hook of executables: ends the node when one is running."""
+    """The debugger hook of executables: shuts the node down if one runs."""
     if graph.active().lisp_node is not None:
         conditions.invoke_restart(sym("ROSLISP::SHUTDOWN-ROS-NODE"), condition)
 
 
 def print_status() -> None:
-    """Print the node's name, state, master, and what it publishes and subscribes to."""
+    """Print the node's name, state, master, publications and subscriptions."""
     here = graph.active().lisp_node
     stream = standard_output()
     stream.fresh_line()

@@ -1,7 +1,7 @@
-"""What a Lisp value becomes as a parameter, and a parameter in Lisp; the encoding of XML-RPC without the text.
+"""Convert Lisp values to parameters and back, as XML-RPC does, but without the text.
 
-Symbols become their names, lists and vectors arrays, structs dictionaries. On the way back a float is a single-float, an array a
-list, false NIL. An integer has 32 bits. Source: roslisp.md 8, xmlrpc.com/spec.
+Symbols become their names, lists and vectors become arrays, structs become dictionaries. On the way back, floats become
+single-floats, arrays lists, and false NIL. An integer has 32 bits. Source: roslisp.md 8, xmlrpc.com/spec.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ LEAST, MOST = -(2**31), 2**31 - 1
 
 
 def encode(value: object) -> Parameter:
-    """A Lisp value as the master keeps it."""
+    """Convert a Lisp value to a parameter for the master. A value without a parameter type is an error."""
     if value is None or value is False:
         return False
     if value is True or isinstance(value, str):
@@ -63,7 +63,7 @@ def _refuse(text: str) -> NoReturn:
 
 
 def decode(value: Parameter) -> Any:
-    """A value of the master as Lisp sees it."""
+    """Convert a parameter of the master to a Lisp value."""
     if value is False:
         return None
     if isinstance(value, (list, tuple)):

@@ -1,4 +1,4 @@
-"""The functions of roslisp on parameters. They need no running node, only a known master. Source: roslisp.md 8."""
+"""The functions of roslisp on parameters. They need a known master, but no running node. Source: roslisp.md 8."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _require_master() -> None:
 
 
 def _tree(control: str, *arguments: object) -> ParameterTree:
-    """The master's parameters; when the master is another one, the error ``control`` with its address, ``arguments`` and the reason."""
+    """The master's parameters. Another master is the error ``control``, with its address, ``arguments`` and the reason."""
     uri = master.master_uri()
     problem = master.connection_problem(uri)
     if problem is not None:
@@ -43,7 +43,10 @@ def _symbol_name(thing: object) -> str:
 
 
 def get_param(key: Text, default: object = UNSUPPLIED) -> Any:
-    """The value of the parameter; ``default`` (nil counts) when it is not set; else an error that is logged too."""
+    """The value of the parameter ``key``, a string; if it is not set, ``default``, which may be nil.
+
+    Without a default, it is an error, which is logged too.
+    """
     name = _full_name(key)
     try:
         return decode(_tree("Could not contact master~* when getting param ~a: ~a", name).get(name))
@@ -62,7 +65,7 @@ def get_param(key: Text, default: object = UNSUPPLIED) -> Any:
 
 
 def set_param(key: Text, val: object) -> int:
-    """Set the parameter; 0."""
+    """Set the parameter ``key``, a string, to ``val``; returns 0. A value without a parameter type is an error."""
     name = _full_name(key)
     tree = _tree("Could not contact master at ~a when setting param ~a", name)
     try:
@@ -73,13 +76,13 @@ def set_param(key: Text, val: object) -> int:
 
 
 def has_param(key: Text) -> bool | None:
-    """T when the parameter is set, even to false."""
+    """T if the parameter ``key`` is set, even to false; else nil."""
     name = _full_name(key)
     return True if _tree("Could not contact master at ~a for call to hasParam ~a: ~a", name).has(name) else None
 
 
 def delete_param(key: Text) -> int:
-    """Remove the parameter; 0. One that is not set is a ``ros-rpc-error``."""
+    """Remove the parameter ``key``; returns 0. If it is not set, it is a ``ros-rpc-error``."""
     name = _full_name(key)
     try:
         _tree("Could not contact master at ~a when deleting param ~a: ~a", name).delete(name)
@@ -89,7 +92,7 @@ def delete_param(key: Text) -> int:
 
 
 def list_params(namespace: Text | Cons | None = None) -> Cons | None:
-    """The list of the names below a namespace: a string, or a list of symbols ``(foo bar)`` for ``/foo/bar/``."""
+    """The list of parameter names below ``namespace``: a string, a list of symbols ``(foo bar)`` for ``/foo/bar/``, or nil for all."""
     _require_master()
     if namespace is None:
         prefix = "/"

@@ -1,7 +1,8 @@
-"""Services for the Lisp program: calling them, and offering them.
+"""Call and offer services from the Lisp program.
 
-The services that the program offers run one at a time in the task ``ROSLisp event loop``. A call that nobody can answer is a
-``ros-rpc-error``, which is no ``error``; a server that refuses gives a simple error with the server's text. Source: roslisp.md 7.
+The services of the program run one at a time in the task ``ROSLisp event loop``. If no node offers a service, its call signals
+``ros-rpc-error``, which is not an ``error``. If the server refuses, it is a simple error with the server's text.
+Source: roslisp.md 7.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
 from cramhy_runtime.ground.data import LispString, Symbol
 from cramhy_runtime.ground.functions import function_named
-from cramhy_runtime.ground.generic_errors import no_applicable_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import sym, symbol_name
 from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.utilities.wait_queue import need, time_limit
@@ -35,9 +36,10 @@ NAMED_BY_STRINGS = 'A service is named by a string, such as "/clear". Has the va
 
 
 class LispService(Service):
-    """A service of the Lisp program. Requests are handled one after the other in the node's event loop task."""
+    """A service of the Lisp program. The task of the node's event loop handles the requests one after the other."""
 
     def submit(self, call: Call) -> None:
+        """Queue ``call`` for the event loop. A call from the event loop itself is answered at once."""
         if self.closed:
             call.finish(lost=True)
             return
@@ -50,7 +52,7 @@ class LispService(Service):
             kernel.unpark(loop.task)
 
     def answer(self, call: Call) -> None:
-        """Run the callback and finish ``call``, whatever the callback does."""
+        """Run the callback and finish ``call``, even if the callback fails."""
 
         def refuse(condition):
             call.finish(failure=f"service cannot process request: {condition.report()}")
@@ -103,7 +105,7 @@ class EventLoop:
 
 
 def event_loop(node: Any) -> EventLoop:
-    """The event loop of the Lisp program's node; started by its first service."""
+    """The event loop of the Lisp program's node. The first service starts it."""
     found = getattr(node, "event_loop", None)
     if found is None:
         found = node.event_loop = EventLoop(node)
@@ -114,7 +116,7 @@ def event_loop(node: Any) -> EventLoop:
 
 
 def call(service: Service, request: RosMessage) -> RosMessage | None:
-    """Send ``request`` to the `Service` and wait; the response, or the client's error."""
+    """Send ``request`` to ``service``, wait, and return the response. If the call fails, it is the client's error, logged too."""
     if request.ros_type != service.type.request.ros_type:
         return ros_error(
             "service-call to ~a with request ~a failed.",
@@ -137,7 +139,7 @@ def call(service: Service, request: RosMessage) -> RosMessage | None:
 
 
 def _reason(service: Service) -> str:
-    """What to say of a refusal without a text: the error that the server logged last, which may tell."""
+    """The hint for a refusal without a text: the last error that the server logged may explain it."""
     server = service.node
     said = next((text for level, name, text in reversed(server.graph.log) if name == server.name and level >= logging.ERROR), None)
     told = f"The error that it logged last: {said}" if said else "rostopic echo /rosout, typed at the prompt, shows what it logs."
@@ -145,9 +147,9 @@ def _reason(service: Service) -> str:
 
 
 def lookup(here: Node, name: str) -> Service | None:
-    """The offered `Service` with the global name ``name``; with none, the master's ``ros-rpc-error``.
+    """The offered `Service` with the global name ``name``. If there is none, it is the master's ``ros-rpc-error``.
 
-    Whoever has that ignored gets the service if there is one by now, else ``None``.
+    If a handler ignores the error, the result is the service if it is offered by then, else ``None``.
     """
     services = here.graph.services
     if name not in services:
@@ -162,7 +164,7 @@ def lookup(here: Node, name: str) -> Service | None:
 
 
 class ServiceClient:
-    """What ``make-service-client`` returns: a name and a type to call again and again."""
+    """The name and type of a service, to call it again and again (from ``make-service-client``)."""
 
     lisp_name = "ROSLISP::SERVICE-CLIENT"
 
@@ -171,7 +173,7 @@ class ServiceClient:
 
 
 def make_service_client(service_name: Text, service_type: Text) -> ServiceClient:
-    """A client for `call_service` and `wait_for_service`; both arguments are strings."""
+    """A client for `call_service` and `wait_for_service`. Both arguments are strings, else it is a type error."""
     for name, value in (("SERVICE-NAME", service_name), ("SERVICE-TYPE", service_type)):
         if not isinstance(value, (str, LispString)):
             return conditions.error(
@@ -186,9 +188,10 @@ def make_service_client(service_name: Text, service_type: Text) -> ServiceClient
 
 
 def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessage | None:
-    """Call a service: ``name type . request`` or ``client . request``; returns the response.
+    """Call a service and wait; returns the response. The arguments are ``name type . request`` or ``client . request``.
 
-    The request is keywords and values, or exactly one request object.
+    The request is keywords and values, or exactly one request object. If no node offers the service, it is a ``ros-rpc-error``;
+    if the call fails, an error. Source: roslisp.md 7.1.
     """
     here = node.require_node()
     if isinstance(service, ServiceClient):
@@ -217,7 +220,7 @@ def _request(service_type: messages.ServiceType, arguments: tuple[Any, ...]) -> 
 
 
 def wait_for_service(service: ServiceClient | Text, timeout: float | None = None) -> bool | None:
-    """T as soon as the service is offered, NIL when ``timeout`` seconds have passed; asks every 0.1 s."""
+    """Wait until the service is offered; returns T, or NIL after ``timeout`` seconds. It looks every 0.1 s. Source: roslisp.md 7.1."""
     here = node.require_node()
     if isinstance(service, ServiceClient):
         name = service.name
@@ -240,7 +243,10 @@ def wait_for_service(service: ServiceClient | Text, timeout: float | None = None
 
 
 def register_service_fn(service_name: Text, function: Handler | Symbol, service_type: ServiceName) -> int:
-    """Offer a service: ``function`` gets the request and returns the response; 1."""
+    """Offer the service ``service_name``: ``function`` takes the request and returns the response. Returns 1.
+
+    If the node offers that service already, it is an error. Source: roslisp.md 7.2.
+    """
     here = node.require_node()
     kind = messages.service_type(service_type)
     if not isinstance(service_name, (str, LispString)):
@@ -259,7 +265,7 @@ def register_service_fn(service_name: Text, function: Handler | Symbol, service_
 
 
 def register_service(service_name: Text, symbol: Symbol) -> int:
-    """What the macro ``register-service`` calls: the callback is the function that the service symbol names."""
+    """Offer a service for the macro ``register-service``: ``symbol`` names both its type and the callback. Returns 1."""
     return register_service_fn(service_name, symbol, symbol)
 
 
@@ -267,7 +273,7 @@ def register_service(service_name: Text, symbol: Symbol) -> int:
 
 
 class PersistentService:
-    """A service client that keeps its connection (``make-instance 'persistent-service``)."""
+    """A service client with a lasting connection (``make-instance 'persistent-service``)."""
 
     lisp_name = "ROSLISP::PERSISTENT-SERVICE"
     initargs = {"SERVICE-NAME": "service_name", "SERVICE-TYPE": "service_type"}
@@ -281,11 +287,15 @@ class PersistentService:
         self.connect(node.require_node())
 
     def connect(self, here: Node) -> None:
+        """Look the service up again for the node ``here``; errors as in `lookup`."""
         self.connection = lookup(here, here.resolve(str(self.service_name)))
 
 
 def call_persistent_service(service: PersistentService, *request: object) -> RosMessage | None:
-    """Call through the open connection. A failure is a ``service-call-error`` with the restart ``reconnect``."""
+    """Call through the open connection; returns the response. A failure is a ``service-call-error`` with the restart ``reconnect``.
+
+    ``request``: keywords and values, or exactly one request object.
+    """
     here = node.require_node()
     message = _request(_persistent(service).type, request)
     while True:
@@ -305,12 +315,12 @@ def call_persistent_service(service: PersistentService, *request: object) -> Ros
 
 
 def close_persistent_service(service: PersistentService) -> None:
-    """Close the connection."""
+    """Close the connection of ``service``."""
     _persistent(service).connection = None
 
 
 def persistent_service_ok(service: PersistentService) -> bool | None:
-    """T while the connection is open and the server there."""
+    """T while the connection is open and the server offers the service, else nil."""
     connection = _persistent(service).connection
     return True if connection is not None and connection.node.graph.services.get(connection.name) is connection else None
 
@@ -320,7 +330,7 @@ def _persistent(service: object) -> PersistentService:
 
 
 def call_named(service_name: Text, service_symbol: Symbol, return_field: Symbol | None, *request: object) -> Any:
-    """What functions made by ``def-service-call`` do: call, and return the response or one field of it."""
+    """Call a service for a function made by ``def-service-call``; returns the response, or its field ``return_field``."""
     response = call_service(service_name, service_symbol, *request)
     if return_field is None:
         return response

@@ -1,7 +1,7 @@
-"""XML-RPC structs: what ``get-param`` returns for a namespace, a name with values below it (package S-XML-RPC).
+"""XML-RPC structs (package S-XML-RPC). ``get-param`` returns one for a namespace, a name with values below it.
 
-A struct is an association list of keywords, spelled as the parameters are (``:|background_r|``), and values; below it are lists and
-structs again. ``set-param`` takes one as well. Source: roslisp.md 8.1, the library s-xml-rpc.
+A struct is an association list of keywords and values. The keywords are spelled as the parameters (``:|background_r|``); values may
+be lists and structs. ``set-param`` accepts structs too. Source: roslisp.md 8.1, the library s-xml-rpc.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cramhy_runtime.kernel.typing_names import Any
 
 
 class Struct:
-    """Members by name, in order; the values are Lisp's."""
+    """Members by name, in order. The values are Lisp values."""
 
     __slots__ = ("members",)
     lisp_name = "S-XML-RPC::XML-RPC-STRUCT"
@@ -25,24 +25,24 @@ class Struct:
 
 
 def xml_rpc_struct(*names_and_values: Any) -> Struct:
-    """A new struct of alternating names (symbols or strings) and values."""
+    """A new struct from alternating names (symbols or strings) and values. An odd number of arguments is an error."""
     if len(names_and_values) % 2:
         return conditions.error("An XML-RPC struct is made of names and values in turn, but the last name has no value.")
     return Struct({string_designator(name): value for name, value in zip(names_and_values[::2], names_and_values[1::2])})
 
 
 def xml_rpc_struct_alist(struct: Struct) -> Cons | None:
-    """Its members as an association list with keywords."""
+    """The members of ``struct`` as an association list with keywords."""
     return list_from([Cons(keyword(name), value) for name, value in _checked(struct).members.items()])
 
 
 def get_xml_rpc_struct_member(struct: Struct, member: object) -> Any:
-    """The value of a member, or nil when it has none of that name."""
+    """The value of the member with the name ``member``, a symbol or string; nil if there is none."""
     return _checked(struct).members.get(string_designator(member))
 
 
 def xml_rpc_struct_p(thing: object) -> bool | None:
-    """T for structs."""
+    """T if ``thing`` is a struct, else nil."""
     return True if isinstance(thing, Struct) else None
 
 

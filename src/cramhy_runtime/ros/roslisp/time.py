@@ -1,6 +1,6 @@
-"""Waiting and looping by the clock, as roslisp does it.
+"""Wait and loop by the clock, as roslisp does.
 
-All waits here park, so in virtual time they take no time at all (law 5). Source: roslisp.md 9.
+All waits here park, so in virtual time they take no real time (law 5). Source: roslisp.md 9.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 
 def spin_until_ros_time_valid() -> None:
-    """Wait until `ros_time` is above zero, looking every 0.05 s; a warning every 100 looks."""
+    """Wait until `ros_time` is above zero. It looks every 0.05 s and warns every 100 looks."""
     looks = 0
     while not ros_time() > 0:
         looks += 1
@@ -34,7 +34,7 @@ def spin_until_ros_time_valid() -> None:
 
 
 def wait_duration(d: float) -> bool:
-    """Wait until ``d`` seconds of ROS time have passed; T."""
+    """Wait until ``d`` seconds of ROS time have passed; returns T."""
     seconds = float(need_real(d))
     node = graph.active().lisp_node
     if node is None or getattr(node, "simulated_time", None) is None:
@@ -47,7 +47,7 @@ def wait_duration(d: float) -> bool:
 
 
 def loop_at_most_every(d: float, body: Callable[[], object]) -> NoReturn:
-    """Call ``body`` for ever, at most once per ``d`` seconds, the first time at once. It is left by a non-local exit."""
+    """Call ``body`` for ever, at most once per ``d`` seconds, the first time at once. Only a non-local exit ends the loop."""
     period = float(need_real(d))
     while True:
         next_time = kernel.now() + period
@@ -57,9 +57,9 @@ def loop_at_most_every(d: float, body: Callable[[], object]) -> NoReturn:
 
 
 def spin_until(test: Callable[[], object], increment: float, body: Callable[[], object] | None = None, timeout: float | None = None) -> Any:
-    """Call ``test`` every ``increment`` seconds and return its value when true; else call ``body``.
+    """Call ``test`` every ``increment`` seconds until it is true; returns its values. After each false test, call ``body``.
 
-    When ``timeout`` seconds have passed: two values, NIL and T. The test is tried at least once.
+    After ``timeout`` seconds, returns two values, NIL and T. ``test`` is called at least once.
     """
     end = None if timeout is None else kernel.now() + float(need_real(timeout))
     while True:
@@ -75,7 +75,10 @@ def spin_until(test: Callable[[], object], increment: float, body: Callable[[], 
 
 
 def with_parallel_thread(function: Callable[[], object] | Symbol, name: str | None, body: Callable[[], T]) -> T:
-    """Run ``function`` (or that of a symbol) in a task called ``name`` while ``body`` runs, then end it; the values of ``body``."""
+    """Run ``function`` in a task called ``name`` while ``body`` runs, then end the task. Returns the values of ``body``.
+
+    ``function`` may be a symbol that names the function.
+    """
     if isinstance(function, Symbol):
         name = name if name is not None else function.name
         function = function_named(function)

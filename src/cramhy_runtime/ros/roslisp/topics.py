@@ -1,7 +1,7 @@
-"""Topics for the Lisp program: advertising, publishing, subscribing, and the tasks that callbacks run in.
+"""Advertise, publish and subscribe from the Lisp program, and run its callbacks in tasks.
 
 Each topic that the program subscribes to has one queue and one task, ``Subscriber thread for topic /x``, which runs the
-callbacks, the newest first; so callbacks of one topic never overlap, and an error in one is logged while the others go on.
+callbacks, the newest first. So callbacks of one topic never overlap. An error in a callback is logged, and the others go on.
 Source: roslisp.md 6.
 """
 
@@ -14,7 +14,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleTypeError, formatted, shown
 from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
 from cramhy_runtime.ground.printing import format_to_string
-from cramhy_runtime.ground.generic_errors import no_applicable_method, no_primary_method
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method, no_primary_method
 from ..messages import RosMessage, topic_class
 from ..topics import Publication
 from ..type_texts import same_on_the_wire
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
 
 
 DELIVERY = ("ROSLISP", "DESERIALIZATION-THREAD")
-"""The topic of log lines about messages that are not delivered."""
+"""The log topic of lines about messages that are not delivered."""
 
 
 class Subscription:
-    """The Lisp program's side of a topic: queue, task, callbacks (`Subscriber`s, the newest first).
+    """The Lisp program's end of a topic: queue, task, callbacks (`Subscriber`s, the newest first).
 
-    The task lives as long as there are messages to deliver. A task that begins where another one just ended needs no stack
-    of its own, so a pose that comes 62 times a second costs no switch of threads, and a report of waiting tasks names only
-    those that really wait. A message that finds no task is in its hand already: it does not stand in the queue, whose limit
-    counts the messages that wait for the one that is delivered.
+    The task lives only while there are messages to deliver. A task that begins where another one has just ended needs no stack
+    of its own, so a pose that comes 62 times a second costs no switch of threads. A report of waiting tasks names only tasks
+    that really wait. If no task runs, a message goes directly to a new task. Otherwise it waits in the queue, and ``limit`` is
+    the number of messages that may wait there.
     """
 
     lisp_name = "ROSLISP::SUBSCRIPTION"
@@ -57,6 +57,7 @@ class Subscription:
         self._handlers = [(Error, self._failed)]
 
     def receive(self, message: RosMessage) -> None:
+        """Deliver ``message`` in a new task, or queue it for the running one. A full queue drops its oldest message."""
         if self.task is not None:
             if len(self.queue) == self.limit:
                 logging.log_text(logging.DEBUG, DELIVERY, f"Dropped 1 messages on topic {self.name}")
@@ -67,7 +68,7 @@ class Subscription:
             self.task = owner.spawn(self._run, name=self.task_name, parent=owner.main)
 
     def spoiled(self, publication: Publication, message: RosMessage) -> None:
-        """A message of another type came over the wire. roslisp's thread for the connection dies of it; we drop the message."""
+        """Drop ``message`` from ``publication``, since it has another type. In roslisp, the connection's thread dies of it."""
         logging.log_text(
             logging.DEBUG,
             DELIVERY,
@@ -75,6 +76,7 @@ class Subscription:
         )
 
     def close(self) -> None:
+        """End the subscription and its task."""
         self.closed = True
         if self.task is not None and self.task is not kernel.current():
             self.task.cancel("the subscription ended")
@@ -112,7 +114,7 @@ class Subscription:
 
 
 class Subscriber:
-    """What ``subscribe`` returns: one callback of one subscription, for ``unsubscribe``."""
+    """One callback of one subscription. ``subscribe`` returns it, for ``unsubscribe``."""
 
     __slots__ = ("topic", "subscription", "callback")
     lisp_name = "ROSLISP::SUBSCRIBER"
@@ -131,7 +133,11 @@ def _topic_name(topic: object, parameter: str = "TOPIC") -> str:
 
 
 def advertise(topic: Text, topic_type: TypeName, *, latch: bool | None = None) -> Publication | None:
-    """Publish on ``topic`` from now on. Advertised already: the publication that is there, unchanged."""
+    """Publish messages of ``topic_type`` on ``topic`` from now on; returns the `Publication`.
+
+    If the node advertises the topic already, returns its publication unchanged. ``latch``: whether new subscribers get the last
+    message. An unknown type is an error. Source: roslisp.md 6.1.
+    """
     topic = _topic_name(topic)
     here = node.require_node()
     cls = topic_class(topic_type)
@@ -143,7 +149,7 @@ def advertise(topic: Text, topic_type: TypeName, *, latch: bool | None = None) -
 
 
 def _agrees_elsewhere(here: Node, name: str, cls: MessageType, operator: str) -> bool:
-    """Whether the robot that the session is joined to, if it is, has messages of ``cls`` on the topic too; an error when it has not."""
+    """Signal an error if the session's robot has another type than ``cls`` on the topic. Returns true if there is no conflict."""
     other = here.graph.type_elsewhere(name, cls) if here.graph.type_elsewhere is not None else None
     if other is None:
         return True
@@ -161,18 +167,18 @@ def _agrees_elsewhere(here: Node, name: str, cls: MessageType, operator: str) ->
 
 
 def _warn_of_listeners_to_another_type(publication: Publication) -> None:
-    """Such a node complains on its own screen, where nobody looks who has just typed ``advertise``."""
+    """Warn the user of ``advertise``; the listening node complains only on its own screen."""
     for subscription in publication.node.graph.topics[publication.name].visible_subscriptions:
         if not same_on_the_wire(subscription.type, publication.type):
             conditions.warn(
                 "~a",
                 f"{subscription.node.name} listens to {publication.name} for messages of type "
-                f"{subscription.type.ros_type}, so it gets nothing of what is published there as {publication.type.ros_type}.",
+                f"{subscription.type.ros_type}, so it gets no message that is published there as {publication.type.ros_type}.",
             )
 
 
 def unadvertise(topic: Text) -> int:
-    """Stop publishing on ``topic``; 1. Not advertised: a warning."""
+    """Stop publishing on ``topic``; returns 1. If the node does not advertise it, warn."""
     here = node.require_node()
     name = here.resolve(_topic_name(topic))
     if not here.unadvertise(name):
@@ -182,7 +188,10 @@ def unadvertise(topic: Text) -> int:
 
 
 def publish(pub: Publication | Text, message: RosMessage) -> int:
-    """Send ``message`` on ``pub``, a publication or the name of an advertised topic; the number of subscribers reached."""
+    """Send ``message`` on ``pub``, a publication or the name of an advertised topic; returns the number of subscribers reached.
+
+    A topic that is not advertised is an error. Source: roslisp.md 6.
+    """
     publication = pub
     if publication.__class__ is not Publication:
         if not isinstance(pub, (str, LispString)):
@@ -216,7 +225,7 @@ def publish(pub: Publication | Text, message: RosMessage) -> int:
 
 
 def publication_type(pub: Publication) -> MessageType:
-    """The message class of a publication object (``publish-msg`` and ``make-publisher-msg`` build on it)."""
+    """The message class of a publication object, for ``publish-msg`` and ``make-publisher-msg``. Else it is a type error."""
     if isinstance(pub, Publication):
         return pub.type
     text = f"Value of #:G418 in\n(THE ROSLISP::PUBLICATION #:G418)\nis\n  {shown(pub)},\nnot a\n  ROSLISP::PUBLICATION."
@@ -227,7 +236,7 @@ def publication_type(pub: Publication) -> MessageType:
 
 
 def num_subscribers(pub: Publication) -> int:
-    """How many subscribers are connected to a publication object."""
+    """The number of subscribers connected to a publication object."""
     if not isinstance(pub, Publication):
         return conditions.type_error(pub, "ROSLISP::PUBLICATION", "\nwhen binding ROSLISP::PUB")
     return pub.subscribers
@@ -236,10 +245,11 @@ def num_subscribers(pub: Publication) -> int:
 def subscribe(
     topic: Text, topic_type: TypeName, callback: Callable[[Any], object], *, max_queue_length: int | Symbol | None = None
 ) -> Subscriber | None:
-    """Have ``callback`` called with every message on ``topic``; returns a subscriber for `unsubscribe`.
+    """Call ``callback`` with every message on ``topic``; returns a `Subscriber` for `unsubscribe`.
 
-    Waits until publishers that are there have accepted the connection. A type that cannot be found is a warning and NIL.
-    ``max_queue_length``: of messages that wait, the oldest are dropped beyond it; nil or ``infty``: unlimited.
+    First, wait until the present publishers have accepted the connection. For an unknown type, warn and return NIL.
+    ``max_queue_length``: how many messages may wait; older ones are dropped. Nil or ``infty``: unlimited.
+    Source: roslisp.md 6.4.
     """
     topic = _topic_name(topic)
     here = node.require_node()
@@ -278,7 +288,7 @@ def subscribe(
 
 
 def _publishers_of_another_type(here: Node, name: str, cls: MessageType) -> str | None:
-    """What the publishers of the topic say when none of them has messages of class ``cls``, else ``None``."""
+    """The publishers' complaint if none of them has messages of class ``cls``, else ``None``."""
     topic = here.graph.topics.get(name)
     publications = topic.visible_publications if topic is not None else []
     if not publications or any(same_on_the_wire(publication.type, cls) for publication in publications):
@@ -307,7 +317,10 @@ def _limit(length: object) -> int | None:
 
 
 def unsubscribe(subscriber: Subscriber) -> MultipleValues:
-    """Remove the callback; the last one ends the subscription. Returns no values."""
+    """Remove the callback of ``subscriber``; removing the last one ends the subscription. Returns no values.
+
+    If the callback is gone already, it is an error.
+    """
     if not isinstance(subscriber, Subscriber):
         return conditions.type_error(subscriber, "ROSLISP::SUBSCRIBER", "\nwhen binding ROSLISP::SUBSCRIBER")
     subscription = subscriber.subscription

@@ -1,6 +1,6 @@
-"""``roslisp-utilities``: what runs when the node starts and when it ends, and conversions between ROS and Lisp names.
+"""``roslisp-utilities``: functions to run at the node's start and end, and conversions between ROS and Lisp names.
 
-Source: roslisp.md 11. Init functions run by descending rank; equal ranks in the order of registration.
+Init functions run by descending rank, those of equal rank in the order of registration. Source: roslisp.md 11.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ _cleanup_functions: dict[Symbol, Callable[[], object]] = per_image({})
 
 
 def register_ros_init_function(symbol: Symbol, rank: float = 0) -> Callable[[], object]:
-    """Run the function of ``symbol``, as it is now, in `startup_ros`; higher ranks come first. Returns the function."""
+    """Register the present function of ``symbol`` for `startup_ros`, which runs higher ranks first. Returns the function."""
     function = function_named(symbol)
     _init_functions[symbol] = (function, rank if isinstance(rank, (int, float)) and rank is not True else 0)
     return function
 
 
 def register_ros_cleanup_function(symbol: Symbol) -> Callable[[], object]:
-    """Run the function of ``symbol``, as it is now, in `shutdown_ros`. Returns the function."""
+    """Register the present function of ``symbol`` for `shutdown_ros`. Returns the function."""
     function = _cleanup_functions[symbol] = function_named(symbol)
     return function
 
 
 def forget_registrations() -> None:
-    """Empty both registries (for tests, and for a session that starts over)."""
+    """Empty both registries, for tests and for a session that starts over."""
     _init_functions.clear()
     _cleanup_functions.clear()
 
@@ -44,7 +44,7 @@ def forget_registrations() -> None:
 def startup_ros(
     *, master_uri: object = UNSUPPLIED, cmd_line_args: object = UNSUPPLIED, name: str = "cram_hl", anonymous: bool = True
 ) -> None:
-    """Start a node, after shutting down one that runs, and run the init functions; NIL."""
+    """Start a node and run the init functions; returns NIL. A running node is shut down first. Arguments: see `start_ros_node`."""
     if graph.active().lisp_node is not None:
         shutdown_ros()
     options = {key: value for key, value in (("master_uri", master_uri), ("cmd_line_args", cmd_line_args)) if value is not UNSUPPLIED}
@@ -55,7 +55,7 @@ def startup_ros(
 
 
 def shutdown_ros() -> None:
-    """Run the cleanup functions and shut the node down."""
+    """Run the cleanup functions, then shut the node down."""
     for function in list(_cleanup_functions.values()):
         _announce("ROS cleanup", function)
         function()
@@ -82,7 +82,10 @@ def _symbol_name(thing: object) -> str:
 
 
 def lispify_ros_name(string: str, package: object = None) -> Symbol:
-    """``"HelloWorld"`` → ``HELLO-WORLD``: a dash before each capital that follows a small letter or a digit."""
+    """``"HelloWorld"`` → ``HELLO-WORLD``: put a dash before each capital that follows a small letter or a digit.
+
+    The symbol is in ``package``, by default the current one. The empty string is an error.
+    """
     text = _string(string)
     if not text:
         return conditions.error("Invalid index 0 for (SIMPLE-ARRAY CHARACTER (0)): the empty string has no Lisp name.")
@@ -100,11 +103,11 @@ def rosify_lisp_name(symbol: Symbol) -> str:
 
 
 def lispify_ros_underscore_name(string: str, package: object = None) -> Symbol:
-    """``"foo_bar"`` → ``FOO-BAR``."""
+    """``"foo_bar"`` → ``FOO-BAR``, a symbol in ``package``, by default the current one."""
     return intern(_string(string).replace("_", "-").upper(), _package(package))
 
 
 def rosify_underscores_lisp_name(symbol: Symbol) -> str:
-    """``FOO-BAR`` → ``"foo_bar"``; a name with a small letter is taken as it is."""
+    """``FOO-BAR`` → ``"foo_bar"``; a name with a small letter stays as it is."""
     name = _symbol_name(symbol)
     return name if any(character.islower() for character in name) else name.replace("-", "_").lower()

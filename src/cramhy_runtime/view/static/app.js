@@ -22,6 +22,7 @@ import { WorldView } from "./world.js";
 const PANEL_PAUSE = 100; // ms between two looks at a panel
 const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? location.hash.slice(1);
 const STANDS = "Virtual time stands still while the prompt waits. Step lets some of it pass.";
+const PAGE = /^http:\/\/127\.0\.0\.1:\d+\/#[\w-]+$/; // the address of a session's page
 const IS_PAST = "This is a recording: what its turtles did is done, and they cannot be driven.";
 
 // In a few words, what goes on; running: the task that runs now, or "".
@@ -29,6 +30,11 @@ function doing({ recording, paused, busy }, running) {
   if (recording) return `replays ${recording}`;
   const what = paused ? "paused" : busy ? "a form runs" : "the prompt waits";
   return running ? `${what}: ${running}` : what;
+}
+
+// The turtle lives in another session from now on; data: the address of its page.
+function moved({ data }) {
+  if (PAGE.test(data)) location.replace(data);
 }
 
 async function start() {
@@ -41,7 +47,7 @@ async function start() {
   const status = new StatusView({ pill: byId("connection"), banner: byId("banner"), notice: byId("notice") });
   const failed = (error) => status.failed(error);
   const session = new Session({
-    url: `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, token, heard, anew, older, rosout, failed,
+    url: `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, token, heard, anew, older, rosout, moved, failed,
     connection: (...news) => status.connection(...news),
   });
   const world = new WorldView({

@@ -22,8 +22,9 @@ const MOST_OLDER = 400_000; // lines of earlier chapters
 
 export class Session {
   // heard(kind, message, sample) is called for each message of the live session, anew() before everything is
-  // told of another one, older() when earlier times have come to be known, rosout(message), connection(state, detail), failed(error).
-  constructor({ url, token, heard, anew, older, rosout, connection, failed, now = () => performance.now(), make }) {
+  // told of another one, older() when earlier times have come to be known, rosout(message), connection(state, detail), failed(error),
+  // moved(message) when another session takes the place of this one.
+  constructor({ url, token, heard, anew, older, rosout, moved, connection, failed, now = () => performance.now(), make }) {
     Object.assign(this, { heard, anew, older, failed, now });
     this.history = new History();
     this.strokes = new Strokes();
@@ -41,6 +42,7 @@ export class Session {
       this.bridge.subscribe(topic, type, (message) => this.#hear(kind, message), QUEUE);
     }
     this.bridge.subscribe("/rosout", "rosgraph_msgs/Log", rosout, QUEUE);
+    this.bridge.subscribe("/cramhy/moved", "std_msgs/String", moved);
   }
 
   connect() {

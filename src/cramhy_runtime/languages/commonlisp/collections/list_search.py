@@ -357,17 +357,20 @@ def with_property(plist, indicator, value):
 def without_property(plist, indicator):
     """(list, found): ``plist`` without the first property ``indicator``, changed in place, for ``remf`` and `remprop`."""
     previous, cell = None, plist
-    while isinstance(cell, Cons):
-        if not isinstance(cell.cdr, Cons):
-            _malformed(plist)
-        if cell.car is indicator or eql(cell.car, indicator):
-            rest = cell.cdr.cdr
-            if previous is None:
-                return rest, True
-            previous.cdr = rest
-            return plist, True
-        previous, cell = cell.cdr, cell.cdr.cdr
-    return plist, False
+    while True:
+        for _ in STRETCH:
+            if not isinstance(cell, Cons):
+                return plist, False
+            if not isinstance(cell.cdr, Cons):
+                _malformed(plist)
+            if cell.car is indicator or eql(cell.car, indicator):
+                rest = cell.cdr.cdr
+                if previous is None:
+                    return rest, True
+                previous.cdr = rest
+                return plist, True
+            previous, cell = cell.cdr, cell.cdr.cdr
+        checkpoint()
 
 
 def get_properties(plist, indicators):
@@ -380,6 +383,7 @@ def get_properties(plist, indicators):
         if any(same(cell.car) for same in wanted):
             return MultipleValues((cell.car, cell.cdr.car, cell))
         cell = cell.cdr.cdr
+        checkpoint()
     if cell is not None and cell is not False:
         not_a_list(cell) if cell is plist else _malformed(plist)
     return MultipleValues((None, None, None))

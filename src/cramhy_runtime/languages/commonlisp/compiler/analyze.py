@@ -13,13 +13,13 @@ from .compilation_unit import expanding
 from ..syntax.lambda_lists import parse
 from ..syntax.macros import ensure_loaded, macroexpand_1
 from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.methods import Shape
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
 from .declared_types import declared_types, kind_of_type
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
-from .net_tests import look_at_wait
+from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,
     CallLocal,
@@ -38,7 +38,7 @@ from .nodes import (
     SetLocal,
 )
 from .open_coding import MAPPING, open_coded
-from .scrutiny import CRAMHY, Scrutiny, tuple_of
+from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
 """Symbol → method (analyzer, form, env) → node; filled by ``special_forms.py``."""
@@ -172,7 +172,8 @@ class Analyzer(Scrutiny):
         return nodes
 
     def _call(self, form, env):
-        look_at_wait(self, form, env)
+        if form.car in WAITING:
+            look_at_wait(self, form, env)
         if form.car.package is CRAMHY:
             self.mention_definition(form)
         else:

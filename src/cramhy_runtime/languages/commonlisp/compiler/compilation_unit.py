@@ -25,7 +25,7 @@ from cramhy_runtime.ground.ports import PORTS
 from ..syntax.ansi_lambda_lists import standard_shape
 from ..syntax.function_shapes import shape_of, wrong_call
 from cramhy_runtime.ground.source_places import frame_position, is_user_file
-from .consequences import inside, without_consequences
+from .follow_up_warnings import inside, without_consequences
 
 CURRENT = special("CRAMHY::*COMPILATION-UNIT*")
 MUFFLED = special("CRAMHY::*MUFFLED-CONDITIONS*", ())

@@ -15,7 +15,7 @@ from cramhy_runtime.ground.packages import sym
 
 AND, OR = sym("AND"), sym("OR")
 _COMBINATIONS = {AND: ("FL-AND", "last"), OR: ("FL-OR", "first")}
-_makers, _waiting = {}, set()
+_makers, WAITING = {}, set()
 
 
 def make_nets(functions, is_fluent):
@@ -25,7 +25,7 @@ def make_nets(functions, is_fluent):
 
 def wait_for_nets(*names):
     """Note that the functions of these symbols wait for their first argument, a fluent."""
-    _waiting.update(names)
+    WAITING.update(names)
 
 
 def _maker(form):
@@ -76,8 +76,11 @@ def _as_written(analyzer, operator):
 
 
 def look_at_wait(analyzer, form, env):
-    """Warn of ``(wait-for (and (< x 1) (> y 2)))``: the net of a form that ``and`` or ``or`` passes by is lost."""
-    if form.car not in _waiting or form.cdr.__class__ is not Cons:
+    """Warn of ``(wait-for (and (< x 1) (> y 2)))``: the net of a form that ``and`` or ``or`` passes by is lost.
+
+    form: a call of one of `WAITING`.
+    """
+    if form.cdr.__class__ is not Cons:
         return
     fluent = form.cdr.car
     if fluent.__class__ is not Cons or fluent.car not in _COMBINATIONS:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, lisp_list, list_from
 from ..syntax.lambda_lists import gensym
-from cramhy_runtime.ground.methods import Shape
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name, symbol_package
 from ..packages.package_errors import locked
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, progn

@@ -52,7 +52,7 @@ from cramhy_runtime.ground.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
-from cramhy_runtime.ground.generic_functions import FirstOfTwo, UnaryGeneric
+from cramhy_runtime.ground.dispatch.generic_functions import FirstOfTwo, UnaryGeneric
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked

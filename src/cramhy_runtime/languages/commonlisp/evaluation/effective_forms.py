@@ -13,7 +13,7 @@ from cramhy_runtime.ground.data import Cons, lisp_list, list_from, python_list
 from .evaluator import compile_lambda
 from ..syntax.lambda_lists import gensym, parse
 from cramhy_runtime.ground.packages import sym, symbol_name
-from cramhy_runtime.ground.method_combination import AROUND, link
+from cramhy_runtime.ground.dispatch.method_combination import AROUND, link
 
 CALL_METHOD, MAKE_METHOD, LAMBDA, QUOTE = sym("CALL-METHOD"), sym("MAKE-METHOD"), sym("LAMBDA"), sym("QUOTE")
 

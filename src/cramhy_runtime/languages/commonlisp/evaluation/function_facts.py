@@ -13,7 +13,7 @@ import linecache
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.methods import shape_items
+from cramhy_runtime.ground.dispatch.methods import shape_items
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, is_symbol, sym, symbol_name
 from ..reader.reader import Reader
 from ..syntax.body_parts import body_parts

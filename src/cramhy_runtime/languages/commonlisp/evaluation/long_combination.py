@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from, one, python_list, truth
-from cramhy_runtime.ground.generic_errors import no_primary_method_error
-from cramhy_runtime.ground.method_combination import Combination, invalid, register_combination, retrying
+from cramhy_runtime.ground.dispatch.generic_errors import no_primary_method_error
+from cramhy_runtime.ground.dispatch.method_combination import Combination, invalid, register_combination, retrying
 from cramhy_runtime.ground.packages import printed, symbol_name
 from .effective_forms import function_of_form
 

@@ -26,7 +26,7 @@ from .classes import (
     registered_class,
     symbol_class,
 )
-from cramhy_runtime.ground.generic_functions import add_method, ensure_generic_function, remove_method
+from cramhy_runtime.ground.dispatch.generic_functions import add_method, ensure_generic_function, remove_method
 from .slots import reader_for, writer_for
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import Condition, Error, SimpleProgramError, error, type_error
 from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.generic_functions import FunctionObject
+from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject
 from cramhy_runtime.ground.packages import ensure_package, find_package, is_symbol, sym
 from cramhy_runtime.ground.plain_answers import registered as _classes
 from .builtin_classes import CLASSES, STRUCTURES, BuiltInClass, lisp_mro, system_class

@@ -11,16 +11,16 @@ from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import SimpleError, error, type_error
 from cramhy_runtime.ground.data import MultipleValues, lisp_list, list_from, python_list
 from cramhy_runtime.ground.packages import sym, symbol_name
-from cramhy_runtime.ground import generic_functions as generics
+from cramhy_runtime.ground.dispatch import generic_functions as generics
 from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_definition import define_class
 from .class_objects import direct_slots, effective_slots
 from .classes import class_name
-from cramhy_runtime.ground.generic_functions import GenericFunction, find_method_or_none, generic, specializer_of
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, find_method_or_none, generic, specializer_of
 from . import protocol_functions  # noqa: F401  makes the functions that get their defaults here
-from cramhy_runtime.ground.generic_functions import protocol_function
-from cramhy_runtime.ground.generic_errors import no_next_method_error
+from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
+from cramhy_runtime.ground.dispatch.generic_errors import no_next_method_error
 
 LISP_NAMES = """make-instance allocate-instance initialize-instance reinitialize-instance shared-initialize change-class
 update-instance-for-different-class update-instance-for-redefined-class slot-missing slot-unbound no-applicable-method

@@ -23,8 +23,8 @@ from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, 
 from ..packages.package_errors import check_symbol
 from .builtin_classes import set_structure_object
 from .classes import StructureClass, register_class, registered_class
-from cramhy_runtime.ground.generic_functions import add_method
-from cramhy_runtime.ground.methods import Shape
+from cramhy_runtime.ground.dispatch.generic_functions import add_method
+from cramhy_runtime.ground.dispatch.methods import Shape
 
 LISP_NAMES = "copy-structure"
 

@@ -10,10 +10,10 @@ from cramhy_runtime.ground.packages import is_symbol, sym
 from .print_names import symbol_with_prefix
 from .printer import define_printer, output_object, print_unreadable
 from ..objects.classes import class_name, has_own_name, metaclass_of
-from cramhy_runtime.ground.generic_functions import GenericFunction
-from cramhy_runtime.ground.generic_errors import ShownAsGeneric
-from cramhy_runtime.ground.method_combination import Combination
-from cramhy_runtime.ground.methods import EqlSpecializer, Method
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.generic_errors import ShownAsGeneric
+from cramhy_runtime.ground.dispatch.method_combination import Combination
+from cramhy_runtime.ground.dispatch.methods import EqlSpecializer, Method
 
 
 def name_text(name):

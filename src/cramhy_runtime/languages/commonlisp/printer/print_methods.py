@@ -7,7 +7,7 @@ classes or methods change.
 from __future__ import annotations
 
 from cramhy_runtime.ground.classes import when_classes_change
-from cramhy_runtime.ground.generic_functions import EqlSpecializer, protocol_function, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, protocol_function, when_methods_change
 from ..objects import instances
 from . import printer
 from .printer import standard_print_object

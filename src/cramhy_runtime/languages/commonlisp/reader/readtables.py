@@ -65,6 +65,22 @@ class Readtable:
         self.case = other.case
         self._scanner = None
 
+    def reads_as(self, other: Readtable) -> bool:
+        """Whether each character means what it means in ``other``; ``case`` does not count."""
+        return (
+            self.macros.keys() == other.macros.keys()
+            and all(
+                function.functions == other.macros[char].functions
+                if isinstance(function, DispatchTable) and isinstance(other.macros[char], DispatchTable)
+                else function is other.macros[char]
+                for char, function in self.macros.items()
+            )
+            and all(
+                getattr(self, syntax) == getattr(other, syntax)
+                for syntax in ("whitespace", "non_terminating", "single_escapes", "multiple_escapes")
+            )
+        )
+
     @property
     def scanner(self):
         """Pattern: white space and comments, then (1) the plain part of a token, if any, (2) an escape right after it."""

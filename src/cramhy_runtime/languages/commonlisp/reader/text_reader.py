@@ -130,7 +130,7 @@ class Reader(InputStream):
                 self.skip_blank()
                 start = self.offset
                 found = self.next_object()
-                while not self.strict and not self.quiet and found is not NOTHING and left_out(self, start):
+                while not (self.strict or self.quiet or found is NOTHING or self.offset == len(self.text)) and left_out(self, start):
                     self.skip_blank()
                     start = self.offset
                     found = self.next_object()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from cramhy_runtime.ground.methods import Shape
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import sym
 
 TABLE = """

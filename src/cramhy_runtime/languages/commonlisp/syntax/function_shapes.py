@@ -9,7 +9,7 @@ from __future__ import annotations
 import types
 
 from cramhy_runtime.ground.data import Keyword, list_from
-from cramhy_runtime.ground.methods import Shape
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import keyword
 
 ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")

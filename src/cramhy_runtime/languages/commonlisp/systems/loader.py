@@ -7,8 +7,8 @@ what follows ``(in-package ...)`` is the same language, so they are loaded in th
 
 What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written or belongs to another user, in the user's
 cache folder). A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system,
-cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.sealed`). `why_not_kept` tells
-why one was not used. So an unchanged system loads without compiling, and without importing Hy.
+cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.checksummed_code`).
+`why_not_kept` tells why one was not used. So an unchanged system loads without compiling, and without importing Hy.
 """
 
 from __future__ import annotations
@@ -23,9 +23,11 @@ import re
 import runpy
 import sys
 from pathlib import Path
+from types import CodeType
+from typing import NamedTuple
 
 from cramhy_runtime import storage
-from cramhy_runtime.storage.sealed import Unusable, distrust_of_folder, sealed, unsealed
+from cramhy_runtime.storage.checksummed_code import Unusable, distrust_of_folder, sealed, unsealed
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
 from cramhy_runtime.ground.data import Cons, all_values
@@ -36,10 +38,11 @@ from cramhy_runtime.ground.source_places import file_of_text, locate as locate_b
 from ..files.files import lisp_path
 from cramhy_runtime.ground.packages import symbol_name
 from ..reader.readtables import READTABLE
+from .code_dependencies import Expectations, Notes, Wanted, reading_state
 
 LOAD_PATHNAME, LOAD_TRUENAME = special("*LOAD-PATHNAME*"), special("*LOAD-TRUENAME*")
 
-FIRST_LINE = b"# cramhy kept code 1\n"
+FIRST_LINE = b"# cramhy kept code 2\n"
 
 _not_used = {}
 
@@ -55,8 +58,13 @@ def stamp():
     """A fingerprint of cramhy itself: kept files made by another version are not used."""
     digest = _sha256(sys.version)
     here, libraries = Path(__file__).parents[1], Path(__file__).parents[3] / "libraries"
-    rooms = (here, here / "faces", libraries)
-    folders = [here, here.parents[1] / "ground", *(entry for room in rooms for entry in room.iterdir() if entry.is_dir())]
+    rooms = (here, here / "faces", libraries, here.parents[1] / "ground")
+    folders = [
+        here,
+        here.parents[1] / "ground",
+        here.parents[1] / "ground" / "dispatch",
+        *(entry for room in rooms for entry in room.iterdir() if entry.is_dir()),
+    ]
     language = importlib.util.find_spec("cramhy")
     if language and language.submodule_search_locations:
         folders += map(Path, language.submodule_search_locations)
@@ -115,49 +123,95 @@ def load_file(path, chain="", finished=None, show=None, encoding=None):
         _run_hy(path)
         return chain
     fingerprint = _fingerprint(path, text, chain)
+    _loads.number += 1
     with binding(
         PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))
     ):
-        _not_used.pop(str(path), None)
-        codes = _kept(path, fingerprint) if show is None else None
-        if codes is not None:
-            namespace = new_namespace(str(path))
-            for code in codes:
-                note_code(code)
-                exec(code, namespace)
-        else:
-            with compilation_unit("file"):
-                codes = load_text(text, str(path), stored=True, show=show)
-            if codes is not None:
-                _keep(path, fingerprint, codes)
+        _load_or_compile(path, fingerprint, _Text(text, str(path)), show)
         if finished is not None:
             finished(PACKAGE.value)
     return fingerprint
 
 
 def _fingerprint(path, text, chain=""):
-    return _sha256(f"{stamp()}{chain}{path}{text}").hexdigest()
+    return _sha256(f"{stamp()}{chain}{path}{reading_state(text)}{text}").hexdigest()
 
 
 def load_part(text, filename, line, column):
     """Load ``text``, which stands in the file ``filename`` from ``line`` and ``column`` on, in the current package; its code is kept."""
     path = Path(f"{filename}.rest")
-    fingerprint = _sha256(f"{stamp()}{path}{line}:{column}{PACKAGE.value}{text}").hexdigest()
-    codes = _kept(path, fingerprint)
-    if codes is None:
-        with compilation_unit("file"):
-            codes = load_text(text, filename, stored=True, line=line, column=column)
-        if codes is not None:
-            _keep(path, fingerprint, codes)
-        return
-    namespace = new_namespace(filename)
-    for code in codes:
-        note_code(code)
-        exec(code, namespace)
+    _loads.number += 1
+    fingerprint = _sha256(f"{stamp()}{path}{line}:{column}{reading_state(text)}{text}").hexdigest()
+    _load_or_compile(path, fingerprint, _Text(text, filename, line, column))
+
+
+class _Loads:
+    """How many files were loaded: code that was made before the last of them may have been made for other definitions."""
+
+    number = 0
+
+
+_loads = _Loads()
+
+
+class _Text(NamedTuple):
+    """A text to load, and where in ``filename`` it begins."""
+
+    text: str
+    filename: str
+    line: int = 1
+    column: int = 1
+
+
+class _KeptForm(NamedTuple):
+    """A top-level form in a kept file.
+
+    ``place``: its offset in the text, its line and column. ``unit``: forms with the same number share their globals.
+    """
+
+    place: tuple[int, int, int]
+    unit: int
+    wanted: Wanted
+    codes: list[CodeType]
+
+
+def _load_or_compile(path, fingerprint, text, show=None):
+    """Run the code that is kept for ``path`` as far as it is what the compiler would make; compile the rest of ``text``, and keep that."""
+    _not_used.pop(str(path), None)
+    kept = _kept(path, fingerprint) if show is None else None
+    if kept is None:
+        forms, used = [], 0
+    else:
+        forms = [_KeptForm(*parts) for parts in kept]
+        used = _run_kept(forms, text.filename)
+        if used == len(forms):
+            return
+        _not_used[str(path)] = Unusable("outdated", f"something that {text.filename} uses has changed since it was compiled")
+    offset, line, column = forms[used].place if used else (0, text.line, text.column)
+    with compilation_unit("file"):
+        rest = load_text(text.text[offset:], text.filename, stored=True, show=show, line=line, column=column)
+    if rest is not None:
+        units = forms[used - 1].unit + 1 if used else 0
+        rest = [form._replace(place=(offset + form.place[0], *form.place[1:]), unit=units) for form in rest]
+        _keep(path, fingerprint, [tuple(form) for form in [*forms[:used], *rest]])
+
+
+def _run_kept(forms, filename):
+    """Run kept code, form by form, until one was made for other definitions than there are now. How many were run."""
+    expectations, unit, namespace = Expectations(lambda: _loads.number), None, None
+    for number, form in enumerate(forms):
+        if not expectations.hold(form.wanted):
+            return number
+        if form.unit != unit:
+            unit, namespace = form.unit, new_namespace(filename)
+        for code in form.codes:
+            note_code(code)
+            exec(code, namespace)
+    return len(forms)
 
 
 def load_text(text, filename, stored=False, show=None, line=1, column=1):
-    """Load the forms of ``text``; with ``stored`` return their code objects, or ``None`` if they cannot be kept.
+    """Load the forms of ``text``; with ``stored`` return them as a list of `_KeptForm`, or ``None`` if they cannot be kept.
 
     show: called with the values of each form. line, column: where in ``filename`` the text begins.
     """
@@ -167,23 +221,27 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1):
     unit = Unit(filename, reader.positions, stored=stored)
     if not os.path.isfile(filename):
         linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
-    end, codes = object(), []
+    end, forms = object(), []
+    notes = Notes(lambda: _loads.number) if stored else None
     while True:
+        start = reader.offset
         form = reader.read(eof_error=False, eof_value=end)
         if form is end:
-            return None if reader.positions.left_out else codes  # so that it is told the next time, too
+            return None if reader.positions.left_out else forms  # so that it is told the next time, too
         if _is_hy_requirement(form):
             continue
+        codes, wanted = [], notes.before(form, PACKAGE.value) if forms is not None and stored else {}
         try:
             values = ()
             unit.refuse_circle(form)
             for part in unit.toplevel_parts(form):
                 code = _compile(unit, part)
-                if not unit.stored:
-                    codes = None
-                if codes is not None:
-                    codes.append(code)
+                codes.append(code)
                 values = all_values(unit.run(code))
+            if not unit.stored:
+                forms = None
+            if forms is not None:
+                forms.append(_KeptForm((start, *reader.place(start)), 0, wanted, codes))
             if show is not None:
                 show(values)
         except BaseException as problem:
@@ -260,7 +318,7 @@ def _run_hy(path):
 
 
 def _kept(path, fingerprint):
-    """The code objects that are kept for ``path``, or ``None``."""
+    """What is kept for ``path``: a list of `_KeptForm` as tuples, or ``None``."""
     try:
         return marshal.loads(unsealed(kept_path(path), FIRST_LINE, fingerprint))
     except Unusable as problem:
@@ -273,7 +331,8 @@ def _kept(path, fingerprint):
 def kept_codes(path):
     """The code objects that were kept when the file ``path`` was loaded last by itself, if it has not changed since; else ``None``."""
     path = Path(path).absolute()
-    return _kept(path, _fingerprint(path, decoded(path)))
+    kept = _kept(path, _fingerprint(path, decoded(path)))
+    return kept and [code for parts in kept for code in _KeptForm(*parts).codes]
 
 
 def why_not_kept(path):
@@ -281,7 +340,7 @@ def why_not_kept(path):
     return _not_used.get(str(Path(path).absolute()))
 
 
-def _keep(path, fingerprint, codes):
+def _keep(path, fingerprint, forms):
     if sys.dont_write_bytecode:
         return
     try:
@@ -292,7 +351,7 @@ def _keep(path, fingerprint, codes):
         if distrust_of_folder(target.parent):
             return
         # without waiting for the disk: the checksum shows what a breakdown left
-        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(codes)), mode=0o644, durable=False, follow=False)
+        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(forms)), mode=0o644, durable=False, follow=False)
     except OSError:
         pass  # a folder that cannot be written only means compiling again next time
 

@@ -12,7 +12,7 @@ import os
 from pathlib import Path
 
 from cramhy_runtime import storage
-from cramhy_runtime.storage.sealed import Unusable, sealed, unsealed
+from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
 from ..compiler.constants import NotStorable
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import Error, SimpleFileError, StyleWarning, Warning_, error, handler_bind, type_error

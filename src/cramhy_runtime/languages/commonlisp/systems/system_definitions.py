@@ -13,7 +13,7 @@ from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.conditions import CompileError, error, style_warn
 from cramhy_runtime.ground.data import Cons, Symbol, list_from, lisp_list
 from ..evaluation.evaluator import evaluate
-from cramhy_runtime.ground.generic_functions import EqlSpecializer, add_method, generic, remove_method
+from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, add_method, generic, remove_method
 from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
 from ..printer.printer import define_printer
 from ..reader.dispatch_macros import FEATURES

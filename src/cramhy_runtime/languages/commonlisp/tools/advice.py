@@ -16,7 +16,7 @@ from cramhy_runtime.ground.data import Symbol, UNBOUND, UndefinedFunction, list_
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.source_places import describe, describe_frame, excerpt, locate
 from ..printer.clos_printing import specializer_names
-from cramhy_runtime.ground.generic_errors import NoApplicableMethodError
+from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
 from cramhy_runtime.ground.packages import all_packages, near_names, sym, symbol_name
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE

@@ -37,9 +37,9 @@ from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.class_objects import direct_slots, effective_slots
 from ..objects.classes import class_name, class_of, metaclass_of, symbol_class
 from ..printer.clos_printing import specializer_names
-from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from ..objects.protocol import slot_names
-from cramhy_runtime.ground.generic_functions import protocol_function
+from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import KEYWORD, Package, is_symbol, sym, symbol_name

@@ -17,7 +17,7 @@ from cramhy_runtime.ground.dynamic import binding
 from ..evaluation.control import fdefinition
 from ..evaluation.evaluator import PACKAGE, Unit, compile_lambda, compiler
 from ..evaluation.function_facts import defining_forms, lambda_expression, plain, position_of, shown_name
-from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import sym
 from ..printer.printer import prin1_to_string
 from ..streams.streams import output_stream

@@ -13,10 +13,10 @@ from ..evaluation.definitions import data
 from ..evaluation.forms import compiler_macro_function
 from ..objects import classes
 from ..objects.class_objects import DirectSlot, Slot
-from cramhy_runtime.ground.generic_functions import generic
-from cramhy_runtime.ground.method_combination import Combination, known_combination
-from cramhy_runtime.ground.methods import Method
-from cramhy_runtime.ground.generic_functions import protocol_function
+from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.ground.dispatch.method_combination import Combination, known_combination
+from cramhy_runtime.ground.dispatch.methods import Method
+from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from cramhy_runtime.ground.packages import Package, is_symbol, symbol_name
 from ..types import types
 

@@ -19,7 +19,7 @@ from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction,
 from cramhy_runtime.ground.dynamic import binding, special
 from ..evaluation.evaluator import evaluate
 from ..evaluation.process_usage import processor_time
-from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import find_package_or_error, sym
 from ..printer.print_names import symbol_with_prefix
 from ..printer.printer import prin1_to_string

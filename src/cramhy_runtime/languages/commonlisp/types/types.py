@@ -25,7 +25,7 @@ from ..objects.builtin_classes import BuiltInClass, lisp_mro
 from ..objects.class_objects import StandardClass, StandardObject
 from cramhy_runtime.ground.classes import when_classes_change
 from ..objects.classes import class_name, class_of, symbol_class
-from cramhy_runtime.ground.generic_functions import GenericFunction
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import Package, is_symbol, sym
 from ..packages.package_errors import check_symbol

@@ -5,11 +5,11 @@ In the original these are generic functions, and a class of fluents of one's own
     (defclass doubled (value-fluent) ())
     (defmethod value ((fluent doubled)) (* 2 (call-next-method)))
 
-Here they are plain functions as long as nobody does so (``ground/open_functions.py``), and a fluent is read and assigned by its Python
-methods: nets, waits and callbacks do that everywhere. So when a method is defined, the Python methods of the classes that it may
-apply to are replaced by calls of the generic function, whose first method calls what was there before. Users who define no
-methods pay nothing. Methods for the built-in classes and for single fluents count for fluents that exist already, so classes of
-the user that override would not do; and a ``read`` that asks whether there are methods takes two thirds more time.
+Here they are plain functions as long as nobody does so (``ground/dispatch/open_functions.py``), and a fluent is read and assigned
+by its Python methods: nets, waits and callbacks do that everywhere. So when a method is defined, the Python methods of the
+classes that it may apply to are replaced by calls of the generic function, whose first method calls what was there before. Users
+who define no methods pay nothing. Methods for the built-in classes and for single fluents count for fluents that exist already,
+so classes of the user that override would not do; and a ``read`` that asks whether there are methods takes two thirds more time.
 
 Source: cpl.md section 2; callbacks of nets are not callbacks here, so methods do not see them.
 """
@@ -19,9 +19,9 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.generic_functions import when_methods_change
-from cramhy_runtime.ground.methods import EqlSpecializer
-from cramhy_runtime.ground.open_functions import open_to_methods
+from cramhy_runtime.ground.dispatch.generic_functions import when_methods_change
+from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from cramhy_runtime.cpl.fluents import fluents
 from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.cpl.fluents.fluents import CachedNet, Fluent, ValueFluent, peeking

@@ -1,9 +1,10 @@
 """The notation of designators: ``(a motion (type driving) (speed ?speed))`` as a form that builds the description.
 
 A pure function from forms to a form, called by the macros ``a``, ``an`` and ``all``. What a symbol in the description means is
-decided by its text alone: ``?name`` is a variable of the surrounding code, everything else a keyword. Calls are not evaluated; what
-is computed goes into a ``?variable`` first. Source: designators.md 3.2. The original also looks at global values at expansion time;
-we don't, because the meaning of a plan then depends on what was loaded before it.
+decided by its text alone: ``?name`` is a variable of the surrounding code, ``*name*`` and ``+name+`` are global ones, everything else is
+a keyword. Calls are not evaluated; what is computed goes into a ``?variable`` first. Source: designators.md 3.2. The original takes the
+value that any global variable has when the macro is expanded; we don't, because the meaning of a plan then depends on what was loaded
+before it, and a variable that is bound or set later keeps its first value.
 
 Several properties may have one key, and a value may be any list. Two things are worth a style-warning all the same, since nobody
 means them: a value that looks like a call, ``(speed (+ 1 2))``, and a property that is there twice, word for word.
@@ -24,6 +25,7 @@ from cramhy_runtime.designators.symbols import sym
 
 LIST, QUOTE, WHEN, FUNCTION = sym("LIST"), sym("QUOTE"), sym("WHEN"), sym("FUNCTION")
 MAKE, MAKE_ALL, PRESENT = sym("DESIG::MAKE-DESIGNATOR"), sym("DESIG::MAKE-ALL-DESIGNATOR"), sym("DESIG::PRESENT")
+GLOBAL_VALUE = sym("DESIG::GLOBAL-VALUE")
 _nested = {name: sym(f"DESIG::{name}") for name in ("A", "AN", "ALL")}
 
 
@@ -77,7 +79,19 @@ def _entry(element):
 def _symbol(symbol):
     if isinstance(symbol, Keyword) or symbol.name.startswith("?"):
         return symbol
+    if is_global_name(symbol.name):
+        return lisp_list(GLOBAL_VALUE, symbol)
     return keyword(symbol.name.upper())
+
+
+def is_global_name(name):
+    """Whether ``name`` is written as the names of global variables and constants are: ``*name*``, ``+name+``."""
+    return len(name) > 2 and name[0] == name[-1] and name[0] in "*+" and name.strip("*+") != ""
+
+
+def global_value(value):
+    """What ``value``, that of a global variable, is in a description: a symbol is a keyword there, as one that is written."""
+    return keyword(value.name.upper()) if value.__class__ is Symbol else value
 
 
 def _is_constant(form):

@@ -17,7 +17,7 @@ from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import ROSLISP as OPERATORS
 from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.generic_errors import no_applicable_method_error
+from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method_error
 from cramhy_runtime.ground.printing import define_printer
 from cramhy_runtime.ros import message_building
 from . import message_printing

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.data import DoubleFloat, lisp_list, truth
 from ...packages.face_definition import define_face
 from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.open_functions import open_to_methods
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from cramhy_runtime.ground.packages import sym
 from ...printer.print_controls import PRINT_ESCAPE
 from ...printer.printer import write

@@ -1,8 +1,9 @@
 """The Lisp package TURTLESIM: what one does at the simulator's window, from the REPL.
 
-The original has a window and a terminal for the arrow keys; ``(turtlesim:press :up)`` presses one, ``(turtlesim:save-picture
-"turtle.png")`` writes what the window would show, and after ``(turtlesim:record)`` the same for ``"turtle.gif"`` shows how it came about.
-What only some sessions need is imported when it is called for: a session begins in a third of a second.
+The original has a window and a terminal for the arrow keys. ``(turtlesim:view)`` shows the turtles in a browser, and ``(turtlesim:press
+:up)`` presses a key. ``(turtlesim:save-picture "turtle.png")`` writes what the window would show, and after ``(turtlesim:record)`` the same
+for ``"turtle.gif"`` shows how it came about. What only some sessions need is imported when it is called for: a session begins in a third of
+a second.
 """
 
 from __future__ import annotations
@@ -101,6 +102,19 @@ def log():
     STANDARD_OUTPUT.value.write("".join(line + "\n" for line in needed_simulator().lines))
 
 
+def view():
+    """Show the turtles' world and the plan in a page; returns its address. On a desktop the page opens in a browser.
+
+    It opens at any time, and stays until the session ends.
+    """
+    from cramhy_runtime.turtlesim import window
+
+    try:
+        return window.view()
+    except window.NoPage as problem:
+        return conditions.error(SimpleError("~a", str(problem)))
+
+
 def define():
     """Let Common Lisp see it; called once, when the image is made."""
     define_face(
@@ -117,5 +131,6 @@ def define():
             "record": record,
             "save-picture": save_picture,
             "save-paper": save_picture,
+            "view": view,
         },
     )

@@ -6,7 +6,7 @@ import os
 from contextlib import contextmanager
 
 from .leftovers import tidy_once
-from .parts import Part
+from .partial_files import Part
 
 
 def write_whole(path, content, mode=None, durable=True, follow=True):

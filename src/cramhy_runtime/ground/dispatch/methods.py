@@ -7,9 +7,9 @@ lambda list says about calls (how many arguments, which keywords) is a `Shape`; 
 
 from __future__ import annotations
 
-from .data import Cons, Keyword, Symbol, python_list
-from .equality import eql_key
-from .packages import keyword, sym, symbol_name
+from ..data import Cons, Keyword, Symbol, python_list
+from ..equality import eql_key
+from ..packages import keyword, sym, symbol_name
 
 
 class EqlSpecializer:

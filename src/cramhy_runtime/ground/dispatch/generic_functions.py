@@ -17,18 +17,18 @@ from __future__ import annotations
 
 import weakref
 
-from .classes import find_class_or_error, when_classes_change
-from .conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
-from .condition_types import shown_with
-from .data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
-from .equality import eql_key
+from ..classes import find_class_or_error, when_classes_change
+from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
+from ..condition_types import shown_with
+from ..data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
+from ..equality import eql_key
 from .generic_errors import incongruent, no_applicable_method_error
-from .keyword_calls import lispify
+from ..keyword_calls import lispify
 from .method_combination import STANDARD, Combination, find_combination
 from .methods import EqlSpecializer, Method, Shape
-from .packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
-from .ports import PORTS
-from .python_names import python_name
+from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
+from ..ports import PORTS
+from ..python_names import python_name
 
 all_generic_functions = weakref.WeakSet()
 ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")

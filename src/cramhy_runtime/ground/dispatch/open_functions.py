@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import part
 
-from .data import lisp_list
-from .keyword_calls import lispify
-from .packages import sym
+from ..data import lisp_list
+from ..keyword_calls import lispify
+from ..packages import sym
 from .generic_functions import GenericFunction, all_generic_functions, function_cell, method_watchers
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 
-from .unfinished import forget
-from .whole import write_whole
+from .partial_names import forget
+from .atomic_write import write_whole
 
 
 class Tree:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .condition_types import shown
-from .conditions import Error, SimpleError, error
-from .data import list_from
+from ..condition_types import shown
+from ..conditions import Error, SimpleError, error
+from ..data import list_from
 
 
 class NoMethodError(Error):

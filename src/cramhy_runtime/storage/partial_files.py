@@ -19,7 +19,7 @@ import stat
 from io import BufferedRandom, BufferedWriter, FileIO
 
 from . import backups
-from .unfinished import BINARY, PART, RECORDING, fcntl, forget, free_name, is_being_written, lock, part_name, same_file
+from .partial_names import BINARY, PART, RECORDING, fcntl, forget, free_name, is_being_written, lock, part_name, same_file
 
 _DIRECT = ("/dev/", "/proc/")
 

@@ -13,7 +13,7 @@ import os
 import stat
 
 from . import owners
-from .unfinished import CAREFULLY, NO_LINKS
+from .partial_names import CAREFULLY, NO_LINKS
 
 LABEL = 64
 

@@ -9,10 +9,10 @@ Source: ANSI 7.6.6; texts are SBCL's.
 
 from __future__ import annotations
 
-from .conditions import SimpleError, error, restart_case, warn
-from .data import Symbol, lisp_list, list_from, one, truth
-from .packages import keyword, sym, symbol_name
-from .ports import PORTS
+from ..conditions import SimpleError, error, restart_case, warn
+from ..data import Symbol, lisp_list, list_from, one, truth
+from ..packages import keyword, sym, symbol_name
+from ..ports import PORTS
 from .generic_errors import no_next_method_error, no_primary_method_error
 
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
