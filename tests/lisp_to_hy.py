@@ -10,14 +10,12 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.data import UndefinedFunction
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from lisp_words import Literal, Marked, NotConvertible, implementation, is_declaration, is_hook, is_special, lisp_function, ours, read
+
+from cramhy_runtime.ground.packages import COMMON_LISP
 from cramhy_runtime.languages.hy.call_parts import CODE
-from cramhy_runtime.languages.hy.plan_macros import WITHOUT_PREFIX
 from cramhy_runtime.languages.operators import OPERATORS
 from cramhy_runtime.languages.operators.grammar import Many, Maybe, Text, Word
-
-_TOKEN = re.compile(r"""\s+|;[^\n]*|(?P<token>\(|\)|'|`|,@|,|\#'|"(?:[^"\\]|\\.)*"|[^\s()'"`,;]+)""")
 
 BY_NAME = {operator.name.lower(): operator for operator in OPERATORS.values()}
 AS_DATA = ("a", "an", "all", "<-", "def-fact-group")
@@ -26,46 +24,6 @@ AS_DATA = ("a", "an", "all", "<-", "def-fact-group")
 SAME = frozenset("+ - * / < > <= >= = and or not do when if".split())
 IN_THE_SAME_FUNCTION = frozenset("seq with-retry-counters whenever with-vars-bound with-vars-strictly-bound with-pat-vars-bound".split())
 """The operators whose bodies do not become functions."""
-
-
-class NotConvertible(Exception):
-    """There is no plain Hy for a form."""
-
-
-class Marked:
-    """``'x``, ``#'x``, ``,x``: mark and form."""
-
-    def __init__(self, mark, form):
-        self.mark, self.form = mark, form
-
-
-class Literal(str):
-    """A string with its quotes."""
-
-
-def read(text):
-    """The forms of a Lisp text: lists, words (`str`), `Literal` strings, and `Marked` forms."""
-    tokens = [found["token"] for found in _TOKEN.finditer(text) if found["token"]]
-    forms, place = [], 0
-    while place < len(tokens):
-        form, place = _form(tokens, place)
-        forms.append(form)
-    return forms
-
-
-def _form(tokens, place):
-    token = tokens[place]
-    place += 1
-    if token == "(":
-        items = []
-        while tokens[place] != ")":
-            item, place = _form(tokens, place)
-            items.append(item)
-        return items, place + 1
-    if token in ("'", "`", ",", ",@", "#'"):
-        form, place = _form(tokens, place)
-        return Marked(token, form), place
-    return (Literal(token) if token[0] == '"' else token), place
 
 
 def hy_text(text, lists="python"):
@@ -82,6 +40,8 @@ class Writer:
     def __init__(self, lists):
         self.lists = lists
         self.specials, self.functions, self.classes = set(), set(), set()
+        self.of_functions = set()  # macros whose bodies become functions
+        self.with_values = set()  # names of variables that are objects with a ``value``: of tasks, and parameters
         self.scopes = [{}]  # innermost last; each is a function's: name → None
         self.exits = ["leave"]
 
@@ -104,9 +64,13 @@ class Writer:
             return form.replace("d", "e")
         if re.fullmatch(r"-?\d+/\d+", form):
             return f"(hy.I.fractions.Fraction {form.replace('/', ' ')})"
-        if form.startswith("*") and form not in self.specials and is_special(form):
-            return f"(. (lisp {form}) value)"
+        if form in self.with_values or form not in self.specials and is_special(form):
+            return f"(. {self.variable(form)} value)"
         return form
+
+    def variable(self, name):
+        """The object whose ``value`` the variable is: of a Hy variable that has one, or the symbol of Lisp."""
+        return name if name in self.with_values else f"(lisp {name})"
 
     def marked(self, form):
         if form.mark == "'":
@@ -122,6 +86,9 @@ class Writer:
     def function(self, form):
         if isinstance(form, list):
             return self.form(form)
+        form = form.removeprefix("cl:")
+        if is_hook(_short(form)):
+            return f"hooks.{_short(form)}"
         if form in self.functions:
             return form
         if ours(form):
@@ -155,6 +122,10 @@ class Writer:
         method = FORMS.get(head)
         if method is not None:
             return method(self, *parts)
+        if head == "with-policy" and parts[0] == "timeout-policy":  # it is Lisp's, and Hy knows it by its name
+            return self.call(["with-named-policy", Marked("'", parts[0]), *parts[1:]])
+        if head in self.of_functions:
+            return self.inside(f"({head}", parts)
         if head in self.functions:
             return f"({' '.join([head, *map(self.form, parts)])})"
         if _short(head) in BY_NAME and (":" in head or head in BY_NAME):
@@ -165,6 +136,8 @@ class Writer:
             return f"({' '.join([head, *map(self.form, parts)])})"
         if head in ("retry", "do-retry", "get-counter", "reset-counter", "succeed", "next", "finish", "cont", "make-response"):
             return f"({' '.join([head, *map(self.argument, parts)])})"
+        if _short(head) == "pat-match":
+            return f"(get (all-values ({' '.join([head, *map(self.argument, parts)])})) 0)"
         if ours(head) or head in self.classes:
             return f"({' '.join([head, *map(self.argument, parts)])})"
         if implementation(head):
@@ -184,7 +157,7 @@ class Writer:
         return self.form(form)
 
     def body(self, forms):
-        forms = [form for form in forms if not (isinstance(form, list) and form[:1] == ["declare"])]
+        forms = [form for form in forms if not is_declaration(form)]
         return " ".join(map(self.form, forms)) if forms else "None"
 
     def inside(self, before, forms, names=(), after=")"):
@@ -202,6 +175,9 @@ class Writer:
             if operator.name in ("DEF-FACT-GROUP",):
                 return f"({head} {parts[0]} {self.bracketed(parts[1])} {' '.join(map(self.data, parts[2:]))})"
             return "(" + " ".join([head, *map(self.data, parts)]) + ")"
+        parts = [part for part in parts if not is_declaration(part)]
+        if operator.name in ("DEFINE-TASK-VARIABLE", "DEF-CPL-PARAMETER"):
+            parts = parts[:2] + [Literal('""') if part == "nil" else part for part in parts[2:3]] + parts[3:]
         outer = self.exits
         self.exits = [*outer, "break" if operator.name == "WHENEVER" else "leave"]
         function = operator.name.lower() not in IN_THE_SAME_FUNCTION
@@ -211,6 +187,8 @@ class Writer:
             pattern = operator.patterns[-1] if isinstance(parts[:1], list) and isinstance((parts or [[]])[0], str) else operator.pattern
             return "(" + " ".join([head, *self.parts(pattern, list(parts), operator)]) + ")"
         finally:
+            if operator.name in ("DEFINE-TASK-VARIABLE", "DEF-CPL-PARAMETER"):
+                self.with_values.add(parts[0])
             self.exits = outer
             if function:
                 self.scopes.pop()
@@ -256,6 +234,7 @@ class Writer:
         if isinstance(item, list):
             if not isinstance(part, list):
                 return self.loose(part)
+            part = [each for each in part if not is_declaration(each)]
             if item and isinstance(item[0], Many) and item[0].item == "parameter":
                 shown, names = self.lambda_list(part)
                 self.scopes[-1].update(dict.fromkeys(names))
@@ -314,22 +293,33 @@ class Writer:
         return self.inside(f"(defn {name} {shown}", forms, names)
 
     def defmacro(self, name, parameters, *forms):
-        if any(isinstance(part, list) for part in parameters):
-            raise NotConvertible("a macro that takes its call apart")
         self.functions.add(name)
-        return f"(defmacro {name} {self.lambda_list(parameters)[0]} {self.body(forms)})"
+        apart = []
+        for place, part in enumerate(parameters):
+            if isinstance(part, str) and part.startswith("&"):
+                break
+            if isinstance(part, list):
+                apart.append(f"(setv {self.lambda_list(part)[0]} part-{place})")
+                parameters = [*parameters[:place], f"part-{place}", *parameters[place + 1 :]]
+        return f"(defmacro {name} {self.lambda_list(parameters)[0]} {' '.join([*apart, self.body(forms)])})"
 
     def flet(self, functions, *forms):
         return f"(do {' '.join(self.defun(*function) for function in functions)} {self.body(forms)})"
 
     def let(self, bindings, *forms):
-        pairs = []
+        pairs, bound = [], []
         for binding in bindings:
             name, value = (binding[0], binding[1:]) if isinstance(binding, list) else (binding, [])
+            if name in self.with_values or name not in self.specials and is_special(name):
+                bound += [self.variable(name), self.form(value[0]) if value else "None"]
+                continue
             if name in self.specials or name.startswith("*"):
                 raise NotConvertible(f"the special variable {name} bound")
             pairs += [name, self.form(value[0]) if value else "None"]
             self.scopes[-1][name] = None
+        if bound:
+            body = f"(with [_ (binding {' '.join(bound)})] {self.body(forms)})"
+            return f"(let {self.bracketed(pairs)} {body})" if pairs else body
         if len(self.scopes) > 1:
             return f"(let {self.bracketed(pairs)} {self.body(forms)})"
         names = pairs[::2]
@@ -337,6 +327,8 @@ class Writer:
 
     def declared(self, name):
         """The words that let an assignment of ``name`` reach the variable, if it belongs to another function."""
+        if name in self.with_values or name not in self.specials and is_special(name):
+            return ""
         if name in self.specials or (len(self.scopes) > 1 and not any(name in scope for scope in self.scopes)):
             return f"(global {name})" if len(self.scopes) > 1 else ""
         if name in self.scopes[-1]:
@@ -353,7 +345,7 @@ class Writer:
 
     def place(self, place):
         if isinstance(place, str):
-            return place
+            return self.form(place)
         if place[0] in ("value", "cpl:value") and len(place) == 2:
             return f"(. {self.form(place[1])} value)"
         if place[0] == "slot-value" and isinstance(place[2], Marked):
@@ -367,6 +359,26 @@ class Writer:
 
     def push(self, element, place):
         return self.setf(place, ["cons", element, place])
+
+    def pop(self, place):
+        return f"(let [first (cl.car {self.form(place)})] {self.setf(place, ['cdr', place])} first)"
+
+    def pushnew(self, element, place):
+        return self.setf(place, ["adjoin", element, place])
+
+    def destructuring_bind(self, names, form, *forms):
+        if any(isinstance(name, list) or name.startswith("&") for name in names):
+            raise NotConvertible("destructuring-bind of a list in a list")
+        self.scopes[-1].update(dict.fromkeys(names))
+        return f"(do (setv {self.bracketed(names)} {self.form(form)}) {self.body(forms)})"
+
+    def defmethod(self, name, *parts):
+        """A method of a hook of ours is a function that is added to it. Other generic functions belong to Lisp."""
+        *qualifiers, parameters = [*parts[: next(i for i, part in enumerate(parts) if isinstance(part, list)) + 1]]
+        forms, hook = parts[len(qualifiers) + 1 :], _short(name)
+        if not is_hook(hook) or any(isinstance(part, list) for part in parameters):
+            raise NotConvertible("defmethod")
+        return f'(.add hooks.{hook} {self.lambda_(parameters, *forms)} "{" ".join(qualifiers)}")'
 
     def defvar(self, name, value="nil", *documentation):
         self.specials.add(name)
@@ -403,10 +415,16 @@ class Writer:
         if not words:
             outer, self.exits = self.exits, [*self.exits, "break"]
             try:
-                return f"(while True {self.body(parts)})"
+                return f"(while True (checkpoint) {self.body(parts)})"
             finally:
                 self.exits = outer
         match parts:
+            case ["repeat", count, "collect", form]:
+                return self.comprehension("_", f"(range {self.form(count)})", form)
+            case ["until", test, "do", *forms]:
+                return f"(while (not {self.form(test)}) (checkpoint) {self.body(forms)})"
+            case ["while", test, "do", *forms]:
+                return f"(while {self.form(test)} (checkpoint) {self.body(forms)})"
             case ["repeat", count, "do", *forms]:
                 return self.for_("_", f"(range {self.form(count)})", *forms)
             case ["for", name, ("in" | "being"), source, "do", *forms] if isinstance(name, str):
@@ -452,6 +470,15 @@ class Writer:
         shown = [base if base in self.classes else self.class_(base) for base in bases]
         return f"(defclass {name} [{' '.join(shown)}])"
 
+    def remove_method(self, function, method):
+        if isinstance(function, Marked) and not is_hook(_short(function.form)):
+            raise NotConvertible("remove-method")
+        return f'(.remove {self.form(function)} "laws")'
+
+    def handler_bind(self, clauses, *forms):
+        made = [f"#({self.class_(type_)} {self.form(function)})" for type_, function in clauses]
+        return self.inside(f"(handler-bind {self.bracketed(made)} (fn []", forms, after="))")
+
     def return_(self, *value):
         if self.exits[-1] == "break":
             if value:
@@ -464,7 +491,14 @@ class Writer:
 
     def multiple_value_bind(self, names, form, *forms):
         self.scopes[-1].update(dict.fromkeys(names))
-        return f"(do (setv #({' '.join(names)}) (all-values {self.form(form)} {len(names)})) {self.body(forms)})"
+        return f"(do (setv #({' '.join(names)}) (all-values {self.many(form)} {len(names)})) {self.body(forms)})"
+
+    def many(self, form):
+        """A form whose values are all wanted."""
+        written = self.form(form)
+        if written.startswith("(get (all-values "):
+            return written[len("(get (all-values ") : -len(") 0)")]
+        return "(cl-values." + written[len("(cl.") :] if written.startswith("(cl.") else written
 
     def funcall(self, function, *arguments):
         if isinstance(function, Marked) and function.mark == "'":
@@ -503,6 +537,14 @@ FORMS = {
     "incf": Writer.incf,
     "decf": lambda self, place, by="1": self.incf(place, by, "-"),
     "push": Writer.push,
+    "pop": Writer.pop,
+    "pushnew": Writer.pushnew,
+    "destructuring-bind": Writer.destructuring_bind,
+    "defmethod": Writer.defmethod,
+    "remove-method": Writer.remove_method,
+    "handler-bind": Writer.handler_bind,
+    "assert": lambda self, test, *rest: f"(assert {self.form(test)})",
+    "nth-value": lambda self, number, form: f"(get (all-values {self.many(form)}) {self.form(number)})",
     "defvar": Writer.defvar,
     "defparameter": Writer.defvar,
     "cond": Writer.cond,
@@ -520,11 +562,11 @@ FORMS = {
     "return": Writer.return_,
     "values": Writer.values,
     "vector": lambda self, *forms: self.bracketed(map(self.form, forms)),
-    "multiple-value-list": _word("(cl.list #* (all-values {}))"),
+    "multiple-value-list": lambda self, form: f"(cl.list #* (all-values {self.many(form)}))",
     "multiple-value-bind": Writer.multiple_value_bind,
     "funcall": Writer.funcall,
     "apply": Writer.apply,
-    "unwind-protect": lambda self, form, *cleanup: f"(try {self.form(form)} (finally {self.body(cleanup)}))",
+    "unwind-protect": lambda self, form, *cleanup: f"(try {self.form(form)} (finally (with [_ (cleanup)] {self.body(cleanup)})))",
     "function": lambda self, form: self.function(form),
     "null": _word("(is {} None)"),
     "eq": lambda self, *parts: f"(eq {' '.join(map(self.argument, parts))})",
@@ -532,36 +574,5 @@ FORMS = {
     "1-": _word("(- {} 1)"),
     "/=": _word("(!= {})"),
     "mod": _word("(% {})"),
-    **dict.fromkeys(
-        ("return-from", "catch", "throw", "tagbody", "handler-bind", "restart-case", "macrolet", "symbol-macrolet"), Writer.wrong
-    ),
+    **dict.fromkeys(("return-from", "catch", "throw", "tagbody", "restart-case", "macrolet", "symbol-macrolet"), Writer.wrong),
 }
-
-
-def ours(name):
-    """Whether a function of our packages has the name, with or without a prefix."""
-    prefix, _, short = name.rpartition(":")
-    packages = [prefix.rstrip(":").upper()] if prefix else WITHOUT_PREFIX
-    for each in packages:
-        package = find_package(each)
-        symbol = package and package.external.get(short.upper())
-        if symbol is not None and hasattr(symbol, "function") and not isinstance(symbol.function, UndefinedFunction):
-            if symbol.package is not COMMON_LISP:
-                return True
-    return False
-
-
-def implementation(name):
-    """Whether a function has the name that only CRAM-LANGUAGE-IMPLEMENTATION exports."""
-    return ours(f"cpl-impl::{name}") if ":" not in name else False
-
-
-def is_special(name):
-    """Whether a special variable of ours has the name."""
-    symbol = find_package("CRAM-LANGUAGE-IMPLEMENTATION").external.get(name.upper())
-    return symbol is not None and symbol.special
-
-
-def lisp_function(name):
-    symbol = COMMON_LISP.external.get(name.upper())
-    return symbol is not None and getattr(symbol, "macro", None) is None and not isinstance(symbol.function, UndefinedFunction)

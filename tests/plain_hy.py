@@ -7,11 +7,15 @@ import types
 
 import hy
 import pytest
-from lisp_to_hy import NotConvertible, Writer, read
+from lisp_to_hy import Writer
+from lisp_words import NotConvertible, read
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.cpl import hooks
+from cramhy_runtime.ground.conditions import handler_bind
+from cramhy_runtime.ground.data import list_from, one
+from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
@@ -22,17 +26,22 @@ _AS_IN_A_FILE = hy.read("hy.R.cramhy._form")
 
 
 class CommonLisp:
-    """Its attributes are the functions of Common Lisp, under the names that Python and Hy give them."""
+    """Its attributes are the functions of Common Lisp, under the names that Python and Hy give them; ``values`` of them, the first or all."""
+
+    def __init__(self, values):
+        self._values = values
 
     def __getattr__(self, name):
-        return function_of(sym(hy.unmangle(name).upper()))
+        function = function_of(sym(hy.unmangle(name).upper()))
+        return lambda *arguments, **keywords: self._values(function(*arguments, **keywords))
 
 
 def hy_module(session, beginning):
     """A module of Hy whose names belong to the package of ``session``; ``beginning`` is evaluated in it."""
     module = types.ModuleType("an_example")
-    module.cl = CommonLisp()
-    module.class_of_condition = find_class_or_error
+    module.cl, module.cl_values = CommonLisp(one), CommonLisp(lambda values: values)
+    module.binding, module.hooks, module.checkpoint, module.cleanup = binding, hooks, kernel.checkpoint, kernel.cleanup
+    module.class_of_condition, module.handler_bind = find_class_or_error, handler_bind
     module.all_values = all_values
     hy_value(module, "(require cramhy *)")
     hy_value(module, f"(lisp-package :{session.package.name})")
@@ -74,16 +83,18 @@ class PlainHy:
     A text that plain Hy has no form for skips the test.
     """
 
-    def __init__(self, session, prelude, functions=(), specials=("*notes*",)):
+    def __init__(self, session, prelude, functions=(), specials=("*notes*",), of_functions=()):
         self.session = session
         self.writer = Writer("lisp")
         self.writer.functions.update(functions)
+        self.writer.of_functions.update(of_functions)
         self.writer.specials.update(specials)
         self.module = hy_module(session, prelude)
 
     def value(self, text):
         try:
-            written = [self.writer.form(form) for form in read(text)]
+            *first, last = read(text)
+            written = [*map(self.writer.form, first), self.writer.many(last)]
         except NotConvertible as problem:
             pytest.skip(f"not in plain Hy: {problem}")
         self.text = "\n".join(written)

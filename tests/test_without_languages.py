@@ -111,3 +111,19 @@ def test_failures_and_fluents_are_readable_without_languages():
     shown = without_languages(FAILING)
     assert 'The cup is gone: "red cup", 1200 of' in shown
     assert "#<FLUENT speed [2.5]>" in shown
+
+
+def test_a_node_with_a_service_an_action_and_a_log_needs_no_language():
+    program = """
+from cramhy_runtime import kernel
+from cramhy_runtime.actionlib.python import action_client, action_server, call_goal, succeed_current
+from cramhy_runtime.ros.python import call_service, register_service, ros_info, ros_node
+
+kernel.start(clock="virtual")
+with ros_node("driver"):
+    register_service("add", "roscpp_tutorials/TwoInts", lambda request: {"sum": request.a + request.b})
+    action_server("count", "actionlib_tutorials/FibonacciAction")(lambda goal: succeed_current(sequence=[goal.order]))
+    result, state = call_goal(action_client("count", "actionlib_tutorials/FibonacciAction"), order=4)
+    ros_info(("base", "drive"), f"{call_service('add', 'roscpp_tutorials/TwoInts', a=3, b=4).sum} {list(result.sequence)} {state}")
+"""
+    assert re.search(r"\(BASE DRIVE\) INFO\] [0-9.]+: 7 \[4\] :SUCCEEDED", without_languages(program))

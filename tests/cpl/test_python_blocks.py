@@ -327,6 +327,29 @@ def test_the_end_of_a_block_waits_for_without_scheduling(log):
 
 
 @in_plan
+def test_the_end_of_a_block_comes_through_where_with_scheduling_lets_it(log):
+    with cpl.move_on_after(1):
+        with cpl.without_scheduling():
+            with cpl.with_scheduling():
+                cpl.sleep(2)
+            log.note("never")
+    assert log.entries == [] and cpl.now() == 1
+
+
+@in_plan
+def test_with_scheduling_lets_a_request_come_that_was_held_back_and_changes_nothing_elsewhere(log):
+    with cpl.with_scheduling():
+        log.note("elsewhere")
+    with cpl.move_on_after(1):
+        with cpl.without_scheduling():
+            cpl.sleep(2)
+            log.note("held back")
+            with cpl.with_scheduling():
+                log.note("never")
+    assert log.entries == [("elsewhere", 0), ("held back", 2)]
+
+
+@in_plan
 def test_a_suspended_task_ends_its_block_after_the_wake_up(log):
     def task():
         with cpl.move_on_after(2) as limit:

@@ -18,6 +18,8 @@ from cramhy_runtime.designators import (
     Object,
     action_grounding,
     equate,
+    equate_callback,
+    every,
     forget,
     location_generator,
     location_validator,
@@ -484,3 +486,19 @@ def test_an_error_reads_the_same_where_no_kernel_runs():
     with pytest.raises(DesignatorError) as problem:
         reference(Motion(type=kw.flying))
     assert str(problem.value) == "Cannot resolve motion designator #<A MOTION\n    (TYPE FLYING)>."
+
+
+def test_a_callback_is_told_of_what_is_equated_while_the_block_runs_however_it_ends():
+    cup, mug, glass, told = Object(type=kw.cup), Object(type=kw.mug), Object(type=kw.glass), []
+    with pytest.raises(ValueError), equate_callback(cup, told.append):
+        equate(cup, mug)
+        raise ValueError
+    equate(mug, glass)
+    assert told == [mug]
+
+
+def test_every_describes_all_things_and_leaves_the_designator_of_one_as_it_is():
+    cup = Object(type=kw.cup, color="red")
+    cups = every(cup)
+    assert (cups.quantifier, cups.color, cup.quantifier) == (kw.all, "red", kw.a)
+    assert repr(cups).startswith("#<ALL ")

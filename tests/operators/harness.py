@@ -31,11 +31,12 @@ HY = """
 """
 
 PYTHON = """
-from cramhy_runtime import cpl
+from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import run
 from cramhy_runtime.designators import *
 from cramhy_runtime.process_modules import *
 from cramhy_runtime.prolog import *
+from cramhy_runtime.ros.python import *
 notes = []
 def note(thing):
     notes.append(thing)

@@ -2,6 +2,23 @@
 
 from example import Example
 
+SUSPENDED_IN_PYTHON = """
+def main():
+    with cpl.par() as branches:
+        task = branches.start(drive)
+        cpl.sleep(1)
+        with cpl.task_suspended(task):
+            cpl.sleep(5)
+    return task.result
+run(main)
+"""
+RACE_IN_PYTHON = """
+def quick():
+    cpl.sleep(1)
+    return note("over")
+run(lambda: cpl.pursue(careful, quick))
+"""
+
 PLAN_LANGUAGE = {
     "top-level": Example("(top-level (note 1) (+ 2 3))", "run(lambda: (note(1), 2 + 3)[1])"),
     "named-top-level": Example(
@@ -62,7 +79,18 @@ PLAN_LANGUAGE = {
     "with-parallel-childs": Example(
         """(top-level (cpl-impl::with-parallel-childs nil (running completed failed) ((progn (sleep 1) 7) (sleep 9))
                         (when completed (return "one is done"))))""",
-        only="`cpl.par` with a block, or a fluent of your own, says the same",
+        """
+        def seven():
+            cpl.sleep(1)
+            return 7
+        def main():
+            with cpl.par() as branches:
+                quick, slow = branches.start(seven), branches.start(cpl.sleep, 9)
+                cpl.wait_for(cpl.fl_eq(quick.status_fluent, cpl.SUCCEEDED))
+                slow.evaporate()
+                return "one is done"
+        run(main)
+        """,
     ),
     "with-task-suspended": Example(
         """(top-level (with-tags (par (:tag drive (sleep 1) (sleep 1) (note "there"))
@@ -117,55 +145,47 @@ PLAN_LANGUAGE = {
         """(top-level (with-tags (par (:tag drive (on-suspension (note "stops") (sleep 2) (note "there")))
                                       (progn (sleep 1) (with-task-suspended (drive) (sleep 5)) nil))))""",
         """
-        def drive():
-            with cpl.on_suspension(lambda: note("stops")):
-                cpl.sleep(2)
-                return note("there")
-        def main():
-            with cpl.par() as branches:
-                task = branches.start(drive)
-                cpl.sleep(1)
-                with cpl.task_suspended(task):
-                    cpl.sleep(5)
-            return task.result
-        run(main)
-        """,
+def drive():
+    with cpl.on_suspension(lambda: note("stops")):
+        cpl.sleep(2)
+        return note("there")
+"""
+        + SUSPENDED_IN_PYTHON,
     ),
     "retry-after-suspension": Example(
         """(top-level (with-tags (par (:tag drive (retry-after-suspension (note "begins") (sleep 2) (note "there")))
                                       (progn (sleep 1) (with-task-suspended (drive) (sleep 5)) nil))))""",
         """
-        def drive():
-            note("begins")
-            cpl.sleep(2)
-            return note("there")
-        def main():
-            with cpl.par() as branches:
-                task = branches.start(cpl.retry_after_suspension, drive)
-                cpl.sleep(1)
-                with cpl.task_suspended(task):
-                    cpl.sleep(5)
-            return task.result
-        run(main)
-        """,
+def motion():
+    note("begins")
+    cpl.sleep(2)
+    return note("there")
+def drive():
+    return cpl.retry_after_suspension(motion)
+"""
+        + SUSPENDED_IN_PYTHON,
     ),
     "without-scheduling": Example(
         '(top-level (pursue (without-scheduling (sleep 3) (note "through")) (progn (sleep 1) (note "over"))))',
         """
-        def careful():
-            with cpl.without_scheduling():
-                cpl.sleep(3)
-                note("through")
-        def quick():
-            cpl.sleep(1)
-            return note("over")
-        run(lambda: cpl.pursue(careful, quick))
-        """,
+def careful():
+    with cpl.without_scheduling():
+        cpl.sleep(3)
+        note("through")
+"""
+        + RACE_IN_PYTHON,
     ),
     "with-scheduling": Example(
         """(top-level (pursue (without-scheduling (with-scheduling (sleep 3)) (note "through"))
                               (progn (sleep 1) (note "over"))))""",
-        only="a `with cpl.without_scheduling()` block ends where requests may come",
+        """
+def careful():
+    with cpl.without_scheduling():
+        with cpl.with_scheduling():
+            cpl.sleep(3)
+        note("through")
+"""
+        + RACE_IN_PYTHON,
     ),
     "define-task-variable": Example(
         '(define-task-variable *place* "home" "where") (top-level (par (progn (setf *place* "away") 1) 2) (note *place*))',
@@ -232,10 +252,23 @@ PLAN_LANGUAGE = {
     "with-task-tree-node": Example(
         """(top-level (cpl-impl::with-task-tree-node (:path-part '(foo 1) :name "FOO" :sexp '(bar) :lambda-list (a b) :parameters (list 1 2))
                         (note (+ a b)) b))""",
-        only="`@cpl.plan_function` makes nodes",
+        """
+        @cpl.plan_function
+        def foo(a, b):
+            note(a + b)
+            return b
+        run(foo, 1, 2)
+        """,
     ),
     "replaceable-function": Example(
-        "(top-level (cpl-impl::replaceable-function f (x) (list 1) '(f) (note x) (+ x 1)))", only="`@cpl.plan_function` makes nodes"
+        "(top-level (cpl-impl::replaceable-function f (x) (list 1) '(f) (note x) (+ x 1)))",
+        """
+        @cpl.plan_function
+        def f(x):
+            note(x)
+            return x + 1
+        run(f, 1)
+        """,
     ),
     "def-cram-function": Example(
         '(def-cram-function fetch (thing) "Fetches." (note thing) 7) (top-level (fetch "cup"))',
@@ -256,21 +289,59 @@ PLAN_LANGUAGE = {
         run(tidy, "kitchen")
         """,
     ),
-    "def-plan": Example('(def-plan fetch (thing) (note thing) 7) (top-level (fetch "cup"))', only="the old name of `def-cram-function`"),
+    "def-plan": Example(
+        '(def-plan fetch (thing) (note thing) 7) (top-level (fetch "cup"))',
+        """
+        @cpl.plan_function
+        def fetch(thing):
+            note(thing)
+            return 7
+        run(fetch, "cup")
+        """,
+    ),
     "def-top-level-plan": Example(
-        '(def-top-level-plan tidy (room) (note room) 3) (tidy "kitchen")', only="the old name of `def-top-level-cram-function`"
+        '(def-top-level-plan tidy (room) (note room) 3) (tidy "kitchen")',
+        """
+        def tidy(room):
+            note(room)
+            return 3
+        run(tidy, "kitchen")
+        """,
     ),
     "declare-goal": Example(
         """(declare-goal at (place) (note "wanted"))
            (def-goal (at ?place) (note ?place) (succeed 5))
            (top-level (at "door"))""",
-        only="a Python function, or an action designator, takes the place of a goal",
+        """
+        class At(Action):
+            place: str
+        def go(place):
+            note(place)
+            return 5
+        @action_grounding(At)
+        def how_to_be_at(action):
+            note("wanted")
+            return go, action.place
+        run(perform, At(place="door"))
+        """,
     ),
     "def-goal": Example(
         """(declare-goal loaded (thing place))
            (def-goal (loaded ?thing :tray) (note ?thing) "on the tray")
            (top-level (loaded "cup" :tray))""",
-        only="a Python function, or an action designator, takes the place of a goal",
+        """
+        class Loaded(Action):
+            thing: str
+            place: object
+        def load(thing):
+            note(thing)
+            return "on the tray"
+        @action_grounding(Loaded)
+        def how_to_load(action):
+            if action.place is kw.tray:
+                return load, action.thing
+        run(perform, Loaded(thing="cup", place=kw.tray))
+        """,
     ),
     "make-policy": Example(
         """(defvar *load* (make-fluent :value 0))
@@ -320,7 +391,14 @@ PLAN_LANGUAGE = {
     "with-named-policy": Example(
         """(define-policy calm () "Never acts." (:check nil) (:clean-up (note "over")))
            (top-level (with-named-policy 'calm () (note "body") 7))""",
-        only="a policy is a Python object; `with cpl.policy(guard):`",
+        """
+        policies = {"calm": cpl.make_policy("calm", check=lambda store: False, clean_up=lambda store: note("over"))}
+        def main():
+            with cpl.policy(policies["calm"]):
+                note("body")
+                return 7
+        run(main)
+        """,
     ),
     "with-policies": Example(
         """(define-policy inner () "Never acts." (:check nil) (:clean-up (note "inner")))
@@ -340,20 +418,60 @@ PLAN_LANGUAGE = {
         """(define-policy inner () "Never acts." (:check nil) (:clean-up (note "inner")))
            (define-policy outer () "Never acts." (:check nil) (:clean-up (note "outer")))
            (top-level (with-named-policies (('outer ()) ('inner ())) (note "body") 7))""",
-        only="a policy is a Python object; `with cpl.policy(guard):`",
+        """
+        policies = {
+            name: cpl.make_policy(name, check=lambda store: False, clean_up=lambda store, name=name: note(name)) for name in ("inner", "outer")
+        }
+        def main():
+            with cpl.policy(policies["outer"]), cpl.policy(policies["inner"]):
+                note("body")
+                return 7
+        run(main)
+        """,
     ),
     "log-event": Example(
         """(cpl-impl::define-log-tags :my-robot)
            (cpl-impl:log-event (:context "Robot ~a" (note 1)) (:display "~a" (note 2)) (:tags :my-robot)) 1""",
-        only="Python's own `logging`",
+        """
+        import logging
+        log = logging.getLogger("my_robot")
+        if log.isEnabledFor(logging.DEBUG):
+            log.debug("Robot %s %s", note(1), note(2))
+        1
+        """,
     ),
     "logging-enabled-p": Example(
-        "(cpl-impl::define-log-tags :my-robot) (cpl-impl:logging-enabled-p :my-robot)", only="Python's own `logging`"
+        "(cpl-impl::define-log-tags :my-robot) (cpl-impl:logging-enabled-p :my-robot)",
+        """
+        import logging
+        logging.getLogger("my_robot").isEnabledFor(logging.DEBUG)
+        """,
     ),
-    "define-log-tags": Example("(cpl-impl::define-log-tags :one :two) (cpl-impl:logging-enabled-p :two)", only="Python's own `logging`"),
+    "define-log-tags": Example(
+        "(cpl-impl::define-log-tags :one :two) (cpl-impl:logging-enabled-p :two)",
+        """
+        import logging
+        one, two = logging.getLogger("one"), logging.getLogger("two")
+        two.isEnabledFor(logging.DEBUG)
+        """,
+    ),
     "log-block": Example(
         """(defun begins (n) (note n) '(17 18)) (defun ends (id good) (note (list id good)))
            (cpl-impl::log-block begins (5) ends (cpl-impl::log-succeed) (note "body"))""",
-        only="Python's own `logging`",
+        """
+        from contextlib import contextmanager
+        @contextmanager
+        def logged(n):
+            note(n)
+            good = None
+            try:
+                yield
+                good = True
+            finally:
+                note([17, good])
+        with logged(5):
+            result = note("body")
+        result
+        """,
     ),
 }

@@ -15,6 +15,16 @@ def test_an_example_without_python_says_why():
     assert [name for name, example in EXAMPLES.items() if bool(example.python) == bool(example.only)] == []
 
 
+def test_four_operators_have_no_python_way():
+    """A figure that may only fall. What Python's own statements do is written with them."""
+    assert [name for name, example in EXAMPLES.items() if not example.python] == [
+        "with-offline-episode-knowledge",
+        "defstore-episode-knowledge-backend",
+        "defrestore-episode-knowledge-backend",
+        "load-if-necessary",
+    ]
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_hy_does_what_lisp_does(name, backend):
     example = EXAMPLES[name]

@@ -13,7 +13,7 @@ from .. import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, Error
 from cramhy_runtime.ground.data import MultipleValues, truth
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import ensure_package, find_package, keyword
 from . import goals
 from .client import CONNECTED, ActionClient
 
@@ -96,7 +96,7 @@ def call_goal(client, goal, *, timeout=None, result_timeout=None, feedback_cb=No
         return MultipleValues((sent.result, keyword(sent.state)))
 
     try:
-        values = conditions.restart_case([(sym("ACTIONLIB::ABORT-GOAL"), give_up, "Abort the goal.")], follow)
+        values = conditions.restart_case([(_abort_goal(), give_up, "Abort the goal.")], follow)
         if values is None:
             give_up()
             values = MultipleValues((None, keyword("TIMEOUT")))
@@ -105,6 +105,11 @@ def call_goal(client, goal, *, timeout=None, result_timeout=None, feedback_cb=No
             client.cancel(sent)
         raise
     return values
+
+
+def _abort_goal():
+    """The name of the restart. A program in Python has no Lisp that would make its package."""
+    return (find_package("ACTIONLIB") or ensure_package("ACTIONLIB")).intern("ABORT-GOAL")
 
 
 def _wait(client, sent, feedbacks, limit):

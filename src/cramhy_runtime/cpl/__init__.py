@@ -69,6 +69,7 @@ from .forms.python_forms import (
     try_each_in_order,
     try_in_order,
     whenever,
+    with_scheduling,
     with_task,
     without_scheduling,
 )
@@ -94,5 +95,5 @@ __all__ = [
     "run_blocking", "RUNNING", "seq", "SimplePlanFailure", "sleep", "SUCCEEDED", "suspend", "SUSPENDED", "tag", "Tag",
     "Task", "task_suspended", "task_tree_text", "TimedOut", "TimeLimit", "timeout", "Timeout", "top_level", "ToplevelTask", "try_all",
     "try_each_in_order", "try_in_order", "TryAllBlock", "value", "ValueFluent", "wait_for", "wake_up", "whenever",
-    "with_failure_handling", "with_task", "with_task_suspended", "without_scheduling",
+    "with_failure_handling", "with_scheduling", "with_task", "with_task_suspended", "without_scheduling",
 ]  # fmt: skip

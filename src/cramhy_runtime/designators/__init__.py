@@ -39,14 +39,14 @@ from .classes import (
 )
 from .equating import current_desig, desig_equal, first_desig
 from .python_grounding import action_grounding, forget, location_generator, location_validator, motion_grounding
-from .python_kinds import Action, Human, Location, Motion, Object, properties, property_values, replace
-from .python_resolution import equate, next_solution, reference, solutions
+from .python_kinds import Action, Human, Location, Motion, Object, every, properties, property_values, replace
+from .python_resolution import equate, equate_callback, next_solution, reference, solutions
 from .resolution import resolve_designator
 
 __all__ = [
-    "Action", "action_grounding", "ActionDesignator", "current_desig", "desig_equal", "desig_prop_value", "desig_prop_values", "Designator",
-    "DesignatorError", "equate", "first_desig", "forget", "Human", "HumanDesignator", "Location", "location_generator",
-    "location_validator", "LocationDesignator", "make_all_designator", "make_designator", "Motion", "motion_grounding",
-    "MotionDesignator", "next_solution", "Object", "ObjectDesignator", "properties", "property_values", "reference", "replace",
-    "resolve_designator", "solutions",
+    "Action", "action_grounding", "ActionDesignator", "current_desig", "desig_equal", "desig_prop_value", "desig_prop_values",
+    "Designator", "DesignatorError", "equate", "equate_callback", "every", "first_desig", "forget", "Human", "HumanDesignator", "Location",
+    "location_generator", "location_validator", "LocationDesignator", "make_all_designator", "make_designator", "Motion",
+    "motion_grounding", "MotionDesignator", "next_solution", "Object", "ObjectDesignator", "properties", "property_values", "reference",
+    "replace", "resolve_designator", "solutions",
 ]  # fmt: skip

@@ -7,6 +7,8 @@ callbacks are called. Source: designators.md section 6.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from cramhy_runtime.ground.conditions import error, handler_case, type_error
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.hooks import Hook
@@ -18,6 +20,8 @@ from .classes import Designator, DesignatorError
 from .protocol import equate, next_solution, reference
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from .signatures import EqualityOfTwo, OfOne
 
 on_equate_designators = Hook("CUT::ON-EQUATE-DESIGNATORS", "(successor parent)")
@@ -166,8 +170,15 @@ def _unregister_equate_callback(designator, callback):
 
 def with_equate_callback(designator, callback, body):
     """Call ``body()`` while ``callback`` is registered, and return its values."""
+    with told_of_equating(designator, callback):
+        return body()
+
+
+@contextmanager
+def told_of_equating(designator: Designator, callback: Callable[[Designator], object]) -> Iterator[None]:
+    """``callback`` is registered while the block runs."""
     register_equate_callback(designator, callback)
     try:
-        return body()
+        yield
     finally:
         unregister_equate_callback(designator, callback)

@@ -32,7 +32,7 @@ from cramhy_runtime.ground.python_names import lisp_spelling
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.terms import kw, lisp_name, nil_as, python_name, show, to_lisp, to_python
 from . import defaults as _defaults  # noqa: F401  the predicates and the generators that come along
-from .classes import ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
+from .classes import ALL, ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -222,6 +222,13 @@ def property_values(designator: Designator, name: str | Symbol) -> list[Any]:
     """All values of the key ``name`` in order, converted for Python."""
     wanted = _key(name).name
     return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name == wanted]
+
+
+def every(designator: D) -> D:
+    """A new designator for all things of this description, as Lisp's ``(all objects (type cup))``. Its ``quantifier`` is ``kw.all``."""
+    made = replace(designator)
+    made.quantifier = ALL
+    return made
 
 
 def replace(designator: D, **changed: object) -> D:

@@ -7,6 +7,7 @@ Python code raised in a grounding, a generator or a validator. None of this need
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from cramhy_runtime.kernel.typing_names import Any, ParamSpec, TypeVar
 
@@ -16,7 +17,7 @@ from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.data import UNSUPPLIED, Cons
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.terms import in_python_names, to_lisp, to_python
-from . import protocol
+from . import equating, protocol
 from .classes import Designator, DesignatorError
 from .resolution import known
 
@@ -108,6 +109,13 @@ def equate(parent: Designator, successor: D) -> D:
     """
     protocol.equate(_designator(parent), _designator(successor))
     return successor
+
+
+@contextmanager
+def equate_callback(designator: Designator, callback: Callable[[Designator], object]) -> Iterator[None]:
+    """``with equate_callback(cup, found.append):`` ``callback(other)`` is called with what is equated to the cup meanwhile."""
+    with equating.told_of_equating(_designator(designator), callback):
+        yield
 
 
 def solutions(designator: Designator) -> Iterator[Any]:

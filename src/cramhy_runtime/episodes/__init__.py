@@ -19,11 +19,20 @@ Files hold episodes in Lisp's notation, so the Lisp face saves and loads them: `
 Reference: projection-and-events.md part C.
 """
 
-from .knowledge import EpisodeKnowledge, current_episode, get_top_level_episode_knowledge, last_episode, with_episode_knowledge
+from .knowledge import (
+    EpisodeKnowledge,
+    current_episode,
+    get_top_level_episode_knowledge,
+    last_episode,
+    with_episode_knowledge,
+    with_last_episode_knowledge,
+    with_top_level_episode_knowledge,
+)
 from .queries import fluent_changes
 from .tracing import disable_fluent_tracing, durable_copy, enable_fluent_tracing, fluent_tracing_enabled
 
 __all__ = [
     "current_episode", "disable_fluent_tracing", "durable_copy", "enable_fluent_tracing", "EpisodeKnowledge", "fluent_changes",
-    "fluent_tracing_enabled", "get_top_level_episode_knowledge", "last_episode", "with_episode_knowledge",
+    "fluent_tracing_enabled", "get_top_level_episode_knowledge", "last_episode", "with_episode_knowledge", "with_last_episode_knowledge",
+    "with_top_level_episode_knowledge",
 ]  # fmt: skip

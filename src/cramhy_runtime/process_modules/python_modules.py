@@ -194,7 +194,7 @@ def process_modules(*running: Designation, **aliases: Designation) -> Iterator[N
     """
     if kernel.active() is None:
         inside_plan("PROCESS-MODULES")
-    started = [*map(_name, running), *((_symbol(alias), _name(module)) for alias, module in aliases.items())]
+    started = [*map(module_symbol, running), *((_symbol(alias), module_symbol(module)) for alias, module in aliases.items())]
     try:
         with modules_running(started):
             yield
@@ -273,15 +273,16 @@ def _running(module: Any) -> Any:
 
 def _asked(function: Callable[..., Any], module: Any, *arguments: Any) -> Any:
     try:
-        return function(_name(module), *arguments)
+        return function(module_symbol(module), *arguments)
     except UnknownProcessModule as problem:
-        note = f"From Python, modules run in a block: with process_modules({Name(_name(module)).python_name}): ..."
+        note = f"From Python, modules run in a block: with process_modules({Name(module_symbol(module)).python_name}): ..."
         if note not in getattr(problem, "__notes__", ()):
             problem.add_note(note)
         raise
 
 
-def _name(module: Any) -> Any:
+def module_symbol(module: Any) -> Any:
+    """The symbol that names a process module, or the alias of one."""
     if isinstance(module, type) and issubclass(module, AsynchronousModule) and module is not AsynchronousModule:
         return module.module_name
     if isinstance(module, str):

@@ -128,16 +128,20 @@ def with_projection_environment(name, body):
     its end (``environment``). A failure of the body goes on when ``shutdown`` has run and the process modules are dead. An unknown name is
     an error. Source: projection-and-events.md A1.
     """
-    environment = find_environment(name)
+    values, variables = in_environment(find_environment(name), body)
+    return find_class_or_error(RESULT)(name=name, result=list_from(list(values)), environment=list_from(variables))
+
+
+def in_environment(environment, body):
+    """Run ``body()`` in an environment: the sequence of its values, and pairs of the variables and what they were at its end."""
     with binding(
         PROJECTION_ENVIRONMENT,
-        name,
+        environment.name,
         RUNNING_MODULES,
         ProjectedRegistry(running(), environment.own_names()),
         *_initial_values(environment.variables),
     ):
-        values, variables = with_process_modules_running(environment.modules, lambda: environment.run(body))
-    return find_class_or_error(RESULT)(name=name, result=list_from(list(values)), environment=list_from(variables))
+        return with_process_modules_running(environment.modules, lambda: environment.run(body))
 
 
 class EnvironmentResult:

@@ -11,15 +11,18 @@ and patterns of the room ``utilities``. Source: reference page ``prolog.md``. Py
         print(answer.who)
 
 The page docs/reasoning-in-python.md teaches it. ``python/terms.py`` has the notation of terms, ``python/rules.py`` facts, rules and
-queries, and ``python/predicates.py`` predicates written in Python. Other rooms ask queries with `cramhy_runtime.prolog.query` and define
-predicates with `cramhy_runtime.prolog.builtins.native_predicates`.
+queries, ``python/predicates.py`` predicates written in Python, and ``python/asserted_facts.py`` facts that come and go. Other rooms ask
+queries with `cramhy_runtime.prolog.query` and define predicates with
+`cramhy_runtime.prolog.builtins.native_predicates`.
 """
 
+from .python.asserted_facts import facts_asserted, facts_watched
 from .python.predicates import Predicate, UnboundVariable, function, predicate, test
-from .python.rules import Answer, FactGroup, UnknownPredicate, explain, fact_group, findall, first, holds, remove_fact_group, solve
+from .python.rules import Answer, FactGroup, UnknownPredicate, explain, fact_group, findall, first, holds, remove_fact_group, solve, trace
 from .python.terms import Goal, Name, Names, P, Tail, V, Variable, kw, names
 
 __all__ = [
-    "Answer", "explain", "fact_group", "FactGroup", "findall", "first", "function", "Goal", "holds", "kw", "Name", "names", "Names", "P",
-    "predicate", "Predicate", "remove_fact_group", "solve", "Tail", "test", "UnboundVariable", "UnknownPredicate", "V", "Variable",
+    "Answer", "explain", "fact_group", "FactGroup", "facts_asserted", "facts_watched", "findall", "first", "function", "Goal", "holds",
+    "kw", "Name", "names", "Names", "P", "predicate", "Predicate", "remove_fact_group", "solve", "Tail", "test", "trace", "UnboundVariable",
+    "UnknownPredicate", "V", "Variable",
 ]  # fmt: skip

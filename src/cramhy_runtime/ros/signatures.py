@@ -27,6 +27,8 @@ ParameterValue = str | int | float | bool | Sequence["ParameterValue"] | Mapping
 
 Handler = Callable[..., RosMessage]
 """The handler of a service: a function that takes the request and returns the response."""
+Answers = Callable[[RosMessage], RosMessage | dict[str, object]]
+"""The handler of a service that a Python program offers: it returns the response, or the fields of that."""
 Observer = Callable[[str, str, bool], object]
 """A function told of changes: the kind of thing, its name, and whether it is there now."""
 

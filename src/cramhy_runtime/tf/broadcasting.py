@@ -6,6 +6,9 @@ the same one field, and who listens to one hears the other. What is republished 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from .. import kernel
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, list_from, truth
@@ -15,7 +18,7 @@ from ..ros import graph
 from ..ros.messages import message_class_exact
 from ..ros.roslisp import topics
 from ..ros.roslisp.clock import ros_time
-from ..ros.roslisp.time import with_parallel_thread
+from ..ros.roslisp.time import running_beside
 from ..ros.topics import Publication
 from ..transforms.coercion import check_type
 from .stamped import TransformStamped
@@ -117,9 +120,16 @@ def send_static_transforms(broadcaster, interval, new_thread, *transforms):
 
 def while_broadcasting(broadcaster, transforms, body):
     """``with-tf-broadcasting``: publish ``transforms``, a list, every 0.1 s while ``body`` runs; its values."""
-    transforms = list(transforms or ())
+    with broadcasting(broadcaster, *(transforms or ())):
+        return body()
+
+
+@contextmanager
+def broadcasting(broadcaster: Publication, *transforms: TransformStamped) -> Iterator[None]:
+    """``with broadcasting(broadcaster, TransformStamped("map", "cup", 0.0, place)):`` they are sent every 0.1 s while the block runs."""
     _checked(broadcaster, "WITH-TF-BROADCASTING", INTERVAL, transforms)
-    return with_parallel_thread(lambda: send_static_transforms_blocking(broadcaster, INTERVAL, *transforms), "tf broadcaster", body)
+    with running_beside(lambda: send_static_transforms_blocking(broadcaster, INTERVAL, *transforms), "tf broadcaster"):
+        yield
 
 
 # -------------------------------------------------------------------------------------------------------------------- CL-TF2

@@ -35,7 +35,7 @@ class Barrier:
     lisp_name = "CRAM-UTILITIES::BARRIER"
     kind = "BARRIER"
 
-    def __init__(self, threshold, name):
+    def __init__(self, threshold, name=None):
         self.threshold, self.name = threshold, name
         self.line = Line()
         self.broken = self.stale = False
@@ -50,6 +50,17 @@ class Barrier:
     def open(self):
         self.stale = True
         self.line.serve_all(PASSED)
+
+    def break_(self):
+        """Nobody passes any more; those who wait hear of it."""
+        self.broken = True
+        self.line.serve_all(BROKEN)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.break_()  # so that nobody waits at it for ever
 
     def set_threshold(self, threshold):
         self.threshold = threshold
@@ -82,10 +93,8 @@ def make_synchronization_barrier(n, *, name=None, recyclable=None):
 
 def with_synchronization_barrier(barrier, body):
     """Values of ``body(barrier)``; afterwards the barrier is broken, so that nobody waits at it for ever."""
-    try:
+    with _barrier(barrier):
         return body(barrier)
-    finally:
-        break_barrier(barrier)
 
 
 def enter_barrier(barrier, *, if_broken=ERROR, if_stale=ERROR):
@@ -106,8 +115,7 @@ def _refused(barrier, otherwise, problem):
 
 def break_barrier(barrier):
     """``cut:break-barrier``: nobody passes any more; those who wait hear of it."""
-    _barrier(barrier).broken = True
-    barrier.line.serve_all(BROKEN)
+    _barrier(barrier).break_()
 
 
 def reset_cyclic_barrier(barrier):

@@ -65,7 +65,7 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(params=["lisp", "hy"])
 def lisp(request):
     made = Lisp(request.getfixturevalue("fresh_kernel").backend.name)
-    return made if request.param == "lisp" else PlainHy(made.session, IN_HY, ["note", "start", "later", "in-child"])
+    return made if request.param == "lisp" else PlainHy(made.session, IN_HY, ["note", "start", "later"], of_functions=["in-child"])
 
 
 @pytest.fixture

@@ -197,6 +197,15 @@ def without_scheduling(body: Thunk[object] | None = None) -> object:
 
 
 @overload
+def with_scheduling() -> AbstractContextManager[None]: ...
+@overload
+def with_scheduling(body: Thunk[T]) -> T: ...
+def with_scheduling(body: Thunk[object] | None = None) -> object:
+    """``with with_scheduling():`` in a `without_scheduling` block, a place where requests are obeyed. Elsewhere it changes nothing."""
+    return suspension.disturbable() if body is None else suspension.with_scheduling(body)
+
+
+@overload
 def on_suspension(handler: Thunk[object]) -> AbstractContextManager[None]: ...
 @overload
 def on_suspension(handler: Thunk[object], body: Thunk[T]) -> T: ...

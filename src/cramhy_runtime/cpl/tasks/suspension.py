@@ -146,10 +146,18 @@ def without_scheduling(body: Thunk[T]) -> T:
 
 
 def with_scheduling(body: Thunk[T]) -> T:
-    """Call ``body()`` and return its values. Within ``without-scheduling`` the task obeys requests again meanwhile. Source: cpl.md 3.6."""
+    """Call ``body()`` `disturbable`, and return its values. Source: cpl.md 3.6."""
+    with disturbable():
+        return body()
+
+
+@contextmanager
+def disturbable() -> Iterator[None]:
+    """Within ``without-scheduling``, requests are obeyed again while the block runs. Elsewhere it changes nothing."""
     task = current_task()
     if task is None or not task.unschedulable:
-        return body()
+        yield
+        return
     me, levels = task.kernel_task, task.unschedulable
     task.unschedulable = 0
     me.shielded -= levels
@@ -157,7 +165,7 @@ def with_scheduling(body: Thunk[T]) -> T:
         obey(task)
         if me.attention:
             kernel.slice_over()  # which delivers what was held back
-        return body()
+        yield
     finally:
         task.unschedulable = levels
         me.shielded += levels

@@ -9,6 +9,9 @@ matches. First all matches are updated, then the handlers are called. Handlers m
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.conditions import SimpleError, error, style_warn
 from cramhy_runtime.ground.data import Cons, list_from, python_list
@@ -343,6 +346,18 @@ def with_production_handlers(handlers, body):
         for production, function in registered:
             if function in production.callbacks:
                 production.callbacks.remove(function)
+
+
+@contextmanager
+def watched(patterns: list[Cons], callback: Callable[..., object]) -> Iterator[None]:
+    """While the block runs, ``callback`` is told of the matches of ``patterns``, a Python list: a production without a name."""
+    production = Production(None, patterns)
+    production.callbacks.append(callback)
+    try:
+        production.start()
+        yield
+    finally:
+        _network.drop(production)
 
 
 def _print_production(production, stream):

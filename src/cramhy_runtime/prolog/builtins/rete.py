@@ -8,6 +8,9 @@ their `object_id`, so strings and lists never match by content. Watchers of the 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
 from cramhy_runtime.ground.data import list_end
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_from, one, python_list, truth
@@ -237,15 +240,22 @@ def with_facts_asserted(fact_thunks, body):
 
     If the body has retracted one of them itself, that is an error as in `rete_retract`, after the others are retracted.
     """
-    asserted = []
-    try:
-        for thunk in fact_thunks:
-            fact = one(thunk())
-            rete_assert(fact)
-            asserted.append(fact)
+    with asserted(one(thunk()) for thunk in fact_thunks):
         return body()
+
+
+@contextmanager
+def asserted(facts: Iterable[Cons]) -> Iterator[None]:
+    """The facts, an iterable, hold while the block runs, see `with_facts_asserted`."""
+    those = []
+    try:
+        for fact in facts:
+            _check(fact)
+            those.append(fact)  # before a handler hears of it, who may leave by an exit
+            rete_assert(fact)
+        yield
     finally:
-        _retract_all(asserted)
+        _retract_all(those)
 
 
 def _retract_all(facts):

@@ -27,7 +27,7 @@ from cramhy_runtime.ground.restarts import muffle_warning
 from ..builtins import control
 from ..explanations import explanations
 from ..engine import fact_groups as facts
-from .. import query
+from .. import query, tracing
 from ..builtins import builtins as _builtins, productions as _productions, rete as _rete  # noqa: F401  the built-in predicates are there
 from ..engine.database import functors
 from ..explanations.explanations import Explanation
@@ -38,6 +38,7 @@ from ..symbols import sym
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from contextlib import AbstractContextManager
 
 # As far as this room has come, the functors are the predicates that come with it.
 import_predicates(*control.CONTROL, *functors, sym("CRAM-PROLOG::EXPLAIN"), ANONYMOUS)
@@ -221,6 +222,14 @@ def explain(question: object) -> Explanation:
     with in_python_names():
         told: Explanation = explanations.explain(question.form if isinstance(question, Goal) else question)
     return told
+
+
+def trace(*predicates: Name | Symbol) -> AbstractContextManager[None]:
+    """``with trace(P.parent):`` each call, exit, redo and fail of these goals is a line on the standard output; without predicates, of all.
+
+    predicates: names of predicates, built-in ones as well. Those that are traced already stay so afterwards.
+    """
+    return tracing.tracing(*[to_lisp(predicate) for predicate in predicates])
 
 
 setattr(Explanation, "__repr__", Explanation.__str__)

@@ -11,7 +11,8 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError, SimpleWarning
 from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.printing import format_to_string
-from cramhy_runtime.ground.packages import intern, string_designator, sym, symbol_name
+from cramhy_runtime.ground.output import standard_output
+from cramhy_runtime.ground.packages import intern, string_designator, symbol_name
 from cramhy_runtime.ground.printing import princ_to_string
 from .. import graph, rosout, wire
 from ..rosout import DEBUG, ERROR, FATAL, INFO, LEVEL_CODES, LEVEL_NAMES, WARN
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 
 __all__ = ["DEBUG", "ERROR", "FATAL", "INFO", "WARN"]
-
-_standard_output = sym("*STANDARD-OUTPUT*")
 
 
 def topic_path(topic: Any) -> Path:
@@ -79,9 +78,16 @@ def log_text(level: int, topic: object, text: str) -> int | None:
     return _print(level, topic, text)
 
 
+def log_about(level: int, topic: str | tuple[str, ...], text: str) -> int | None:
+    """Log a finished text of a Python program. ``topic``: a name, or a path of names."""
+    if not enabled(level, topic):
+        return None
+    return _print(level, list_from([Symbol(name, None) for name in topic_path(topic)]), text)
+
+
 def _print(level: int, topic: Any, text: str) -> int | None:
     shown_topic = princ_to_string(topic if topic is None or isinstance(topic, Cons) else lisp_list(topic))
-    stream = _standard_output.value
+    stream = standard_output()
     stream.fresh_line()
     line = f"[{shown_topic} {LEVEL_NAMES[level]}] {float(ros_time()):.3f}: {text}"
     stream.write(line)
@@ -153,7 +159,7 @@ def print_debug_levels() -> None:
     for path, code in levels.items():
         shown = f"({' '.join(reversed(path))})" if path else "NIL"
         lines.append(f"{shown} : {LEVEL_NAMES.get(code, code)}")
-    stream = _standard_output.value
+    stream = standard_output()
     stream.write("[" + "\n ".join(lines) + "]")
 
 

@@ -13,6 +13,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.data import Cons, LispString, python_list, truth
 from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.output import standard_output
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.utilities.wait_queue import need
@@ -248,7 +249,7 @@ def standalone_exec_debug_hook(condition: BaseException, hook: object = None) ->
 def print_status() -> None:
     """Print the node's name, state, master, publications and subscriptions."""
     here = graph.active().lisp_node
-    stream = sym("*STANDARD-OUTPUT*").value
+    stream = standard_output()
     stream.fresh_line()
     stream.write(f"Node {NODE_NAME.value or 'NIL'} is {node_status().name}, master {princ_to_string(MASTER_URI.value)}\n")
     for title, table in (

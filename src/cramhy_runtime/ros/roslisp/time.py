@@ -5,6 +5,8 @@ All waits here park, so in virtual time they take no real time (law 5). Source: 
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from ... import kernel
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import MultipleValues, Symbol, one, truth
@@ -16,7 +18,7 @@ from .clock import ros_time
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 T = TypeVar("T")
 
@@ -82,10 +84,17 @@ def with_parallel_thread(function: Callable[[], object] | Symbol, name: str | No
         function = function_named(function)
     if not callable(function):
         return type_error(function, "FUNCTION")
-    task = kernel.spawn(function, name=str(name))
-    try:
+    with running_beside(function, str(name)):
         return body()
+
+
+@contextmanager
+def running_beside(function: Callable[[], object], name: str) -> Iterator[None]:
+    """``with running_beside(watch, "watcher"):`` a task of its own calls ``function`` while the block runs, and is dead after it."""
+    task = kernel.spawn(function, name=name)
+    try:
+        yield
     finally:
-        task.cancel("the body of with-parallel-thread is over")
+        task.cancel("the block that it ran beside is over")
         with kernel.shield():
             task.join(claim=False)
