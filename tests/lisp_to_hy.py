@@ -415,16 +415,16 @@ class Writer:
         if not words:
             outer, self.exits = self.exits, [*self.exits, "break"]
             try:
-                return f"(while True (checkpoint) {self.body(parts)})"
+                return f"(while True {self.body(parts)})"
             finally:
                 self.exits = outer
         match parts:
             case ["repeat", count, "collect", form]:
                 return self.comprehension("_", f"(range {self.form(count)})", form)
             case ["until", test, "do", *forms]:
-                return f"(while (not {self.form(test)}) (checkpoint) {self.body(forms)})"
+                return f"(while (not {self.form(test)}) {self.body(forms)})"
             case ["while", test, "do", *forms]:
-                return f"(while {self.form(test)} (checkpoint) {self.body(forms)})"
+                return f"(while {self.form(test)} {self.body(forms)})"
             case ["repeat", count, "do", *forms]:
                 return self.for_("_", f"(range {self.form(count)})", *forms)
             case ["for", name, ("in" | "being"), source, "do", *forms] if isinstance(name, str):
@@ -566,7 +566,7 @@ FORMS = {
     "multiple-value-bind": Writer.multiple_value_bind,
     "funcall": Writer.funcall,
     "apply": Writer.apply,
-    "unwind-protect": lambda self, form, *cleanup: f"(try {self.form(form)} (finally (with [_ (cleanup)] {self.body(cleanup)})))",
+    "unwind-protect": lambda self, form, *cleanup: f"(try {self.form(form)} (finally {self.body(cleanup)}))",
     "function": lambda self, form: self.function(form),
     "null": _word("(is {} None)"),
     "eq": lambda self, *parts: f"(eq {' '.join(map(self.argument, parts))})",

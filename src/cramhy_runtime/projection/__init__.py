@@ -6,7 +6,7 @@
     proj.with_projection_environment(KITCHEN, lambda: cpl.top_level(plan)).result     # the list of the plan's values
 
 Where the parts are: ``environments`` imagined worlds, and running a body in one · ``clocks`` their time · ``own_modules`` their process
-modules · ``symbols`` the Lisp package. Reference: projection-and-events.md part A.
+modules · ``python`` projection for Python · ``symbols`` the Lisp package. Reference: projection-and-events.md part A.
 """
 
 from .clocks import LinearClock, PartiallyOrderedClock, clock_time, clock_wait, with_partially_ordered_clock_disabled
