@@ -5,6 +5,7 @@ The operators of the plan language say their shape themselves. Here are Hy's own
 
 from __future__ import annotations
 
+import builtins
 import re
 
 import hy
@@ -98,6 +99,8 @@ def hint_for_name(name, known):
     if name in _LISP:
         return f"{_LISP[name]} is Common Lisp. In Hy it is written {LISP[_LISP[name]]}. {_WHERE_LISP_IS}"
     written = hy.unmangle(name)
+    if hy.mangle(name) in builtins._hy_macros and not any(map(str.isalnum, written)):
+        return f"{written} stands at the head of its form, as in ({written} 1 2)."
     if written.upper() in COMMON_LISP.external:
         return f"{written} is Common Lisp, and Hy has nothing of that name. {_WHERE_LISP_IS}"
     if re.match(r"\?\w", written):

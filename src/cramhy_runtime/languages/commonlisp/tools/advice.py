@@ -187,6 +187,10 @@ def _function(symbol):
     other = elsewhere(symbol)
     if other is not None:
         return f"There is {_qualified(other)} in another package."
+    home = _users_package_with(symbol)
+    if home is not None:
+        name = min(home.names, key=len).lower()
+        return f"There is one in the package {home.name}: (in-package :{name}) goes there; from here it is {name}::{symbol.name.lower()}."
     near = near_names(symbol.name, set(_visible(is_operator)))
     return f"Did you mean {' or '.join(near)}?" if near else None
 
@@ -202,6 +206,15 @@ def elsewhere(symbol):
         other = package.external.get(symbol.name)
         if isinstance(other, Symbol) and other is not symbol and is_operator(other) and package.name != "CRAMHY":
             return other
+    return None
+
+
+def _users_package_with(symbol):
+    """A package of the user's that has an operator of the same name and does not export it, or ``None``."""
+    for package in all_packages():
+        other = None if package.built_in else package.internal.get(symbol.name)
+        if isinstance(other, Symbol) and other.package is package and is_operator(other):
+            return package
     return None
 
 
