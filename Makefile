@@ -19,7 +19,7 @@ test: $(READY)
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile --no-loadscope-reorder
 
 interpreters: $(READY)
-	@$(BIN)/python -m pytest -rs tests/test_interpreters.py
+	@CRAMHY_INTERPRETERS=all $(BIN)/python -m pytest -rs tests/test_interpreters.py
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py

@@ -1,6 +1,7 @@
 """cramhy works on every Python of this machine: `portable`'s part of the tests, and the lectures, on each that is not the one of the tests.
 
-``make interpreters`` runs this file and names the Pythons that were skipped.
+``make interpreters`` runs this file and names the Pythons that were skipped. It takes two minutes and a half for each, so that it is no part
+of ``make test``, whose time is limited.
 """
 
 from __future__ import annotations
@@ -38,6 +39,8 @@ def release(place):
     return [int(number) for number in re.findall(r"\d+", place.parent.name)]
 
 
+if not os.environ.get("CRAMHY_INTERPRETERS"):
+    pytest.skip("make interpreters runs it", allow_module_level=True)
 FOUND = interpreters()
 if not FOUND:
     pytest.skip("there is no other Python on this machine", allow_module_level=True)

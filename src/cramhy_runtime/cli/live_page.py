@@ -2,10 +2,10 @@
 
 Three ask for it. The user does, by ``(turtlesim:view)``. Another terminal does, by ``cramhy view`` or ``rosrun turtlesim
 turtlesim_node``, if the session listens (``--serve``). And on a desktop the page opens by itself when the turtle appears, as the
-original's window does; in a terminal without a screen a line says how to open it. `offer` lets a session do the first two,
-`open_with_turtle` the last. `show_session` is for the other terminal.
+original's window does. Where there is no screen, nothing is said, since prompts answer as the slides show; `help` tells how to open it.
+`offer` lets a session do the first two, `open_with_turtle` the last. `show_session` is for the other terminal.
 
-A simulator that ``rosrun`` has started goes over to the prompt's session when one starts. The browsers that show it go with it (`move`).
+A simulator that ``rosrun`` has started goes over to the prompt's session when one starts. The browsers that show it go with it (`follow`).
 """
 
 from __future__ import annotations
@@ -42,10 +42,7 @@ def opened(show, asked):
 
 
 def open_with_turtle():
-    """Open the page in a browser when the first simulator of the active session starts, if a person sits at a desktop.
-
-    At a terminal without a screen, tell how to open it.
-    """
+    """Open the page in a browser when the first simulator of the active session starts, if a person sits at a desktop."""
     from cramhy_runtime.turtlesim.node import each_simulator
 
     if not sys.stdin.isatty():  # nothing of it is loaded where lines come from a pipe
@@ -55,12 +52,12 @@ def open_with_turtle():
     def appears(_):
         if not told:
             told.append(True)
-            _offer_or_open()
+            _open_unasked()
 
     each_simulator(appears)
 
 
-def _offer_or_open():
+def _open_unasked():
     from cramhy_runtime.view import page
 
     if page.running() is not None:
@@ -71,8 +68,6 @@ def _offer_or_open():
             return
         except window.NoPage:
             pass  # why, it says to those who ask for the page
-    if page.at_a_terminal():
-        _tell(f"To see the turtle, type {ASK}")
 
 
 def show_session(graph, asked=True):
@@ -92,7 +87,7 @@ def show_session(graph, asked=True):
     return found["url"]
 
 
-def move():
+def follow():
     """Lead the browsers that show the page of this process to that of the newest session elsewhere. To be called in a task.
 
     Where no browser shows it, nothing happens, so that a page opens as it does with a turtle that appears.

@@ -296,7 +296,7 @@ def _wait(nodes):
         kernel.sleep(LOOK_AGAIN)
         newest = kernel.run_blocking(_newest)
         if newest is not None and newest.pid != os.getpid():
-            live_page.move()
+            live_page.follow()
             return "moved"
     return "ended"
 

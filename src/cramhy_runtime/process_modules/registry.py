@@ -169,12 +169,12 @@ def _with_hint(problem, name):
     return problem
 
 
-def _typed(name):
+def _typed(name: Any) -> str:
     """A name as the user types it."""
     return str(getattr(name, "name", name)).lower()
 
 
-def _as_typed_beside(name, other):
+def _as_typed_beside(name: Any, other: Any) -> str:
     """``other`` as one types it in the place of ``name``: with its package if that is another one."""
     package = getattr(other, "package", None)
     if package is None or package is getattr(name, "package", None):

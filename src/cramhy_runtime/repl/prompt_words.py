@@ -27,7 +27,8 @@ Type a form of Lisp, such as (+ 1 2), and its values are printed. A form may hav
   (help par)                  tells what a name means; (apropos "turtle") finds names
   (describe-task-tree)        shows what the plan is doing and has done
   * ** ***                    the last values; + the last form
-  rostopic list, rosservice   and the other commands of ROS work here, too"""
+  rostopic list, rosservice   and the other commands of ROS work here, too
+  (turtlesim:view)            shows the turtle on a page, in the browser"""
 WITH_EDITOR = "  TAB                         completes names, keywords and files; arrow keys bring back earlier forms"
 WITHOUT_EDITOR = "  Ctrl-C                      ends the form that runs, through its cleanup"
 END = """\

@@ -245,8 +245,8 @@ def test_advertising_another_type_than_the_listeners_warns(node):
     graph.active().node("turtle").subscribe("/turtle1/cmd_vel", message_class("geometry_msgs/Twist"), print)
     assert node('(publish (advertise "turtle1/cmd_vel" "geometry_msgs/Vector3") (make-msg "geometry_msgs/Vector3"))') == "0"
     assert node.warned() == (
-        "WARNING: /turtle listens to /turtle1/cmd_vel for messages of type geometry_msgs/Twist, so it gets nothing of "
-        "what is published there as geometry_msgs/Vector3."
+        "WARNING: /turtle listens to /turtle1/cmd_vel for messages of type geometry_msgs/Twist, so it gets no message "
+        "that is published there as geometry_msgs/Vector3."
     )
 
 

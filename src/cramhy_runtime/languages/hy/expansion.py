@@ -21,7 +21,7 @@ from cramhy_runtime.ground.packages import common, is_symbol, sym
 from ..commonlisp.syntax.macros import ensure_loaded, macroexpand_1
 from .call_parts import Code, without_code
 from .lisp_data import call_of, constant_form, function_form, is_simple
-from .module_names import if_global
+from .module_names import binds, if_global
 
 LEAVE = models.Symbol("leave")
 
@@ -212,6 +212,7 @@ class Translation:
         pairs = []
         for name, parameters, *body in functions or ():
             pairs += [self.variable(name), self.lambda_(parameters, *body)]
+            binds(self.compiler, hy.mangle(pairs[-2]))
             if name.package is not None:  # the user may write cut:cont for cont
                 for prefix in map(str.lower, name.package.names):
                     alias = word(f"{prefix}:{name.name.lower()}")

@@ -27,11 +27,12 @@ CRAMHY = models.Expression([models.Symbol("__import__"), models.String("cramhy")
 class ModuleNames:
     """The names that one file has so far. variables: the mangled names that may be variables in the form that is compiled now.
 
-    at_work: whether a form of the file is compiled now. With the same compiler a prompt goes on after ``hy -i FILE``.
+    bound: those that expansions bind in it. at_work: whether a form of the file is compiled now. With the same compiler a prompt goes on
+    after ``hy -i FILE``.
     """
 
     def __init__(self):
-        self.variables = frozenset()
+        self.variables = self.bound = frozenset()
         self.at_work = False
         self._known = {}  # what it is: a path or the text of a constant → its name
         self._new = []  # name, value, name, value ... : what the form is the first to need
@@ -62,7 +63,7 @@ def compiled(compiler, form):
     if names is None:
         names = _names[compiler] = ModuleNames()
         kept_code.seen(compiler.filename)
-    names.variables, names.at_work = frozenset(variables(form)), True
+    names.variables, names.bound, names.at_work = frozenset(variables(form)), frozenset(), True
     try:
         made = compiler.compile(form)
     finally:
@@ -115,10 +116,23 @@ def constant(_hy_compiler, text):
     return found if names is None else names.name(str(text), str(text), found)
 
 
+def binds(compiler, name):
+    """The form that is compiled now binds the mangled ``name`` in an expansion, so that its text does not show it."""
+    names = _names_of_file(compiler)
+    if names is not None:
+        names.bound |= {name}
+
+
+def is_bound(compiler, name):
+    """Whether `binds` was told of ``name`` in the form that is compiled now."""
+    names = _names_of_file(compiler)
+    return names is not None and name in names.bound
+
+
 def if_global(compiler, name):
     """A Hy form that tells whether the module has a variable of that mangled name; ``None`` if it may be a variable of a function."""
     names = _names_of_file(compiler)
-    if names is None or name in names.variables:
+    if names is None or name in names.variables or name in names.bound:
         return None
     globals_ = names.name("globals", "globals", models.Expression([models.Symbol("globals")]))
     return models.Expression([models.Symbol("in"), models.String(name), globals_])
@@ -130,4 +144,4 @@ def _attribute(value, *path):
 
 MACROS = {"_ours": ours, "_constant": constant}
 
-__all__ = ["MACROS", "at_prompt", "compiled", "if_global"]
+__all__ = ["MACROS", "at_prompt", "binds", "compiled", "if_global", "is_bound"]

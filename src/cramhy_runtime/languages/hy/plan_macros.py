@@ -27,7 +27,7 @@ from . import calls
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
 from .lisp_data import call_of, constant_form, function_form, lisp_data, package_of
-from .module_names import if_global
+from .module_names import if_global, is_bound
 from .users_names import may_be_the_users
 
 WITHOUT_PREFIX = (
@@ -134,7 +134,7 @@ def function_macro(symbol, name=None):
             made = lisp_arguments(symbol.function, arguments, here)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
-        theirs = name is not None and may_be_the_users(name, _hy_compiler)
+        theirs = name is not None and (may_be_the_users(name, _hy_compiler) or is_bound(_hy_compiler, mangle(name)))
         function = function_form(package, lisp_name)
         if any(map(_is_keyword, made)) and not calls.takes_keywords(symbol.function):
             if theirs or any(map(_is_mapping, made)):

@@ -34,7 +34,8 @@ Wanted = dict[tuple[str, str, str], tuple[bool, str]]
 _NUMBERED = re.compile(r"\bK\d+\b")
 """Names of constants. They are numbered in the order of the text, and what they hold is looked at."""
 _AROUND = set(map(sym, ("PROGN", "EVAL-WHEN", "LOCALLY")))
-_DECLAIM = sym("DECLAIM")
+_NOT_COMPILED = {sym("DECLAIM"), sym("DEFINE-SYMBOL-MACRO")}
+"""What stands in these forms is kept as it is."""
 _ABOUT_USERS = ("documentation", "advice")
 """Parts of the names of a compiler's notes that tell people something, and the compiler nothing."""
 _state = attrgetter("macro", "function", "setf_function", "special", "constant", "reads", "writes")
@@ -70,7 +71,7 @@ def _given_names(form: object) -> Iterator[Symbol]:
         if form.car in _AROUND:
             for part in form.cdr:
                 yield from _given_names(part)
-        elif form.car is _DECLAIM:
+        elif form.car in _NOT_COMPILED:
             yield from symbols_in(form.cdr)
         elif form.car.name.startswith("DEF"):
             name = form.cdr.car
