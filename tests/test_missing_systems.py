@@ -15,6 +15,7 @@ from pathlib import Path
 
 import portable
 import pytest
+from systems import takes_long
 
 ROOT = Path(__file__).parents[1]
 MODULES = """crypt curses _curses fcntl grp nis pty pwd readline resource spwd syslog termios tty _posixshmem""".split()
@@ -360,7 +361,7 @@ for name in ("cramhy_runtime.kernel.anything", "pytest"):
     assert (done.stdout, done.stderr) == ("False False\nNo module named 'termios' (hidden by a test)\nTrue True\n", "")
 
 
-@pytest.mark.parametrize("room", portable.SUITES)
+@pytest.mark.parametrize("room", [room if room in ("kernel", "cpl") else pytest.param(room, marks=takes_long) for room in portable.SUITES])
 def test_the_suite_of_a_room_passes(hidden_from_cramhy, room):
     options = ["-q", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist", "--tb=short"]
     environment = {key: value for key, value in hidden_from_cramhy.items() if not key.startswith("PYTEST_")}

@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from systems import takes_long
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 MINUTES = 60.0 if SOAK else 0.7
@@ -22,6 +23,7 @@ MORE_IN_A_MINUTE = 12_000  # after the first third of it
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="what a process holds is told by Linux")
+@takes_long
 def test_a_session_does_not_grow():
     for module in ("uvicorn", "websockets", "mcap"):
         pytest.importorskip(module)

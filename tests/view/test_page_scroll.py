@@ -6,6 +6,7 @@ import signal
 
 import pytest
 from fake_session import fluent, task
+from systems import takes_long
 from test_page import show, wait_for_count, wait_for_text
 
 SIZES = {"desktop": (1440, 900), "tablet": (820, 1180), "phone": (390, 844)}
@@ -238,6 +239,7 @@ LONG_PLAN = """\
       (cpl:sleep (+ 0.5 (* i 0.01))))))"""
 
 
+@takes_long
 def test_during_a_long_plan_no_size_scrolls_away(repl, visit):
     """The plan of a real session, with 120 branches that all log, on three pages at once, each with its wheel."""
     session = repl("--time", "virtual")
