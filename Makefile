@@ -50,6 +50,7 @@ $(LIGHT): pyproject.toml
 	@echo "Making the environment in .venv (once) ..."
 	@$(PYTHON) -m venv .venv
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web]'
+	@$(BIN)/python -m pip uninstall -qq --disable-pip-version-check --yes setuptools # which Python 3.11 adds: 10 MB, not needed
 	@touch $(LIGHT)
 
 # The rest: what tests, pages and wheels are made with.

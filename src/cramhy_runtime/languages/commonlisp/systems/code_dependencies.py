@@ -18,10 +18,10 @@ import re
 import types
 from collections.abc import Callable, Iterator
 from operator import attrgetter, is_
-from pathlib import Path
 from typing import Any
 
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
+from cramhy_runtime.kernel.reports import of_the_library
 from cramhy_runtime.ground.packages import common, registered, sym, was_redefined
 from ..evaluation.evaluator import PACKAGE
 from ..reader.readtables import READTABLE, STANDARD, DispatchTable, Readtable
@@ -110,11 +110,12 @@ class Meanings:
 
     def of(self, symbol: Symbol) -> str:
         """The digest of what ``symbol`` means; empty if it means nothing to the compiler, or what cramhy makes it mean."""
-        if not _facts(symbol):
+        facts = _facts(symbol)
+        if not facts:
             return ""
         digest, seen = self._known.get(symbol, ("", None))
         if seen is None or not all(_same(_now(each), then) for each, then in seen):
-            digest, seen = _digest(_facts(symbol), symbol)
+            digest, seen = _digest(facts, symbol)
             self._known[symbol] = digest, seen
         return digest
 
@@ -218,17 +219,14 @@ def _same(objects: tuple[Any, ...], others: tuple[Any, ...]) -> bool:
 
 
 @functools.cache
-def _own_folders() -> tuple[str, ...]:
+def _folders_of_hy() -> tuple[str, ...]:
     language = importlib.util.find_spec("cramhy")
-    here = Path(__file__).parents[3]
-    return *(f"{here / room}{os.sep}" for room in os.listdir(here) if room != "tutorials"), *(
-        f"{folder}{os.sep}" for folder in (language and language.submodule_search_locations or ())
-    )
+    return tuple(f"{folder}{os.sep}" for folder in (language and language.submodule_search_locations or ()))
 
 
 def _is_ours(code: types.CodeType) -> bool:
     """Whether ``code`` comes with cramhy, and is part of what the fingerprint of a kept file tells."""
-    return code.co_filename.startswith(_own_folders())
+    return of_the_library(code.co_filename) or code.co_filename.startswith(_folders_of_hy())
 
 
 def _is_set(cell: types.CellType) -> bool:
