@@ -14,7 +14,7 @@ import math
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, LispString, MultipleValues, list_from
+from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, LispString, MultipleValues, list_from
 from .element_types import check_element, upgraded_element_type
 from .sequence_types import char_of, constant_changed
 from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
@@ -85,7 +85,7 @@ def dimensions_of(array, context="\nwhen binding ARRAY"):
 def _place(array, subscripts):
     """(storage, index) of the element of ``array`` at ``subscripts``."""
     if not isinstance(array, LispArray):
-        storage = array if isinstance(array, (list, str)) else array.chars if isinstance(array, LispString) else not_an_array(array)
+        storage = array.chars if array.__class__ is LispString else array if isinstance(array, (list, str)) else not_an_array(array)
         if len(subscripts) != 1:
             wrong_rank(subscripts, 1)
         return storage, _check(subscripts[0], len(storage), array)
@@ -116,10 +116,11 @@ def _read(array, storage, index):
 def _write(array, storage, index, value):
     if storage.__class__ is list and not isinstance(array, (LispString, LispArray)):
         storage[index] = value
-    elif isinstance(array, LispString):
-        storage[index] = char_of(value)
-    elif isinstance(array, str):
-        constant_changed(array)
+    elif isinstance(array, (str, LispString)):
+        char = char_of(value)
+        if array.__class__ not in WRITABLE_STRINGS:
+            constant_changed(array)
+        array.writable()[index] = char
     else:
         storage[index] = check_element(value, array.element_type)
     return value

@@ -11,12 +11,11 @@ from __future__ import annotations
 
 from ..collections.arrays import aref, set_aref
 from ..collections.element_types import initial_element, upgraded_element_type
-from ..collections.sequence_types import elements, text, typed_vector
+from ..collections.sequence_types import elements, typed_vector
 from . import protocol_functions
-from cramhy_runtime.ground.arrays import CHARACTER
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
 from ..syntax.function_shapes import shape_of
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, redefined, string_designator, sym, symbol_name
@@ -155,7 +154,7 @@ class Structure:
 
     def vector(self, items):
         """A vector of ``items`` that can be changed, of the element type of ``:type (vector element-type)``."""
-        return LispString(text(items)) if self.element_type is CHARACTER else typed_vector(items, self.element_type)
+        return typed_vector(items, self.element_type)
 
     def wrong_type(self, slot, value):
         return type_error(value, slot.type, f"\nwhen setting slot {symbol_name(slot.name)} of structure {symbol_name(self.name)}")

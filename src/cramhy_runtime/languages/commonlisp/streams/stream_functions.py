@@ -9,7 +9,17 @@ from __future__ import annotations
 
 from ..collections.sequence_types import bounds, elements, part
 from cramhy_runtime.ground.conditions import EndOfFile, error, type_error
-from cramhy_runtime.ground.data import Character, Cons, LispString, MultipleValues, Symbol, boolean, list_from
+from cramhy_runtime.ground.data import (
+    WRITABLE_STRINGS,
+    Character,
+    Cons,
+    FreshString,
+    LispString,
+    MultipleValues,
+    Symbol,
+    boolean,
+    list_from,
+)
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from . import streams
@@ -32,7 +42,7 @@ from .streams import (
 def _text(string):
     if string.__class__ is str:
         return string
-    if isinstance(string, LispString):
+    if isinstance(string, (str, LispString)):
         return str(string)
     text = _characters(string)
     return type_error(string, "STRING") if text is None else text
@@ -166,7 +176,7 @@ def read_line(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
     if ended and not line:
         missing = _at_end(stream, eof_error_p, eof_value)
         return MultipleValues((missing, True))
-    return MultipleValues((line, boolean(ended)))
+    return MultipleValues((FreshString(line), boolean(ended)))
 
 
 def read_sequence(sequence, stream, *, start=0, end=None):
@@ -174,7 +184,7 @@ def read_sequence(sequence, stream, *, start=0, end=None):
     stream = input_stream(stream)
     length = len(elements(sequence))
     start, end = bounds(start, length if end is None else end, length)
-    is_string, cell = isinstance(sequence, LispString), sequence
+    is_string, cell = sequence.__class__ in WRITABLE_STRINGS, sequence
     for _ in range(start if isinstance(sequence, Cons) else 0):
         cell = cell.cdr
     next_element = stream.read_char if is_string or stream.element_type() is CHARACTER else stream.read_byte
@@ -183,7 +193,7 @@ def read_sequence(sequence, stream, *, start=0, end=None):
         if element == "" or element is None:
             return index
         if is_string:
-            sequence.chars[index] = element
+            sequence.writable()[index] = element
             continue
         element = Character(element) if element.__class__ is str else element
         if isinstance(sequence, Cons):
@@ -212,7 +222,7 @@ def make_string_output_stream(*, element_type=None):
 
 def get_output_stream_string(stream):
     """``get-output-stream-string``: what was written to ``stream`` since the last time this was asked."""
-    return stream.take() if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
+    return FreshString(stream.take()) if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
 
 
 def make_string_input_stream(string, start=0, end=None):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from cramhy_runtime.ground.conditions import Error, handler_case, ignore_errors, type_error
-from cramhy_runtime.ground.data import UNBOUND, Character, Cons, DoubleFloat, LispString, all_values
+from cramhy_runtime.ground.data import UNBOUND, WRITABLE_STRINGS, Character, Cons, DoubleFloat, all_values
 from cramhy_runtime.ground.dynamic import special
 from ...objects.classes import class_of
 from cramhy_runtime.ground.classes import class_name
@@ -97,7 +97,7 @@ class _Bare(dict):
         return text
 
 
-_SAFE = frozenset([int, float, DoubleFloat, Fraction, str, LispString, Character])
+_SAFE = frozenset([int, float, DoubleFloat, Fraction, str, *WRITABLE_STRINGS, Character])
 
 
 def _safe(thing):

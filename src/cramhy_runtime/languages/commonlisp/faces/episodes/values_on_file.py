@@ -21,10 +21,10 @@ from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import (
     NO_VALUES,
     UNBOUND,
+    WRITABLE_STRINGS,
     Character,
     Cons,
     DoubleFloat,
-    LispString,
     MultipleValues,
     Symbol,
     lisp_list,
@@ -89,7 +89,7 @@ class Writer:
             return None
         if value is True or kind is int:
             return value
-        if kind is str or kind is LispString:
+        if kind is str or kind in WRITABLE_STRINGS:
             return str(value)
         if isinstance(value, Symbol):
             return self._symbol(value)
