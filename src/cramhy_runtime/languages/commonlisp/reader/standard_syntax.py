@@ -35,7 +35,7 @@ def read_string(stream, character):
         elif end >= 0 and escape < 0:
             reader.offset = end + 1
             pieces.append(text[index:end])
-            return "".join(pieces)
+            return "".join(pieces) if SUPPRESS.value is None else None
         elif not reader.grow():
             reader.offset = len(text)
             reader.describe_frame('"', start - 1)
