@@ -291,10 +291,14 @@ def hash_table_synchronized_p(table):
 SETTERS = {"GETHASH": set_gethash}
 
 
-def sxhash(x, depth=4):
+def sxhash(x):
     """``sxhash``: a non-negative integer that is the same for ``equal`` objects, and the same in every run."""
+    return _hash(x, 4)
+
+
+def _hash(x, depth):
     if isinstance(x, Cons):
-        return (sxhash(x.car, depth - 1) * 31 + sxhash(x.cdr, depth - 1) * 17 + 1) % _HASHES if depth else 1
+        return (_hash(x.car, depth - 1) * 31 + _hash(x.cdr, depth - 1) * 17 + 1) % _HASHES if depth else 1
     if x.__class__ is int:
         return abs(x) % _HASHES
     if is_number(x):

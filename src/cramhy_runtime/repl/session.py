@@ -152,7 +152,7 @@ class Session:
         from cramhy_runtime.languages.commonlisp.systems import loader
 
         if system.endswith((".lisp", ".hy")):
-            loader.load_file(system)
+            loader.load_file(system, as_source=True)
         elif system.endswith(".asd"):
             systems.load_asd(system)
             systems.load_system(Path(system).stem)

@@ -18,10 +18,11 @@ from __future__ import annotations
 import weakref
 
 from ..classes import find_class_or_error, when_classes_change
-from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
+from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, wrong_argument_count
 from ..condition_types import shown_with
 from ..data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
+from ..functions import invalid_function_name
 from .generic_errors import incongruent, no_applicable_method_error
 from ..keyword_calls import lispify
 from .method_combination import STANDARD, Combination, find_combination
@@ -336,6 +337,11 @@ def no_applicable_method_default(function, arguments):
     )
 
 
+def no_method_for(name, *arguments):
+    """Signal that the function ``name`` of COMMON-LISP, generic in SBCL and built in here, has no method for ``arguments``."""
+    return no_applicable_method_error(GenericFunction(sym(name)), arguments)
+
+
 # ---------------------------------------------------------------------------------------------------------------- definition
 
 
@@ -344,7 +350,7 @@ def function_cell(name):
     if isinstance(name, Cons) and name.car is sym("SETF") and isinstance(name.cdr, Cons):
         return name.cdr.car, True
     if not is_symbol(name):
-        type_error(name, "(OR SYMBOL (CONS (EQL SETF)))")
+        error(invalid_function_name(name))
     return name, False
 
 

@@ -14,12 +14,12 @@ from itertools import product
 
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, LispString
-from .arrays import array_element_type, dimensions_of
+from .arrays import array_element_type, dimensions_of, without_fill_pointer
 from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
 from .lists import items_of
 from .sequence_types import INDEX_TYPE, char_of, elements, text
-from cramhy_runtime.ground.arrays import CHARACTER, LispArray, TypedVector, Vector
+from cramhy_runtime.ground.arrays import CHARACTER, LispArray, TypedVector, Vector, take_storage
 
 LISP_NAMES = "make-array vector adjust-array"
 
@@ -187,12 +187,16 @@ def adjust_array(
     if len(old_dimensions) != len(dimensions):
         error("Expected ~D new dimension~:P for array, but received ~D.", len(old_dimensions), len(dimensions))
     kind = array_element_type(array)
+    if element_type is not UNSUPPLIED and upgraded_element_type(element_type) != kind and not isinstance(kind, Cons):
+        error("The new element type, ~S, is incompatible with old type, ~S.", element_type, kind)
     size = math.prod(dimensions)
     if displaced_to is not None:
         pointer = None if fill_pointer is UNSUPPLIED else _fill_pointer(fill_pointer, size)
         return _became(array, _displaced(dimensions, size, kind, True, pointer, displaced_to, displaced_index_offset))
     pointer = getattr(array, "fill_pointer", None)
     if fill_pointer is not UNSUPPLIED and fill_pointer is not None:
+        if pointer is None:
+            return without_fill_pointer(array)
         pointer = _fill_pointer(fill_pointer, size)
     elif pointer is not None and pointer > size:
         error("can't adjust vector ~S to a size (~S) smaller than its current fill pointer (~S)", array, size, pointer)
@@ -243,8 +247,7 @@ def _became(array, new):
         return array
     if isinstance(array, LispArray) and array.__class__ is new.__class__:
         if isinstance(array, Vector) or array.adjustable:
-            array.dimensions, array.storage, array.offset = new.dimensions, new.storage, new.offset
-            array.displaced_to = new.displaced_to
+            take_storage(array, new)
             if isinstance(array, Vector):
                 array.fill_pointer = new.fill_pointer
             return array

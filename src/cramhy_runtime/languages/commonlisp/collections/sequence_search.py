@@ -131,10 +131,14 @@ def search(pattern, sequence, *, from_end=None, test=None, test_not=None, key=No
     items, start, end = span(sequence, start2, end2)
     wanted, items, compare = _keyed(wanted[first:last], key), _keyed(items, key), _comparison(test, test_not)
     places = range(start, end - len(wanted) + 1)
-    for place in reversed(places) if from_end is not None and from_end is not False else places:
+    backwards, found = from_end is not None and from_end is not False, None
+    keep_on = backwards and (test is not None or test_not is not None)  # SBCL asks forwards, too, and takes the last: a test may notice
+    for place in reversed(places) if backwards and not keep_on else places:
         if all(compare(one, items[place + offset]) for offset, one in enumerate(wanted)):
-            return place
-    return None
+            found = place
+            if not keep_on:
+                break
+    return found
 
 
 def mismatch(first, second, *, from_end=None, test=None, test_not=None, key=None, start1=0, end1=None, start2=0, end2=None):

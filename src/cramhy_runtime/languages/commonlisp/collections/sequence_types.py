@@ -279,7 +279,7 @@ def _read_type(specifier, original):
         kind, star = name.name, sym("*")
         given = [None if parameter is star else parameter for parameter in parameters] + [None, None]
         if kind in _LISTS:
-            return SequenceType(original, None, 0 if kind == "NULL" else None, kind == "CONS")
+            return SequenceType(original, None, _length_of_list(specifier), kind == "CONS")
         if kind in _STRINGS:
             return SequenceType(original, CHARACTER, given[0])
         if kind in _BITS:
@@ -293,9 +293,20 @@ def _read_type(specifier, original):
             return SequenceType(original, element_type, _one_dimension(given[1]))
         if kind in ("AND", "OR"):
             found = [_read_type(parameter, original) for parameter in parameters]
+            if kind == "OR" and len({None if one is None else one.element_type is None for one in found}) > 1:
+                return None  # lists and vectors: it does not say which to make
             return next((one for one in found if one is not None), None)
     expansion = PORTS.types.expand(specifier)
     return None if expansion is specifier else _read_type(expansion, expansion)
+
+
+def _length_of_list(specifier):
+    """How long the lists of the type are, if it says so: ``null`` and ``(cons a (cons b null))`` do."""
+    length = 0
+    while isinstance(specifier, Cons) and specifier.car is sym("CONS"):
+        parts = items_of(specifier)
+        length, specifier = length + 1, parts[2] if len(parts) == 3 else None
+    return length if specifier is sym("NULL") else None
 
 
 def _one_dimension(dimensions):

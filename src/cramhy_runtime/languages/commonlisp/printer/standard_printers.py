@@ -23,7 +23,7 @@ from . import print_controls as controls
 from .pretty import NO_OBJECT, call_logical_block
 from .print_arrays import print_array
 from .print_controls import PRINT_ESCAPE, PRINT_PRETTY, bound, deeper, length_limit, too_deep
-from .print_names import integer_text, string_text, symbol_text
+from .print_names import in_print_case, integer_text, string_text, symbol_text, token
 from .printer import class_symbol, define_printer, escaping, output_object, print_unreadable
 
 
@@ -170,7 +170,7 @@ def _print_function(function, stream):
     proper = name is not None and (getattr(name, "function", None) is function or _setf_function(name) is function)
 
     def named():
-        stream.write("FUNCTION ")
+        stream.write(in_print_case("FUNCTION "))
         if name is None and (made := _local_name(function)):
             stream.write(made)
             return
@@ -276,8 +276,8 @@ def _print_comma(comma, stream):
 
 def print_package(package, stream):
     if package.name is None:
-        return print_unreadable(package, stream, "PACKAGE (deleted)", identity=True)
-    return print_unreadable(package, stream, "PACKAGE " + string_text(package.name))
+        return print_unreadable(package, stream, f"{token('PACKAGE')} (deleted)", identity=True)
+    return print_unreadable(package, stream, f"{token('PACKAGE')} {string_text(package.name)}")
 
 
 def _register():

@@ -66,7 +66,8 @@ def read_delimited_list(char, stream=None, recursive_p=None):
         return type_error(char, "CHARACTER")
     reader = as_reader(stream)
     try:
-        return list_from(reader.objects_until(char.char))
+        found = reader.objects_until(char.char)
+        return list_from(found) if SUPPRESS.value is None else None
     finally:
         if isinstance(reader, StreamReader) and not reader.is_reading:
             reader.release()

@@ -35,6 +35,8 @@ def read_string(stream, character):
         elif end >= 0 and escape < 0:
             reader.offset = end + 1
             pieces.append(text[index:end])
+            if SUPPRESS.value is not None:
+                return None
             text = "".join(pieces)
             return FreshString(text) if reader.strict else text
         elif not reader.grow():
