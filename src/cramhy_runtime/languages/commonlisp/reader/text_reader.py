@@ -90,6 +90,9 @@ class Reader(InputStream):
             self.text += piece
         return bool(piece)
 
+    def fetch_next(self):
+        """Make sure that the next character is in the text, where a stream gives no more than is asked for."""
+
     # ------------------------------------------------------------------------------------------------------------- places
 
     @property
@@ -579,8 +582,12 @@ class StreamReader(Reader):
     def more(self):
         return self.source.more()
 
+    def fetch_next(self):
+        if self.source.gives_single_characters and self.offset == len(self.text):
+            self.text += self.source.more()
+
     def release(self):
-        self.source._text, self.source._position = self.text, self.offset
+        self.source.put_back(self.text, self.offset)
         for echo in self.echoes:
             echo.write(self.text[self.begun : self.offset])
 
