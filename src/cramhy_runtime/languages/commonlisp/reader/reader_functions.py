@@ -48,7 +48,8 @@ def _read(reader, eof_error_p, eof_value, recursive, preserve):
         if found is NOTHING:
             return eof_value
         if not preserve and not nested:
-            reader.fetch_next()
+            if isinstance(reader, StreamReader) and reader.source.gives_single_characters and reader.offset == len(reader.text):
+                reader.grow()
             if reader.offset < len(reader.text) and reader.text[reader.offset] in READTABLE.value.whitespace:
                 reader.offset += 1
         return found

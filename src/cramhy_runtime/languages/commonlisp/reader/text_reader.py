@@ -90,9 +90,6 @@ class Reader(InputStream):
             self.text += piece
         return bool(piece)
 
-    def fetch_next(self):
-        """Make sure that the next character is in the text, where a stream gives no more than is asked for."""
-
     # ------------------------------------------------------------------------------------------------------------- places
 
     @property
@@ -581,10 +578,6 @@ class StreamReader(Reader):
 
     def more(self):
         return self.source.more()
-
-    def fetch_next(self):
-        if self.source.gives_single_characters and self.offset == len(self.text):
-            self.text += self.source.more()
 
     def release(self):
         self.source.put_back(self.text, self.offset)

@@ -1,8 +1,8 @@
 """Gray streams: classes of streams whose functions users define as methods (SB-GRAY).
 
-A user's class inherits from one of the classes here, which are streams for the rest of the runtime too: ``write-char``, ``format``, ``read``
-and the printer call the stream's Python methods, and these call the generic functions ``stream-write-char``, ``stream-read-char`` and so on.
-A single character is written by ``stream-write-char``, a longer text by ``stream-write-string``.
+A user's class inherits from one of the classes here, which are streams for the rest of the runtime too: ``write-char``, ``format``,
+``read`` and the printer call the stream's Python methods, and these call the generic functions ``stream-write-char``,
+``stream-read-char`` and so on. A single character is written by ``stream-write-char``, a longer text by ``stream-write-string``.
 
 ``close``, ``stream-element-type``, ``input-stream-p``, ``output-stream-p``, ``open-stream-p`` and ``interactive-stream-p`` of Common Lisp
 become generic when a program defines a method on them. Source: SBCL's manual, chapter 10.
@@ -13,7 +13,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.data import UNSUPPLIED, Character, MultipleValues, all_values, boolean, lisp_list, one, truth
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, generic
 from cramhy_runtime.ground.dispatch.open_functions import Opening, open_to_methods
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import ensure_package, keyword, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..collections.sequence_types import elements, part
@@ -24,6 +24,7 @@ from ..streams.streams import InputStream, OutputStream, Stream
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+ensure_package("SB-GRAY")
 EOF = keyword("EOF")
 _openings: dict[str, Opening] = {}
 

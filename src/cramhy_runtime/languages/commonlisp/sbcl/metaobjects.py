@@ -117,8 +117,8 @@ NAMES = """class-default-initargs class-direct-default-initargs class-prototype 
 slot-boundp-using-class slot-makunbound-using-class method-lambda-list generic-function-method-combination
 generic-function-argument-precedence-order generic-function-declarations intern-eql-specializer specializer-direct-methods
 specializer-direct-generic-functions"""
-OF_COMMON_LISP = """add-method allocate-instance built-in-class class class-name ensure-generic-function generic-function make-instance method
-method-combination method-qualifiers remove-method standard-class standard-generic-function standard-method standard-object"""
+OF_COMMON_LISP = """add-method allocate-instance built-in-class class class-name ensure-generic-function generic-function make-instance
+method method-combination method-qualifiers remove-method standard-class standard-generic-function standard-method standard-object"""
 CLASSES = """eql-specializer forward-referenced-class funcallable-standard-class funcallable-standard-object metaobject specializer
 slot-definition direct-slot-definition effective-slot-definition standard-slot-definition standard-direct-slot-definition
 standard-effective-slot-definition"""
