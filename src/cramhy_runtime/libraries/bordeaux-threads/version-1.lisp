@@ -51,3 +51,6 @@
 (defun semaphore-p (object)
   "Whether OBJECT is a semaphore."
   (semaphorep object))
+
+(pushnew :thread-support *features*)
+(pushnew :bordeaux-threads *features*)

@@ -219,14 +219,54 @@
            inc-pointer lisp-string-to-foreign make-pointer make-shareable-byte-vector mem-aptr mem-aref mem-ref null-pointer
            null-pointer-p pointer-address pointer-eq))
 
-(macrolet ((refused (&rest names)
-             `(progn ,@(loop for name in names
-                             collect `(defmacro ,name (&rest parts)
-                                        "Refused: there is no foreign memory."
-                                        (declare (ignore parts))
-                                        '(refuse ',name))))))
-  (refused with-foreign-array with-foreign-object with-foreign-objects with-foreign-pointer with-foreign-pointer-as-string
-           with-foreign-slots with-foreign-string with-foreign-strings with-pointer-to-vector-data))
+(defun refused-body (operator variables body)
+  "A form that refuses OPERATOR, and in which the compiler sees the BODY and its VARIABLES."
+  `(let ,variables
+     (declare (ignorable ,@variables))
+     (refuse ',operator)
+     ,@body))
+
+(defun first-names (spec)
+  "The variables that SPEC, (variable ...) or ((variable ...) ...), binds."
+  (if (consp (first spec)) (mapcar #'first-name (first spec)) (list (first spec))))
+
+(defun first-name (part)
+  (if (consp part) (first (last part)) part))
+
+(defmacro with-foreign-object ((variable type &optional count) &body body)
+  (declare (ignore type count))
+  (refused-body 'with-foreign-object (list variable) body))
+
+(defmacro with-foreign-objects (specs &body body)
+  (refused-body 'with-foreign-objects (mapcar #'first specs) body))
+
+(defmacro with-foreign-pointer ((variable size &optional size-variable) &body body)
+  (declare (ignore size))
+  (refused-body 'with-foreign-pointer (remove nil (list variable size-variable)) body))
+
+(defmacro with-foreign-pointer-as-string ((spec &rest options) &body body)
+  (declare (ignore options))
+  (refused-body 'with-foreign-pointer-as-string (first-names (if (consp spec) spec (list spec))) body))
+
+(defmacro with-foreign-slots ((slots pointer type) &body body)
+  (declare (ignore pointer type))
+  (refused-body 'with-foreign-slots (mapcar #'first-name slots) body))
+
+(defmacro with-foreign-string ((spec string &rest options) &body body)
+  (declare (ignore string options))
+  (refused-body 'with-foreign-string (if (consp spec) spec (list spec)) body))
+
+(defmacro with-foreign-strings (specs &body body)
+  (refused-body 'with-foreign-strings (mapcan (lambda (spec) (if (consp (first spec)) (copy-list (first spec)) (list (first spec)))) specs)
+                body))
+
+(defmacro with-foreign-array ((variable array type) &body body)
+  (declare (ignore array type))
+  (refused-body 'with-foreign-array (list variable) body))
+
+(defmacro with-pointer-to-vector-data ((variable vector) &body body)
+  (declare (ignore vector))
+  (refused-body 'with-pointer-to-vector-data (list variable) body))
 
 (macrolet ((refused (&rest names)
              `(progn ,@(loop for name in names
