@@ -12,10 +12,11 @@ Source: cpl.md 13.3.
 from __future__ import annotations
 
 from cramhy_runtime import kernel
+from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import Error, error, type_error
 from cramhy_runtime.ground.data import NO_VALUES, Symbol, all_values, list_from, truth
 from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.packages import ensure_package, keyword
 from cramhy_runtime.ground.printing import define_printer, print_unreadable
 from cramhy_runtime.ground.printing import prin1_to_string
 
@@ -135,18 +136,23 @@ def join_thread(thread, *, timeout=None, on_timeout=TIMEOUT, on_failure=ERROR):
     """
     task, until = _thread(thread).task, time_limit(timeout)
     if task is kernel.current():
-        fail(thread, f"In thread {prin1_to_string(thread)}, attempt to join the current thread.")
+        fail(thread, f"In thread {shown_in_messages(thread)}, attempt to join the current thread.")
     task.join(lambda: f"the end of the thread {thread.name}", until)
     if not task.dead:
         if on_timeout is ERROR:
-            fail(thread, f"Joining thread timed out: thread {prin1_to_string(thread)} did not exit in time.")
+            fail(thread, f"Joining thread timed out: thread {shown_in_messages(thread)} did not exit in time.")
         return on_timeout
     if thread.state == "FINISHED":
         return thread.values
     if on_failure is ERROR:
         reason = "" if thread.failure is None or isinstance(thread.failure, kernel.Cancelled) else f"\nIts error: {thread.failure}"
-        fail(thread, f"Joining thread failed: thread {prin1_to_string(thread)} did not return normally.{reason}")
+        fail(thread, f"Joining thread failed: thread {shown_in_messages(thread)} did not return normally.{reason}")
     return on_failure
+
+
+def shown_in_messages(thread):
+    """``thread`` as SBCL shows it in its messages: without the package of its class."""
+    return shown_with(thread, ensure_package("SB-THREAD"))
 
 
 def fail(thread, problem):
@@ -183,11 +189,11 @@ def thread_local_binding_p(symbol, thread=None):
 
 def _print(thread, stream):
     name = "" if thread.name is None else f"{prin1_to_string(thread.name)} "
-    text = f"THREAD {name}{thread.state}"
+    text = f"{name}{thread.state}"
     if thread.state == "FINISHED":
         values = ", ".join(map(prin1_to_string, all_values(thread.values)))
         text += f" values: {values}" if truth(values) else ""
-    print_unreadable(thread, stream, text, identity=True)
+    print_unreadable(thread, stream, text, type_=True, identity=True)
 
 
 define_printer(Thread, _print)

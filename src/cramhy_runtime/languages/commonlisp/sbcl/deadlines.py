@@ -104,12 +104,8 @@ class Deadline:
     def _signal(self) -> None:
         if self.timer is None or self.over:
             return
-        self.timer = None
-        try:
-            signal_deadline(self)
-        finally:
-            if self.timer is None and not self.over:
-                self.arm()  # the next wait is beyond the deadline, too
+        self.timer = None  # a deadline is signalled once, unless a handler defers it
+        signal_deadline(self)
 
     def defer(self, seconds: Any) -> None:
         """Let the thread have SECONDS more, from now on."""

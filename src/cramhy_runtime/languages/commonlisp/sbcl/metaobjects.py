@@ -25,7 +25,7 @@ from ..packages.face_definition import define_face
 
 def class_default_initargs(class_: Any) -> object:
     """``sb-mop:class-default-initargs``: a list of (initarg, form, function); the form is not kept, so nil stands for it."""
-    return list_from([lisp_list(key, None, thunk) for key, thunk in default_initargs(class_)])
+    return list_from([lisp_list(key, None, thunk) for key, thunk in default_initargs(class_).items()])
 
 
 def class_direct_default_initargs(class_: Any) -> object:

@@ -145,7 +145,7 @@ def call_with_recursive_lock(body: Any, mutex: Any, *, wait_p: object = True, ti
 def _print_mutex(mutex: Mutex, stream: Any) -> None:
     name = f"{prin1_to_string(mutex.name)} " if mutex.name is not None else ""
     state = "free owner=0" if mutex.holder is None else f"taken owner={thread_of(mutex.holder).name or 'anonymous'}"
-    print_unreadable(mutex, stream, f"MUTEX {name}{state}", identity=mutex.name is None)
+    print_unreadable(mutex, stream, f"{name}{state}", type_=True, identity=mutex.name is None)
 
 
 define_printer(Mutex, _print_mutex)
@@ -221,7 +221,7 @@ def condition_broadcast(queue: Any) -> None:
 
 
 def _print_queue(queue: WaitQueue, stream: Any) -> None:
-    print_unreadable(queue, stream, f"WAITQUEUE {queue.name or ''}", identity=True)
+    print_unreadable(queue, stream, queue.name or "", type_=True, identity=True)
 
 
 define_printer(WaitQueue, _print_queue)

@@ -18,7 +18,7 @@ TABLES = (
             "As WITH-MUTEX, but the thread may have the mutex already.",
         ),
         ("(with-spinlock (mutex) form...)", "(call-with-mutex (lambda () form...) mutex)", "WITH-MUTEX, as it was called once."),
-        ("(return-from-thread values option...)", "(leave-thread values)", "End this thread with these values."),
+        ("(return-from-thread values option...)", "(leave-thread (lambda () values))", "End this thread with these values."),
         ("(with-session-lock (session) form...)", "(progn form...)", "The body: there are no sessions."),
         ("(with-new-session (option...) form...)", "(progn form...)", "The body: there are no sessions."),
         ("(barrier (kind) form...)", "(progn form...)", "The body: one task runs at a time, so memory is always in order."),

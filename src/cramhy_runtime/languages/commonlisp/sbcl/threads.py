@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, MultipleValues, boolean, truth
+from cramhy_runtime.ground.data import Cons, MultipleValues, all_values, boolean, list_from, truth
 from cramhy_runtime.ground.dynamic import global_value
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import is_symbol
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import Any, NoReturn
 from cramhy_runtime.utilities import threads
-from cramhy_runtime.utilities.threads import Thread, ThreadError, fail, thread_of
+from cramhy_runtime.utilities.threads import Thread, ThreadError, fail, shown_in_messages, thread_of
 from cramhy_runtime.utilities.wait_queue import need, time_limit
 
 MISSING: Any = object()
@@ -25,6 +25,12 @@ class InterruptThreadError(ThreadError):
     """A thread that has ended was interrupted."""
 
     lisp_name = "SB-THREAD::INTERRUPT-THREAD-ERROR"
+
+
+class SimpleThreadError(ThreadError):
+    """A thread cannot do what it is asked to."""
+
+    lisp_name = "SB-THREAD::SIMPLE-THREAD-ERROR"
 
 
 class SymbolValueInThreadError(ThreadError):
@@ -74,7 +80,7 @@ def join_thread(thread: Any, *, default: object = MISSING, timeout: Any = None) 
         return threads.join_thread(_thread(thread), timeout=timeout, on_timeout=threads.ERROR)
     task = _thread(thread).task
     if task is kernel.current():
-        fail(thread, f"In thread {prin1_to_string(thread)}, attempt to join the current thread.")
+        fail(thread, f"In thread {shown_in_messages(thread)}, attempt to join the current thread.")
     task.join(lambda: f"the end of the thread {thread.name}", time_limit(timeout))
     if thread.state == "FINISHED":
         return thread.values
@@ -84,7 +90,7 @@ def join_thread(thread: Any, *, default: object = MISSING, timeout: Any = None) 
 def _alive(thread: Any) -> Any:
     task = _thread(thread).task
     if task.dead:
-        problem = f"Interrupt thread failed: thread {prin1_to_string(thread)} has exited."
+        problem = f"Interrupt thread failed: thread {shown_in_messages(thread)} has exited."
         error(InterruptThreadError(thread=thread, problem=problem))
     return task
 
@@ -109,12 +115,17 @@ def abort_thread(*, allow_exit: object = None) -> object:
     return threads.kill_thread(current_thread())
 
 
-def return_from_thread(values: object) -> NoReturn:
-    """The work of ``return-from-thread``: unwind this thread and end it with ``values``."""
-    thread = current_thread()
+def return_from_thread(values: Any) -> NoReturn:
+    """The work of ``return-from-thread``: unwind this thread and end it with the values of ``values()``."""
+    thread, returned = current_thread(), values()
+    if thread is main_thread():
+        shown = prin1_to_string(list_from(all_values(returned)))
+        problem = f"Tried to return {shown} as values from main thread, but exit was not allowed."
+        error(SimpleThreadError(thread=thread, problem=problem))
     if not getattr(thread, "returns", False):
-        error("~S was not made by MAKE-THREAD: its function cannot be left by RETURN-FROM-THREAD.", thread)
-    raise _Return(values)
+        problem = f"{prin1_to_string(thread)} was not made by MAKE-THREAD: its function cannot be left by RETURN-FROM-THREAD."
+        error(SimpleThreadError(thread=thread, problem=problem))
+    raise _Return(returned)
 
 
 def current_thread() -> Thread:

@@ -106,8 +106,7 @@ def list_all_timers() -> object:
 
 
 def _print(timer: Timer, stream: Any) -> None:
-    name = "" if timer.name is None else f" {prin1_to_string(timer.name)}"
-    print_unreadable(timer, stream, f"TIMER{name}", identity=True)
+    print_unreadable(timer, stream, None if timer.name is None else prin1_to_string(timer.name), type_=True, identity=True)
 
 
 define_printer(Timer, _print)
