@@ -39,6 +39,10 @@ def session(options, closings, opened=True):
         cleanup_limit=options.cleanup_limit,
     )
     gc.enable()
+    if options.features:
+        from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import add_features
+
+        add_features([name for names in options.features for name in names])
     if opened:
         from . import live_page
         from .servers import NotPossible, open_session

@@ -376,7 +376,7 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
         opening = getattr(old, "opening", None)
         if opening is None and not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
             _refuse_ordinary(symbol)
-        if not setf:
+        if not setf and opening is None:
             PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", symbol)
         function = GenericFunction(name, lambda_list) if opening is None else opening.open()
         if setf:

@@ -337,6 +337,7 @@ def packagep(obj):
 def make_package(name, *, nicknames=None, use=None, internal_symbols=None, external_symbols=None):
     """``make-package``: a new package, which uses none unless ``use`` says so."""
     name = _named(name)
+    packages.defined_by_program([name, *map(string_designator, _items(nicknames))])
     old = packages.find_package(name)
     if old is not None:
         with_simple_restart(

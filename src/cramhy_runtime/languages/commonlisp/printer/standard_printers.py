@@ -14,7 +14,7 @@ from cramhy_runtime.ground.arrays import LispArray
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
 from cramhy_runtime.ground.data import Cons, LispString, Symbol
-from cramhy_runtime.ground.hash_tables import HashTable
+from cramhy_runtime.ground.hash_tables import HashTable, hash_table_test
 from ..numbers.complex_numbers import parts
 from cramhy_runtime.ground.packages import Package, all_packages, is_symbol, sym, symbol_name
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
@@ -244,7 +244,10 @@ def _print_hash_table(table, stream):
 
     def contents():
         stream.write(":TEST ")
-        output_object(sym(table.test), stream)
+        output_object(hash_table_test(table), stream)
+        if table.test.__class__ is not str:
+            stream.write(" :HASH-FUNCTION ")
+            output_object(table.test.number, stream)
         stream.write(f" :COUNT {len(table)}")
 
     print_unreadable(table, stream, type_=True, identity=True, body=contents)

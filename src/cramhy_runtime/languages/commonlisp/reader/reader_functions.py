@@ -47,8 +47,11 @@ def _read(reader, eof_error_p, eof_value, recursive, preserve):
         found = reader.read(truth(eof_error_p), NOTHING)
         if found is NOTHING:
             return eof_value
-        if not preserve and not nested and reader.offset < len(reader.text) and reader.text[reader.offset] in READTABLE.value.whitespace:
-            reader.offset += 1
+        if not preserve and not nested:
+            if isinstance(reader, StreamReader) and reader.source.gives_single_characters and reader.offset == len(reader.text):
+                reader.grow()
+            if reader.offset < len(reader.text) and reader.text[reader.offset] in READTABLE.value.whitespace:
+                reader.offset += 1
         return found
     finally:
         if isinstance(reader, StreamReader) and not nested:

@@ -579,7 +579,7 @@ class StreamReader(Reader):
         return self.source.more()
 
     def release(self):
-        self.source._text, self.source._position = self.text, self.offset
+        self.source.put_back(self.text, self.offset)
         for echo in self.echoes:
             echo.write(self.text[self.begun : self.offset])
 

@@ -86,6 +86,9 @@ def write_char(character, stream=None):
 def write_sequence(sequence, stream, *, start=0, end=None):
     """``write-sequence``: the elements of ``sequence``, characters or bytes, to ``stream``. Returns ``sequence``."""
     stream = output_stream(stream)
+    if hasattr(stream, "write_elements"):  # of a user's class
+        stream.write_elements(sequence, start, end)
+        return sequence
     if isinstance(sequence, (str, LispString)):
         text = str(sequence)
         start, end = bounds(start, end, len(text))
@@ -113,12 +116,15 @@ def finish_output(stream=None):
     output_stream(stream).flush()
 
 
-force_output = finish_output
+def force_output(stream=None):
+    output_stream(stream).force()
 
 
 def clear_output(stream=None):
-    """``clear-output``: there is never anything to throw away."""
-    output_stream(stream)
+    """``clear-output``: there is never anything to throw away, but for streams of users' classes."""
+    stream = output_stream(stream)
+    if hasattr(stream, "clear_output"):
+        stream.clear_output()
 
 
 CHARACTER = sym("CHARACTER")
@@ -140,6 +146,9 @@ def read_char(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
 
 def read_char_no_hang(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
     stream = input_stream(stream)
+    if hasattr(stream, "read_char_no_hang"):  # of a user's class
+        character = stream.read_char_no_hang()
+        return None if character is None else Character(character) if character else _at_end(stream, eof_error_p, eof_value)
     if stream.is_interactive and not stream.listen():
         return None
     return read_char(stream, eof_error_p, eof_value)
@@ -184,6 +193,13 @@ def read_sequence(sequence, stream, *, start=0, end=None):
     stream = input_stream(stream)
     length = len(elements(sequence))
     start, end = bounds(start, length if end is None else end, length)
+    if hasattr(stream, "read_elements"):  # of a user's class
+        return stream.read_elements(sequence, start, end)
+    return fill_sequence(sequence, stream, start, end)
+
+
+def fill_sequence(sequence, stream, start, end):
+    """Fill ``sequence`` from ``start`` to ``end`` with what is read, element by element; the index of the first that was not filled."""
     is_string, cell = sequence.__class__ in WRITABLE_STRINGS, sequence
     for _ in range(start if isinstance(sequence, Cons) else 0):
         cell = cell.cdr

@@ -39,10 +39,9 @@ _loaded: dict = per_image({})
 _loading: list = per_image([])
 CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
 NOT_TO_BE_HAD = {
-    "cffi": "it calls functions of C, which cramhy cannot; import the Python module for that library instead",
-    "trivial-garbage": "it needs SBCL's garbage collector; Python's weakref and gc modules do its work",
-    "bordeaux-threads": "the tasks of CRAM run on cramhy's kernel; use par, pursue and fluents instead of threads",
-    "sb-posix": "it is part of SBCL; Python's os module does its work",
+    "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
+    "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
+    "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
 }
 """Systems that cannot be had here, and why."""
 
@@ -84,6 +83,20 @@ LIBRARY_PACKAGES = {
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
     "IT.BESE.FIVEAM": "fiveam",
+    "BORDEAUX-THREADS": "bordeaux-threads",
+    "BT": "bordeaux-threads",
+    "BORDEAUX-THREADS-2": "bordeaux-threads",
+    "BT2": "bordeaux-threads",
+    "TRIVIAL-GARBAGE": "trivial-garbage",
+    "TG": "trivial-garbage",
+    "TRIVIAL-GRAY-STREAMS": "trivial-gray-streams",
+    "CLOSER-MOP": "closer-mop",
+    "C2MOP": "closer-mop",
+    "CLOSER-COMMON-LISP": "closer-mop",
+    "C2CL": "closer-mop",
+    "CLOSER-COMMON-LISP-USER": "closer-mop",
+    "C2CL-USER": "closer-mop",
+    "CFFI": "cffi",
 }
 """Their packages: the library is loaded when its package is first named."""
 

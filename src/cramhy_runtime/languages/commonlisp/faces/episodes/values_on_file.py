@@ -154,7 +154,7 @@ class Writer:
         cls = value.__class__
         if isinstance(value, list | TypedVector | bytes | bytearray) or (isinstance(value, LispArray) and len(value.dimensions) == 1):
             return {"new": self._numbered(value), "vector": [self.write(item, depth) for item in value]}
-        if cls is HashTable and value.weakness is None:
+        if cls is HashTable and value.weakness is None and value.test.__class__ is str:
             number = self._numbered(value)
             return {
                 "new": number,
