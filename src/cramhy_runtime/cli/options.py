@@ -49,6 +49,13 @@ def _session_options(command):
     options.add_argument(
         "--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first; may be repeated (none)"
     )
+    options.add_argument(
+        "--prefer-path",
+        action="append",
+        default=[],
+        metavar="SYSTEM",
+        help="take this system from ROS_PACKAGE_PATH though cramhy contains one of that name; may be repeated (cramhy's own)",
+    )
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in (CL-USER)")
     options.add_argument("--no-turtlesim", action="store_true", help="leave the simulator out (it starts with the first node)")
     options.add_argument(
