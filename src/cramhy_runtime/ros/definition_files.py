@@ -59,6 +59,36 @@ def known_packages() -> list[str]:
     return sorted({*named, *(name for name, _ in _packages_on_path())})
 
 
+def file_of_type(name: str, kind: str = "msg") -> str:
+    """Where a package defines its type ``name``: ``msg/Pose.msg``, and ``action/Cook.action`` for a message of an action."""
+    parts = ("ActionGoal", "ActionResult", "ActionFeedback", "Action")
+    action = next((name.removesuffix(part) for part in parts if name.endswith(part) and name != part), None)
+    return f"action/{action}.action" if action and kind == "msg" else f"{kind}/{name}.{kind}"
+
+
+def why_missing(package: str, name: str | None = None, kind: str = "msg") -> str:
+    """A sentence that says where the type ``name`` of ``package`` was looked for, or any of ``kind`` if ``name`` is ``None``."""
+    wanted = file_of_type(name, kind) if name is not None else f"files {kind}/*.{kind}"
+    folder = package_folder(package) or next((folder for other, folder in packages() if other == package), None)
+    if folder is not None:
+        return f"The package {package} has no {wanted} in {folder}."
+    article = "" if name is None else "an " if wanted[0] == "a" else "a "
+    return f"No package {package} with {article}{wanted} is below {where_searched()}."
+
+
+def why_no_lisp_package(name: str) -> str | None:
+    """As `why_missing`, for a Lisp package called ``MY_MSGS-MSG`` or ``MY_MSGS-SRV``; ``None`` for another name."""
+    package, _, kind = name.lower().rpartition("-")
+    return why_missing(package, kind=kind) if kind in ("msg", "srv") and package else None
+
+
+def where_searched() -> str:
+    """The places of the search in words: ``ROS_PACKAGE_PATH (/a, /b), the current folder and src of the workspace``."""
+    told = [entry if os.path.isdir(entry) else f"{entry}, which is not a folder"
+            for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]  # fmt: skip
+    return f"ROS_PACKAGE_PATH ({', '.join(told) or 'which is not set'}), the current folder and src of the workspace"
+
+
 def definition_files(folder: Path, kind: str) -> dict[str, Path]:
     """The definition files of the package in ``folder``, by type name. ``kind``: ``"msg"``, ``"srv"`` or ``"action"``."""
     return {path.stem: path for path in sorted((folder / kind).glob("*." + kind))}
@@ -172,7 +202,7 @@ def _check_types(package: str, folder: Path, found: PackageDefinitions) -> None:
                     other = package_folder(home)
                     names[home] = message_names(other) if other is not None else ()
                 if name not in names[home]:
-                    definition_text.unknown_type(field, package, definition.where, names[home])
+                    definition_text.unknown_type(field, package, definition.where, names[home], why_missing(home, name))
     for name in found.messages:
         _check_circles(package, found.messages, [name])
 

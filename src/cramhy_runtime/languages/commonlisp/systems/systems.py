@@ -23,7 +23,7 @@ from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
-from . import loader
+from . import loader, missing_messages
 from cramhy_runtime.ros import search_folders
 from cramhy_runtime.ros.definition_files import package_name
 from cramhy_runtime.ros.search_folders import crawls, look_again, crawling_once
@@ -217,11 +217,11 @@ def find_system(name, required_by=None):
     system = systems.get(name)
     if system is None:
         by = f", required by #<SYSTEM {required_by!r}>".replace("'", '"') if required_by else ""
-        return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path))
+        return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path, required_by))
     return system
 
 
-def _why_missing(name, path):
+def _why_missing(name, path, required_by):
     near = near_names(name, known_systems())
     hint = f" Did you mean {' or '.join(near)}?" if near else ""
     if path is not None:
@@ -229,6 +229,9 @@ def _why_missing(name, path):
         return f"{path} defines {there}.{hint}"
     if name in NOT_TO_BE_HAD:
         return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
+    of_messages = missing_messages.advice(name, missing_messages.wanted_by(required_by, files_of))
+    if of_messages is not None:
+        return of_messages + hint.replace(" ", "\n", 1)
     where = ", ".join(str(folder) for folder in [*central_registry(), *search_folders.search_folders()])
     return f"There is no file {name.partition('/')[0]}.asd below {where}.{hint}"
 
