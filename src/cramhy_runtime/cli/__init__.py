@@ -56,6 +56,8 @@ def session(options, closings, opened=True):
         if options.command == "repl" and options.view is None:
             live_page.open_with_turtle()
     closings.callback(kernel.stop)
+    for system in options.prefer_path:
+        made.prefer(system)
     for system in options.load:
         made.load(system)
     if options.package:

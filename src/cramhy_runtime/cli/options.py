@@ -67,6 +67,13 @@ def _session_options(command):
         metavar="NAMES",
         help="features for #+ and #-, with commas between: sbcl lets a program take its code for SBCL; may be repeated (none)",
     )
+    options.add_argument(
+        "--prefer-path",
+        action="append",
+        default=[],
+        metavar="SYSTEM",
+        help="take this system from ROS_PACKAGE_PATH though cramhy contains one of that name; may be repeated (cramhy's own)",
+    )
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in (CL-USER)")
     options.add_argument("--no-turtlesim", action="store_true", help="leave the simulator out (it starts with the first node)")
     options.add_argument(

@@ -137,6 +137,11 @@ class Session:
         """``TUT> ``: the shortest name of the current package."""
         return f"{min(self.package.names, key=len)}> "
 
+    @staticmethod
+    def prefer(system: str) -> None:
+        """Take the system called ``system`` from ROS_PACKAGE_PATH though cramhy contains one; it is an error if it is not there."""
+        systems.prefer(system)
+
     def load(self, system: str) -> None:
         """Load a system by name, or a file by its path."""
         try:

@@ -397,8 +397,12 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
     return function
 
 
+class FunctionInTheWay(SimpleProgramError):
+    """A generic function is defined where there is an ordinary one."""
+
+
 def _refuse_ordinary(symbol):
-    condition = SimpleProgramError("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
+    condition = FunctionInTheWay("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
     if symbol.package is not None and symbol.package.name == "COMMON-LISP":
         return error(condition)
     return restart_case([(sym("CONTINUE"), lambda: None, "Replace the function binding.")], lambda: error(condition))
