@@ -18,11 +18,11 @@ from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, 
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.packages import is_symbol, keyword
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.prolog.engine.database import extended
 from ..prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var
-from ..utilities.lazy_lists import from_iterator, lazy_cdr, tail
+from ..utilities.lazy_lists import beginning, from_iterator, lazy_cdr, tail
 from .classes import LocationDesignator
 from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
@@ -147,7 +147,7 @@ def enable_location_validation_function(function_name):
 def location_solutions(designator):
     """The lazy list of valid candidates for ``designator``, or nil. The first is searched for now."""
     search = Search(designator)
-    solutions = search.rest()
+    solutions = beginning(search.rest)
     if solutions is None:
         designator.__dict__["search"] = search
     return solutions
@@ -252,7 +252,8 @@ def _reason(validator, verdict):
 
 
 def _shown(thing):
-    return " ".join(prin1_to_string(thing).split()).lower() if is_symbol(thing) else " ".join(prin1_to_string(thing).split())
+    text = " ".join(attempt_to_print(prin1_to_string, thing).split())
+    return text.lower() if is_symbol(thing) else text
 
 
 def _about(what):
