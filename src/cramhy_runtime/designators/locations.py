@@ -24,6 +24,7 @@ from ..prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var
 from ..utilities.lazy_lists import beginning, from_iterator, lazy_cdr, tail
 from .classes import LocationDesignator
+from .failure_causes import because, note_causes
 from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
 
@@ -155,7 +156,8 @@ def location_solutions(designator):
 
 def why_no_place(designator):
     """A function that makes a text: why the last search for ``designator`` found no place."""
-    return designator.__dict__.pop("search").account
+    search = designator.__dict__.pop("search")
+    return lambda: because(designator, search.account())
 
 
 class Search:
@@ -319,7 +321,15 @@ _RESTARTS = [
 
 def location_prolog_generator(designator):
     """All ``?solution`` of ``(location-grounding designator ?solution)``."""
-    return from_iterator(value for (value,) in ask(LOCATION_GROUNDING, designator, Var()))
+    return from_iterator(_places_by_prolog(designator))
+
+
+def _places_by_prolog(designator):
+    causes = {}
+    for (value,) in ask(LOCATION_GROUNDING, designator, Var(), causes=causes):
+        yield value
+    if causes and isinstance(designator, LocationDesignator):
+        note_causes(designator, causes)
 
 
 def location_prolog_validator(designator, solution):

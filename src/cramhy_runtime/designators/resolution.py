@@ -34,6 +34,7 @@ from .classes import (
     new,
 )
 from .equating import youngest
+from .failure_causes import note_causes
 from .locations import location_solutions, why_no_place
 from .shared_calls import await_resolver, serve, share_call
 from .protocol import designator_solutions_equal, equate, next_solution, reference
@@ -147,7 +148,10 @@ def _resolve_by_prolog(designator, role=None):
     solutions = designator.solutions
     if solutions is UNBOUND:
         predicate = MOTION_GROUNDING if isinstance(designator, MotionDesignator) else ACTION_GROUNDING
-        solutions = designator.solutions = beginning(Groundings(predicate, designator).rest)
+        proof = Groundings(predicate, designator)
+        solutions = designator.solutions = beginning(proof.rest)
+        if solutions is None and proof.warned is not None:
+            note_causes(designator, proof.warned.causes)
     value = solutions.car if solutions is not None else None
     if value is None:
         kind = "motion" if isinstance(designator, MotionDesignator) else "action"

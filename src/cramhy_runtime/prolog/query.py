@@ -141,13 +141,15 @@ def holds(goal):
     return Proof(goal).next_solution()
 
 
-def ask(functor, *arguments):
+def ask(functor, *arguments, causes=None):
     """Iterate over the solutions of ``(functor . arguments)``.
 
     Arguments are Lisp data without variables, and `Var` objects. Each solution is a tuple with the values of the `Var` objects, in
-    order.
+    order. ``causes``: a dict that gets, as keys, texts about the Lisp functions that signalled an error.
     """
     m = Machine()
+    if causes is not None:
+        m.warned_of().causes = causes
     wanted = [argument for argument in arguments if argument.__class__ is Var]
     m.prove((find_predicate(functor, len(arguments)).call, SOLVED, *arguments))
     while m.next_solution():
