@@ -63,14 +63,14 @@ def test_actions_and_locations_too(lisp):
 
 
 def test_a_second_try_tells_the_cause_again_and_calls_nothing(lisp):
-    lisp("(defun noted (d) (note d) (error \"no speed\"))" + clauses(grounding("(lisp-fun noted ?d ?s)")) + "(defvar *m* (a motion))")
+    lisp('(defun noted (d) (note d) (error "no speed"))' + clauses(grounding("(lisp-fun noted ?d ?s)")) + "(defvar *m* (a motion))")
     for _ in range(2):
         assert hint(lisp, "(reference *m*)")[:2] == ["The Lisp function noted signalled an error:", "  no speed"]
     assert lisp("(length *notes*)") == "1"
 
 
 def test_of_many_errors_the_first_are_told_and_none_twice(lisp):
-    lisp("(defun picky (n) (error \"not ~a\" (mod n 6)))" + clauses(grounding("(member ?n (1 2 3 4 5 6 7 8 9)) (lisp-fun picky ?n ?s)")))
+    lisp('(defun picky (n) (error "not ~a" (mod n 6)))' + clauses(grounding("(member ?n (1 2 3 4 5 6 7 8 9)) (lisp-fun picky ?n ?s)")))
     told = [line for line in hint(lisp) if line.startswith("  not ")]
     assert told == ["  not 1", "  not 2", "  not 3", "  not 4"]
 
@@ -81,6 +81,9 @@ def test_without_an_error_nothing_is_said_of_one(lisp):
 
 
 def test_an_error_that_cannot_be_printed_is_told_all_the_same(lisp):
-    lisp("""(define-condition broken (error) () (:report (lambda (c s) (declare (ignore c s)) (error "no report"))))
-            (defun breaks (d) (declare (ignore d)) (error 'broken))""" + clauses(grounding("(lisp-fun breaks ?d ?s)")))
+    lisp(
+        """(define-condition broken (error) () (:report (lambda (c s) (declare (ignore c s)) (error "no report"))))
+            (defun breaks (d) (declare (ignore d)) (error 'broken))"""
+        + clauses(grounding("(lisp-fun breaks ?d ?s)"))
+    )
     assert hint(lisp)[0] == "The Lisp function breaks signalled an error:"
