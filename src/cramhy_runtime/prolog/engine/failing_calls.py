@@ -13,10 +13,14 @@ from cramhy_runtime.ground.printing import attempt_to_print, princ_to_string
 from cramhy_runtime.ground.source_places import describe
 from cramhy_runtime.utilities.patterns import variable
 
+from cramhy_runtime.kernel.typing_names import Any, TYPE_CHECKING
 from .source_positions import Place
 from .goal_text import show
 from ..symbols import sym
 from ..terms.terms import Var
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 _CALLS = {"function": sym("CRAM-PROLOG::LISP-FUN"), "predicate": sym("CRAM-PROLOG::LISP-PRED")}
 
@@ -24,7 +28,7 @@ _CALLS = {"function": sym("CRAM-PROLOG::LISP-FUN"), "predicate": sym("CRAM-PROLO
 _MOST_CAUSES = 4
 
 
-def note_place(warning, m, kind, function, arguments, problem, inside=None):
+def note_place(warning: Any, m: Any, kind: str, function: Any, arguments: Any, problem: Any, inside: Any = None) -> None:
     """Note on ``warning`` which rule called ``function``, which of the ``arguments`` are unset, and a hint about the ``problem``.
 
     ``kind`` is ``function`` or ``predicate``, ``m`` the proof, which notes the cause, too. ``inside`` is the place of the error, if known.
@@ -45,7 +49,7 @@ def note_place(warning, m, kind, function, arguments, problem, inside=None):
     _note_cause(m, kind, function, problem, inside, place, filter(None, [without_value, advice]))
 
 
-def _note_cause(m, kind, function, problem, inside, place, hints):
+def _note_cause(m: Any, kind: str, function: Any, problem: Any, inside: Any, place: Place, hints: Iterable[str]) -> None:
     """Keep a text about the error for the explanation of why the proof failed. Of many errors the first few are kept."""
     causes = m.warned_of().causes
     if len(causes) < _MOST_CAUSES:

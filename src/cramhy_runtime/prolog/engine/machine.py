@@ -47,11 +47,11 @@ class _Kept:
         return self.entry
 
 
-class Warned(set):
+class Warned(set[object]):
     """The warnings that a proof gave. ``causes`` are texts about the Lisp functions that signalled an error in it, which failed a goal."""
 
-    def __init__(self):
-        self.causes = {}  # its keys
+    def __init__(self) -> None:
+        self.causes: dict[str, bool] = {}  # its keys
 
 
 class Machine:
