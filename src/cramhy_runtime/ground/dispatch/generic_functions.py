@@ -76,6 +76,13 @@ class GenericFunction(FunctionObject):
     advice: str | None = None
     """What the error that no method is applicable tells the user to do."""
     direct = direct_methods = None
+    enclosure = None
+
+    def enclose(self, enclosure):
+        """Let ``enclosure(effective function)`` make the calls in which a method of a user takes part. Returns the argument."""
+        self.enclosure = enclosure
+        self.forget()
+        return enclosure
 
     def call_directly(self, function):
         """Let ``function`` make all calls, without any dispatch, as long as the methods are those that there are now.
@@ -209,6 +216,8 @@ class GenericFunction(FunctionObject):
         if not methods and not self.combination.accepts_none:
             return None
         effective = self.combination.effective(self, methods, tuple(argument.__class__ for argument in arguments))
+        if self.enclosure is not None and any(method not in self.own_methods for method in methods):
+            effective = self.enclosure(effective)
         if self.shape.has_keys and methods:
             return self._checking_keys(effective, methods)
         return effective
