@@ -122,3 +122,13 @@ def test_functions_that_change_names_for_good_refuse_what_is_no_name(session, qu
         for value in (42, 1.5, [1, 2]):
             arguments = [value, value] if name == "SET" else [value]
             assert wrong(name, sym(name).function, arguments) is None, (name, value)
+
+
+def test_wrong_values_at_places_give_conditions_of_lisp(session, quiet):
+    found = []
+    for name in sorted(COMMON_LISP.external):
+        setter = getattr(COMMON_LISP.lookup(name)[0], "setf_function", None)
+        if setter is not None and name != "DOCUMENTATION":
+            for makers in [FEW[:2], FEW[1:3], FEW[2:4], FEW[:3], FEW[1:]]:
+                found.append(wrong(f"SETF {name}", setter, [make() for make in makers]))
+    assert [complaint for complaint in found if complaint is not None] == []
