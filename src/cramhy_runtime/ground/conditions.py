@@ -21,7 +21,7 @@ from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
-from .data import MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
+from .data import LispString, MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
 from .dynamic import bind, binding, special, unbind
 from . import plain_answers  # noqa: F401  the ports have answers from here on
 from .ports import PORTS
@@ -253,7 +253,7 @@ def make_condition(datum, arguments=(), default=types.SimpleError):
         return datum
     if isinstance(datum, type) and issubclass(datum, types.Condition):
         return _instance(datum, arguments)
-    if isinstance(datum, str) or datum.__class__.__name__ == "LispString" or callable(datum) and not is_symbol(datum):
+    if isinstance(datum, str) or isinstance(datum, LispString) or callable(datum) and not is_symbol(datum):
         return default(datum if callable(datum) else str(datum), *arguments)
     if is_symbol(datum):
         cls = PORTS.classes.find(datum, False)
@@ -269,16 +269,16 @@ def _instance(cls, arguments):
     return PORTS.classes.make(cls, *arguments)
 
 
-def _designated(datum):
+def designated(datum):
     """``datum``, a designator for ``signal`` or ``warn``, which have a text of their own for others."""
-    if isinstance(datum, (str, types.Condition)) or is_symbol(datum) or callable(datum) or datum.__class__.__name__ == "LispString":
+    if isinstance(datum, (str, types.Condition)) or is_symbol(datum) or callable(datum) or isinstance(datum, LispString):
         return datum
     return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum, expected_type=sym("SYMBOL")))
 
 
 def signal(datum, *arguments):
     """``cl:signal``: offer the condition to the handlers; nil when all decline."""
-    signal_condition(make_condition(_designated(datum), arguments, types.SimpleCondition))
+    signal_condition(make_condition(designated(datum), arguments, types.SimpleCondition))
 
 
 def error(datum: object, *arguments: object, hint: str | Callable[[], str] | None = None) -> NoReturn:
@@ -297,6 +297,8 @@ def error(datum: object, *arguments: object, hint: str | Callable[[], str] | Non
 
 def cerror(continue_format, datum, *arguments):
     """``cl:cerror``: as `error`, with a restart CONTINUE that makes it return nil."""
+    if is_symbol(continue_format) or not (isinstance(continue_format, (str, LispString)) or callable(continue_format)):
+        type_error(continue_format, "(OR STRING FUNCTION)", "\nwhen binding SB-KERNEL::CONTINUE-STRING")
     _continuable(continue_format, make_condition(datum, arguments), arguments)
 
 
@@ -306,7 +308,7 @@ def _continuable(continue_format, condition, arguments):
 
 def warn(datum, *arguments):
     """``cl:warn``: signal a warning; unless muffled, print ``WARNING: text`` to ``*error-output*``. Returns nil."""
-    condition = make_condition(_designated(datum), arguments, types.SimpleWarning)
+    condition = make_condition(designated(datum), arguments, types.SimpleWarning)
     if not isinstance(condition, types.Warning_):
         if isinstance(datum, types.Condition):
             return type_error(condition, "WARNING")

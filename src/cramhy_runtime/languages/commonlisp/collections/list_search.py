@@ -249,7 +249,21 @@ def subst_if_not(new, predicate, tree, *, key=None):
 
 
 def _nsubstituted(match, new, tree):
-    return _rewritten(lambda subtree: new if match(subtree) else UNSUPPLIED, tree)
+    if match(tree):
+        return new
+    last, cell = None, tree
+    while isinstance(cell, Cons):
+        checkpoint()
+        if match(cell):
+            break
+        cell.car = _nsubstituted(match, new, cell.car)
+        last, cell = cell, cell.cdr
+    else:
+        if last is None or not match(cell):
+            return tree
+    if last is not None:
+        last.cdr = new
+    return tree
 
 
 def _rewritten(replacement, tree):

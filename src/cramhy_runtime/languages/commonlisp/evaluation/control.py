@@ -62,7 +62,8 @@ def restart_name(restart):
 
 
 def make_condition(kind, *arguments):
-    return conditions.make_condition(kind, arguments)
+    """``make-condition``"""
+    return conditions.make_condition(conditions.designated(kind), arguments)
 
 
 def _reader(attribute, kind="Condition"):

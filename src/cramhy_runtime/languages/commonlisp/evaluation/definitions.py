@@ -85,6 +85,7 @@ def define_macro(name, expander, documentation=None, lambda_list=None):
     expander.__doc__ = documentation
     expander.__lisp_name__ = name
     name.macro = lambda form, environment: one(expander(form, environment))
+    name.macro.__lisp_name__ = lisp_list(sym("MACRO-FUNCTION"), name)
     name.macro.documentation, name.macro.__lisp_lambda_list__, name.macro.source = documentation, lambda_list, expander
     return name
 

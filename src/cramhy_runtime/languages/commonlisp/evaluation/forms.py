@@ -12,7 +12,7 @@ from ..collections.lists import items_of
 from .definitions import data
 from .evaluator import compile_lambda
 from .symbols import place_of
-from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.functions import function_of, functionp
 
 LISP_NAMES = "macro-function compiler-macro-function macroexpand macroexpand-1 special-operator-p constantp compile"
 
@@ -144,12 +144,15 @@ def compile_(name, definition=None):
         failed = True if any(not isinstance(warning, StyleWarning) for warning in warnings) else None
     if name is None:
         return MultipleValues((function, warned, failed))
+    place = place_of(name)
     if definition is None:
         defined_function(name)
-    elif isinstance(name, Cons):
-        redefined(name.cdr.car)
-        name.cdr.car.setf_function = function
-        name.cdr.car.function_changed()
+    elif functionp(function) is None:
+        type_error(function, "(OR FUNCTION CONS)")
+    elif place is not None:
+        redefined(place)
+        place.setf_function = function
+        place.function_changed()
     else:
         redefined(name)
         name.function = function

@@ -11,7 +11,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, FreshString, LispString, MultipleValues, Symbol, list_from, one, python_list
 from ..printer.print_names import character_name
-from ..streams.streams import STANDARD_OUTPUT, OutputStream, StringOutputStream, output_stream
+from ..streams.streams import OutputStream, StringOutputStream, output_stream, standard_output
 from .format_parser import Directive, FormatError, parse
 from .format_templates import filled, template
 
@@ -112,7 +112,7 @@ def format_(destination, control, *args):
     if destination is None:
         return FreshString(format_to_string(control, *args))
     if destination is True:
-        stream = STANDARD_OUTPUT.value
+        stream = standard_output()
     elif isinstance(destination, OutputStream):
         stream = destination
     elif isinstance(destination, LispString):
@@ -140,6 +140,8 @@ def formatter(control):
     """What the macro ``formatter`` becomes: a function of a stream and arguments that returns the arguments left
     over.
     """
+    if not isinstance(control, str):
+        return type_error(control, "STRING")
     parse(control)
 
     def formatting(stream, *args):

@@ -80,20 +80,19 @@ def integer_length(integer):
 
 
 def _natural(integer):
+    return integer if need_integer(integer) >= 0 else type_error(integer, sym("UNSIGNED-BYTE"))
+
+
+def _byte_part(integer):
     return integer if is_integer(integer) and integer >= 0 else type_error(integer, "(MOD 4611686018427387841)")
 
 
 def byte(size, position):
-    return Cons(_natural(size), _natural(position))
+    return Cons(_byte_part(size), _byte_part(position))
 
 
 def _spec(bytespec):
-    if not isinstance(bytespec, Cons):
-        type_error(bytespec, sym("CONS"))
-    if bytespec.car.__class__ is not int or bytespec.cdr.__class__ is not int or bytespec.car < 0 or bytespec.cdr < 0:
-        _natural(bytespec.car)
-        _natural(bytespec.cdr)
-    return bytespec
+    return bytespec if isinstance(bytespec, Cons) else type_error(bytespec, sym("CONS"))
 
 
 def byte_size(bytespec):
@@ -105,7 +104,14 @@ def byte_position(bytespec):
 
 
 def _mask(bytespec):
-    return (1 << _spec(bytespec).car) - 1
+    """As many ones as ``bytespec`` says; its position is looked at, too, so that the caller can rely on it."""
+    try:
+        if bytespec.cdr.__class__ is int and bytespec.cdr >= 0:
+            return (1 << bytespec.car) - 1
+    except (AttributeError, TypeError, ValueError):
+        pass
+    _byte_part(_spec(bytespec).car)
+    return _byte_part(bytespec.cdr)
 
 
 def ldb(bytespec, integer):

@@ -9,7 +9,7 @@ A symbol's class is one object from the first definition on, also when it is def
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import shown_with
+from cramhy_runtime.ground.condition_types import shown, shown_with
 from cramhy_runtime.ground.conditions import Condition, Error, SimpleProgramError, TypeError_, error, type_error
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, no_method_for
@@ -115,7 +115,7 @@ class IllegalClassName(TypeError_):
         super().__init__(datum, sym("SYMBOL"), **slots)
 
     def report(self):
-        return f"{shown_with({}, self.datum)} is not a legal class name."
+        return f"{shown(self.datum)} is not a legal class name."
 
 
 def find_class(symbol, errorp=True, environment=None):

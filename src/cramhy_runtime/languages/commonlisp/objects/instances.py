@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from . import protocol_functions
 import copy
+from fractions import Fraction
 
 from cramhy_runtime.ground.condition_types import Condition, Error, shown
 from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
-from cramhy_runtime.ground.data import UNBOUND, Cons, list_from, one, python_list
+from cramhy_runtime.ground.data import UNBOUND, Character, Cons, DoubleFloat, Keyword, LispString, Symbol, list_from, one, python_list
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
@@ -243,20 +244,22 @@ def _plan_or_error(cls):
     return plan_for(cls)
 
 
-def _need_instance(name, instance, *arguments):
-    """Signal that the protocol function ``name`` has no method for ``instance``, where that is a number, a cons and the like."""
-    if not hasattr(instance, "__dict__") and not hasattr(type(instance), "lisp_structure"):
-        no_method_for(name, instance, *arguments)
+_NO_INSTANCES = frozenset(
+    {int, float, complex, bool, str, list, type(None), Fraction, DoubleFloat, Symbol, Keyword, Cons, Character, LispString}
+)
+"""Classes of objects that have no slots, so that the functions here have no method for them."""
 
 
 def default_initialize_instance(instance, *initargs):
-    _need_instance("INITIALIZE-INSTANCE", instance, *initargs)
+    if instance.__class__ in _NO_INSTANCES:
+        return no_method_for("INITIALIZE-INSTANCE", instance, *initargs)
     protocol_functions.shared_initialize(instance, True, *initargs)
     return instance
 
 
 def default_shared_initialize(instance, slot_names, *initargs):
-    _need_instance("SHARED-INITIALIZE", instance, slot_names, *initargs)
+    if instance.__class__ in _NO_INSTANCES:
+        return no_method_for("SHARED-INITIALIZE", instance, slot_names, *initargs)
     if slot_names is not None and slot_names is not True and not isinstance(slot_names, Cons):
         type_error(slot_names, "LIST")
     wanted = True if slot_names is True else set(python_list(slot_names))
@@ -270,7 +273,8 @@ def default_shared_initialize(instance, slot_names, *initargs):
 
 
 def default_reinitialize_instance(instance, *initargs):
-    _need_instance("REINITIALIZE-INSTANCE", instance, *initargs)
+    if instance.__class__ in _NO_INSTANCES:
+        return no_method_for("REINITIALIZE-INSTANCE", instance, *initargs)
     plan = plan_for(type(instance))
     if plan.valid is not None:
         keys = {
@@ -295,7 +299,8 @@ def default_allocate_instance(cls, *initargs):
 def default_change_class(instance, new_class, *initargs):
     """Make ``instance`` an instance of ``new_class``, keeping the slots that both have (ANSI 7.2)."""
     cls = find_class_or_error(new_class)
-    _need_instance("CHANGE-CLASS", instance, cls, *initargs)
+    if instance.__class__ in _NO_INSTANCES:
+        return no_method_for("CHANGE-CLASS", instance, cls, *initargs)
     old = type(instance)
     previous = copy.copy(instance)
     values = {

@@ -232,7 +232,7 @@ def shadowing_import(symbols, package=None):
 
 def find_all_symbols(name):
     """``find-all-symbols``: the symbols of that name in all packages."""
-    name = string_designator(name)
+    name = _named(name)
     found = [package.lookup(name)[0] for package in packages.all_packages() if package.present(name)]
     return list_from(list(dict.fromkeys(found)))
 

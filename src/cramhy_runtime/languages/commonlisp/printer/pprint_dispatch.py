@@ -13,11 +13,11 @@ from cramhy_runtime.ground.ports import PORTS
 from fractions import Fraction
 
 from cramhy_runtime.ground.arrays import LispArray, is_bit_vector
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, UndefinedFunction, python_list
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.packages import COMMON_LISP, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import pprint_code as code
 from .pretty import pprint_fill
 from .print_arrays import pprint_array
@@ -151,6 +151,8 @@ def set_pprint_dispatch(type_, function, priority=0, table=None):
     table = _table(table or PRINT_PPRINT_DISPATCH.value)
     if not isinstance(priority, (int, float, Fraction)):
         type_error(priority, "REAL")
+    if not (is_symbol(type_) or isinstance(type_, type) or isinstance(type_, Cons) and is_symbol(type_.car)):
+        error("~S is not a valid type-specifier", type_)
     heads = _heads(type_)
     if heads is not None:
         for head in heads:

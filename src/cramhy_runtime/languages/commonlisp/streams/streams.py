@@ -20,7 +20,7 @@ from cramhy_runtime.kernel.terminals import readable
 
 from cramhy_runtime.ground.data import UNBOUND, lisp_list
 from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.packages import is_symbol, sym
 from .basic_streams import (
     FileOutput,
     InputStream,
@@ -64,6 +64,13 @@ class ConsoleOutput(FileOutput):
         self.flush()
 
 
+def write_byte(byte, stream):
+    """Write ``byte`` to a stream of which another stream made of it is part; a character stream takes none."""
+    if not hasattr(stream, "write_byte"):
+        return misused(stream, "binary output")
+    return stream.write_byte(byte)
+
+
 class BroadcastStream(OutputStream):
     """Writes everything to each of ``streams``; to nowhere when there are none."""
 
@@ -101,7 +108,7 @@ class BroadcastStream(OutputStream):
 
     def write_byte(self, byte):
         for stream in self.streams:
-            stream.write_byte(byte)
+            write_byte(byte, stream)
 
 
 class ConsoleInput(InputStream):
@@ -210,7 +217,7 @@ class _Delegate(OutputStream, InputStream):
         return self.source.read_byte()
 
     def write_byte(self, byte):
-        self.sink.write_byte(byte)
+        write_byte(byte, self.sink)
 
 
 class TwoWayStream(_Delegate):
@@ -343,10 +350,11 @@ def output_stream(designator):
     """
     if isinstance(designator, OutputStream):
         return designator
-    if designator is None:
-        return STANDARD_OUTPUT.value
-    if designator is True:
-        return TERMINAL_IO.value
+    if designator is None or designator is True:
+        stream = STANDARD_OUTPUT.value if designator is None else TERMINAL_IO.value
+        if isinstance(stream, OutputStream):
+            return stream
+        return type_error(stream, "STREAM") if is_symbol(stream) else output_stream(stream)
     if isinstance(designator, Stream):
         return misused(designator, "character output")
     if hasattr(designator, "write"):
@@ -361,10 +369,11 @@ def input_stream(designator):
     """The input stream that ``designator`` stands for: nil is ``*standard-input*``, t is ``*terminal-io*``."""
     if isinstance(designator, InputStream):
         return designator
-    if designator is None:
-        return STANDARD_INPUT.value
-    if designator is True:
-        return TERMINAL_IO.value
+    if designator is None or designator is True:
+        stream = STANDARD_INPUT.value if designator is None else TERMINAL_IO.value
+        if isinstance(stream, InputStream):
+            return stream
+        return type_error(stream, "STREAM") if is_symbol(stream) else input_stream(stream)
     if isinstance(designator, Stream):
         return misused(designator, "character input")
     return type_error(designator, "STREAM")
