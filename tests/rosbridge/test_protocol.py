@@ -380,7 +380,7 @@ def test_the_bytes_of_ros_1_in_cbor(talk):
 
 def test_the_bytes_of_ros_1_of_all_kinds_of_fields(graph):
     from cramhy_runtime.ros import wire
-    from cramhy_runtime.rosbridge.raw import serialize
+    from cramhy_runtime.ros.serialization import serialize
 
     log = wire.transmit(message_class_exact("rosgraph_msgs/Log")(name="ab", level=2, msg="ö", topics=["/x"], line=7))
     assert serialize(log) == (

@@ -63,6 +63,7 @@ TF = {
     "transforms->tf-msg": "(transforms)",
     "tf-msg->transforms": "(msg)",
     "restamp-tf-msg": "(msg stamp)",
+    "topic": "(broadcaster)",
 }
 TF_OTHERS = "transformer transform-listener make-transformer with-tf-broadcasting"
 TF2 = {"make-transform-broadcaster": "(&key topic static)", "send-transform": "(broadcaster &rest transforms)"}

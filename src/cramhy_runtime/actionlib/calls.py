@@ -15,7 +15,7 @@ from cramhy_runtime.ground.condition_types import Condition, Error
 from cramhy_runtime.ground.data import MultipleValues, truth
 from cramhy_runtime.ground.packages import ensure_package, find_package, keyword
 from . import goals
-from .client import CONNECTED, ActionClient
+from .client import CONNECTED, ActionClient, send_with_callbacks
 
 ACKNOWLEDGE = 1.0
 """Seconds that a server has to tell the end of a goal that was given up, if the caller does not say otherwise."""
@@ -54,6 +54,28 @@ def feedback(signal):
     return signal.feedback
 
 
+class GoalHandle:
+    """A goal that `send_goal` sent: what there is to know of it, and how to cancel it, while other goals of the client go on."""
+
+    lisp_name = "ACTIONLIB::GOAL-HANDLE"
+
+    def __init__(self, client, goal):
+        self.client, self.goal = client, goal
+
+    def __repr__(self):
+        return f"#<GOAL-HANDLE {self.goal.id} {self.goal.communication}>"
+
+
+def send_goal(client, goal, *, done_cb=None, active_cb=None, feedback_cb=None):
+    """Send ``goal`` and go on; returns a `GoalHandle`. Goals that were sent before are tracked as ever.
+
+    The callbacks: done-cb gets state and result, active-cb nothing, feedback-cb the feedback.
+    """
+    if not isinstance(client, ActionClient):
+        return conditions.type_error(client, "ACTIONLIB:ACTION-CLIENT")
+    return GoalHandle(client, send_with_callbacks(client, goal, done_cb, active_cb, feedback_cb, alone=False))
+
+
 def make_action_client(action_name, action_type):
     """A client of the action ``action_name`` (a string) of ``action_type``, ``"package/NameAction"``."""
     return ActionClient(action_name, action_type)
@@ -75,7 +97,7 @@ def call_goal(client, goal, *, timeout=None, result_timeout=None, feedback_cb=No
 
     callback = goals.function_of(feedback_cb) if truth(feedback_cb) else None
     limit = goals.time_limit(timeout)
-    sent = client.send(goal, feedback=note)
+    sent = client.send(goal, feedback=note, alone=False)
 
     def follow():
         while True:

@@ -1,4 +1,4 @@
-"""The client's side of an action: one goal at a time, and in which state it is.
+"""The client's side of an action: the goals that it has sent, and in which state each is.
 
 The client learns of its goal in two ways. Several times a second the server lists the states of all goals, and when one is over
 it sends the result. Both go through one state machine, so that it does not matter which comes first:
@@ -7,7 +7,8 @@ it sends the result. Both go through one state machine, so that it does not matt
 
 A goal that the server never lists is lost after five seconds, and so is one whose server falls silent for that long, or no longer
 lists it; the original waits for ever in the second case. The callbacks of a goal run in the tasks of the subscribers, as all
-callbacks of topics. Source: roslisp.md 13.1.
+callbacks of topics. ``goal`` is the newest goal, which ACTIONLIB-LISP speaks of; ACTIONLIB may send several and tracks each.
+Source: roslisp.md 13.1.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 from .. import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.packages import keyword
 from ..ros.messages import message_class
 from ..ros.roslisp import node, topics
 from ..ros.roslisp.clock import ros_time
@@ -37,6 +39,7 @@ class Goal:
         self.status, self.terminal, self.result = PENDING, None, None
         self.was_active = False
         self.sent = kernel.now()
+        self.watch = None  # the timer that looks whether the server is silent
 
     @property
     def done(self):
@@ -57,8 +60,7 @@ class ActionClient:
 
     def __init__(self, name, action_type):
         self.name, self.action = goals.check_name(name), Action(action_type)
-        self.goal, self.heard, self.waiting = None, None, kernel.Waiting()
-        self._watch = None
+        self.goal, self.tracked, self.heard, self.waiting = None, {}, None, kernel.Waiting()
         here = node.require_node()
         self.node = here
         self.goals = topics.advertise(f"{name}/goal", self.action.action_goal)
@@ -83,24 +85,25 @@ class ActionClient:
 
     # ------------------------------------------------------------------------------------------------------ what it sends
 
-    def send(self, message, done=None, active=None, feedback=None):
-        """Send a goal and track it from now on; the one before is forgotten. Returns the `Goal`."""
+    def send(self, message, done=None, active=None, feedback=None, alone=True):
+        """Send a goal and track it from now on; the one before is forgotten if this is to be ``alone``. Returns the `Goal`."""
         goals.check_message(message, self.action.goal)
         if not self.node.alive:
             conditions.error(
                 SimpleError("The node of the client of action ~a has ended.", self.name),
                 hint="A client lives as long as the node that made it: make a new one.",
             )
-        self.forget()
+        if alone and self.goal is not None:
+            self.forget(self.goal)
         now = ros_time()
         goal_id = goals.new_goal_id(self.node.name, now)
-        goal = self.goal = Goal(goal_id.id, done, active, feedback)
+        goal = self.goal = self.tracked[goal_id.id] = Goal(goal_id.id, done, active, feedback)
         try:
             topics.publish(self.goals, self.action.action_goal(header=_header(now), goal_id=goal_id, goal=message))
         except BaseException:  # it has a wrong value in a field
-            self.forget()
+            self.forget(goal)
             raise
-        self._watch_goal()
+        self._watch_goal(goal)
         return goal
 
     def cancel(self, goal):
@@ -112,23 +115,38 @@ class ActionClient:
 
     def cancel_all(self):
         """Ask the server to give up the goals of all clients."""
-        if self.goal is not None and self.goal.communication in ("WAITING-FOR-GOAL-ACK", "PENDING", "ACTIVE"):
-            self.goal.communication = "WAITING-FOR-CANCEL-ACK"
+        self._await_cancelling(self.tracked.values())
         self._cancel("")
 
-    def _cancel(self, goal_id):
-        if self.node.alive:
-            topics.publish(self.cancels, message_class(goals.GOAL_ID)(id=goal_id))
+    def cancel_until(self, time):
+        """Ask the server to give up the goals of all clients that were sent at ``time`` or before, in seconds since 1970."""
+        epoch = self.node.graph.kernel.epoch
+        self._await_cancelling(goal for goal in self.tracked.values() if epoch + goal.sent <= time)
+        self._cancel("", time)
 
-    def forget(self):
-        """Track no goal any more. For who waits for the one that was tracked it is lost."""
-        goal, self.goal = self.goal, None
-        if goal is not None and not goal.done:
+    def _await_cancelling(self, asked):
+        for goal in asked:
+            if goal.communication in ("WAITING-FOR-GOAL-ACK", "PENDING", "ACTIVE"):
+                goal.communication = "WAITING-FOR-CANCEL-ACK"
+
+    def _cancel(self, goal_id, stamp=0.0):
+        if self.node.alive:
+            topics.publish(self.cancels, message_class(goals.GOAL_ID)(id=goal_id, stamp=stamp))
+
+    def forget(self, goal):
+        """Track ``goal`` no more. For a task that waits for its end it is lost."""
+        if self.goal is goal:
+            self.goal = None
+        if not goal.done:
             goal.communication, goal.terminal = "DONE", LOST
-        if self._watch is not None:
-            self._watch.cancel()
-            self._watch = None
+        self._let_go(goal)
         self.waiting.changed()
+
+    def _let_go(self, goal):
+        self.tracked.pop(goal.id, None)
+        if goal.watch is not None:
+            goal.watch.cancel()
+            goal.watch = None
 
     # --------------------------------------------------------------------------------------------------- what it hears of
 
@@ -138,9 +156,11 @@ class ActionClient:
 
     def _status(self, message):
         self._sign_of_life()
-        goal = self.goal
-        if goal is None or goal.done:
-            return
+        for goal in list(self.tracked.values()):
+            if not goal.done:  # a callback of another one may have ended it
+                self._note_status(goal, message)
+
+    def _note_status(self, goal, message):
         status = next((entry.status for entry in message.status_list if entry.goal_id.id == goal.id and entry.status in KNOWN), None)
         if status is not None:
             self._update(goal, status)
@@ -167,14 +187,14 @@ class ActionClient:
 
     def _feedback(self, message):
         self._sign_of_life()
-        goal = self.goal
-        if goal is not None and message.status.goal_id.id == goal.id and goal.feedback_callback is not None and not goal.done:
+        goal = self.tracked.get(message.status.goal_id.id)
+        if goal is not None and goal.feedback_callback is not None and not goal.done:
             goal.feedback_callback(message.feedback)
 
     def _result(self, message):
         self._sign_of_life()
-        goal = self.goal
-        if goal is not None and message.status.goal_id.id == goal.id and not goal.done:
+        goal = self.tracked.get(message.status.goal_id.id)
+        if goal is not None and not goal.done:
             status = message.status.status
             if status in KNOWN:
                 self._update(goal, status)
@@ -185,28 +205,33 @@ class ActionClient:
         if goal.done:
             return
         goal.communication, goal.terminal = "DONE", terminal
-        if self._watch is not None:
-            self._watch.cancel()
-            self._watch = None
+        self._let_go(goal)
         self.waiting.changed()
         if goal.done_callback is not None:
             goal.done_callback(goal)
 
-    def _watch_goal(self):
+    def _watch_goal(self, goal):
         """Look again when the server may have been silent for too long."""
-        silent_since = max(self.goal.sent, self.heard or 0.0)
-        self._watch = kernel.call_at(silent_since + PATIENCE, self._look_after)
+        silent_since = max(goal.sent, self.heard or 0.0)
+        goal.watch = kernel.call_at(silent_since + PATIENCE, lambda: self._look_after(goal))
 
-    def _look_after(self):
-        goal, self._watch = self.goal, None
-        if goal is None or goal.done:
+    def _look_after(self, goal):
+        goal.watch = None
+        if goal.done:
             return
         if kernel.now() >= max(goal.sent, self.heard or 0.0) + PATIENCE or not self.node.alive:
             owner = self.node.graph.kernel
             owner.spawn(lambda: self._finish(goal, LOST), name=f"Lost goal of {self.name}", parent=owner.main)
         else:
-            self._watch_goal()
+            self._watch_goal(goal)
 
 
 def _header(stamp):
     return message_class("std_msgs/Header")(stamp=stamp)
+
+
+def send_with_callbacks(client, message, done_cb, active_cb, feedback_cb, alone):
+    """`ActionClient.send` with the callbacks of a Lisp program, nil or functions: done-cb gets the state, a keyword, and the result."""
+    finished = goals.function_or_none(done_cb)
+    done = None if finished is None else lambda goal: finished(keyword(goal.state), goal.result)
+    return client.send(message, done, goals.function_or_none(active_cb), goals.function_or_none(feedback_cb), alone)

@@ -9,7 +9,7 @@ import itertools
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import LispString, Symbol
+from cramhy_runtime.ground.data import LispString, Symbol, truth
 from cramhy_runtime.ground.functions import function_named
 from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.messages import message_class, topic_class
@@ -59,6 +59,11 @@ def function_of(designator):
     """The function that ``designator``, itself one or the name of one, stands for; anything else is a type-error."""
     function = function_named(designator) if isinstance(designator, Symbol) else designator
     return function if callable(function) else conditions.type_error(function, "FUNCTION")
+
+
+def function_or_none(designator):
+    """The function that ``designator`` stands for; ``None`` for nil."""
+    return function_of(designator) if truth(designator) else None
 
 
 def check_message(message, cls):

@@ -1,5 +1,7 @@
 """The functions of the package ACTIONLIB-LISP: an action client that sends a goal and goes on, or waits for its end.
 
+Where a function is about one goal, it takes the client, for its newest goal, or a handle of ACTIONLIB (`calls.send_goal`).
+
 Repaired: a goal that was aborted, rejected or recalled is finished for `wait_for_result` and `send_goal_and_wait`; the original
 waits on. A plan that is evaporated while it waits in `send_goal_and_wait` cancels its goal. Source: roslisp.md 13.1.
 """
@@ -9,11 +11,12 @@ from __future__ import annotations
 from .. import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import truth
+from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import keyword
 from ..ros.roslisp import logging
 from . import goals
-from .client import ActionClient
+from .calls import GoalHandle
+from .client import ActionClient, send_with_callbacks
 
 LOG_TOPIC = ("ACTIONLIB",)
 
@@ -36,9 +39,7 @@ def is_connected(client):
 def send_goal(client, goal, *, done_cb=None, active_cb=None, feedback_cb=None):
     """Send ``goal``, forgetting the one before; T. The callbacks: done-cb gets state and result, active-cb nothing, feedback-cb
     the feedback."""
-    finished = _function(done_cb)
-    done = None if finished is None else lambda goal: finished(keyword(goal.state), goal.result)
-    _client(client).send(goal, done, _function(active_cb), _function(feedback_cb))
+    send_with_callbacks(_client(client), goal, done_cb, active_cb, feedback_cb, alone=True)
     return True
 
 
@@ -65,8 +66,7 @@ def send_goal_and_wait(client, goal, execute_timeout, preempt_timeout):
 
 def wait_for_result(client, timeout):
     """Wait until the goal is finished, at most ``timeout`` seconds (0: for ever); T, or NIL when it was not."""
-    client = _client(client)
-    return True if _wait(client, _goal(client), timeout) else None
+    return True if _wait(_client_of(client), _goal(client), timeout) else None
 
 
 def _wait(client, goal, timeout):
@@ -76,39 +76,38 @@ def _wait(client, goal, timeout):
 
 def state(client):
     """The state of the goal, a keyword: :pending :active :preempted :succeeded :aborted :rejected :recalled :lost."""
-    return keyword(_goal(_client(client)).state)
+    return keyword(_goal(client).state)
 
 
 def comm_state(client):
     """How far client and server have agreed on the goal, a keyword such as :waiting-for-goal-ack."""
-    return keyword(_goal(_client(client)).communication)
+    return keyword(_goal(client).communication)
 
 
 def goal_status(client):
     """What the server last said of the goal, a keyword."""
-    return keyword(goals.NAMES[_goal(_client(client)).status])
+    return keyword(goals.NAMES[_goal(client).status])
 
 
 def terminal_state(client):
     """The state in which the goal ended, a keyword; NIL while it goes on."""
-    terminal = _goal(_client(client)).terminal
+    terminal = _goal(client).terminal
     return None if terminal is None else keyword(goals.NAMES[terminal])
 
 
 def goal_id(client):
     """The id of the goal, a string."""
-    return _goal(_client(client)).id
+    return _goal(client).id
 
 
 def result(client):
     """The result message of the goal; NIL while there is none."""
-    return _goal(_client(client)).result
+    return _goal(client).result
 
 
 def cancel_goal(client):
     """Ask the server to give up the goal; T."""
-    client = _client(client)
-    client.cancel(_goal(client))
+    _client_of(client).cancel(_goal(client))
     return True
 
 
@@ -118,11 +117,17 @@ def cancel_all_goals(client):
     return True
 
 
+def cancel_at_before_time(client, time):
+    """Ask the server to give up the goals of all clients that were sent at ``time`` (a time of ROS, in seconds) or before; T."""
+    if not is_real(time):
+        conditions.type_error(time, "REAL")
+    _client(client).cancel_until(float(time))
+    return True
+
+
 def stop_tracking_goal(client):
     """Forget the goal; the server goes on with it. T."""
-    client = _client(client)
-    _goal(client)
-    client.forget()
+    _client_of(client).forget(_goal(client))
     return True
 
 
@@ -135,11 +140,11 @@ def _client(client):
     return client if isinstance(client, ActionClient) else conditions.type_error(client, "ACTIONLIB-LISP:SIMPLE-ACTION-CLIENT")
 
 
+def _client_of(client):
+    return client.client if isinstance(client, GoalHandle) else _client(client)
+
+
 def _goal(client):
-    if client.goal is None:
-        return conditions.error(SimpleError("The client tracks no goal."))
-    return client.goal
-
-
-def _function(designator):
-    return goals.function_of(designator) if truth(designator) else None
+    """The goal of a handle, or the newest one of a client."""
+    goal = client.goal if isinstance(client, GoalHandle) else _client(client).goal
+    return conditions.error(SimpleError("The client tracks no goal.")) if goal is None else goal

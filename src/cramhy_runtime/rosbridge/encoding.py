@@ -128,7 +128,7 @@ class Parcel:
         return cbor_of({"op": "publish", "topic": self.topic, "msg": to_json(self.message)})
 
     def _cbor_raw(self):
-        from .raw import serialize
+        from ..ros.serialization import serialize
 
         nanoseconds = round(self.stamp * 1e9)
         message = {"secs": nanoseconds // 10**9, "nsecs": nanoseconds % 10**9, "bytes": serialize(self.message)}

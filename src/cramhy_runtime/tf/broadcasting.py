@@ -132,6 +132,13 @@ def broadcasting(broadcaster: Publication, *transforms: TransformStamped) -> Ite
         yield
 
 
+def topic(broadcaster):
+    """The name of the topic that a broadcaster publishes on, of CL-TF or of CL-TF2."""
+    if isinstance(broadcaster, TransformBroadcaster):
+        broadcaster = broadcaster.publication
+    return _publication(broadcaster, "TOPIC").name
+
+
 # -------------------------------------------------------------------------------------------------------------------- CL-TF2
 
 

@@ -1,12 +1,17 @@
-;;;; cram-math: angles, the normal distribution, and matrices of double-floats, as robot plans use them. Indices of matrices are
+;;;; cram-math: angles, vectors and matrices of double-floats, distributions and colours, as robot plans use them. Indices of matrices are
 ;;;; row and column; vectors are one-dimensional arrays.
 
 (defpackage #:cram-math
   (:use #:common-lisp)
   (:nicknames #:cma)
-  (:export #:degrees->radians #:radians->degrees #:normalize-angle #:average #:covariance #:gauss
-           #:double-vector #:double-matrix #:make-double-vector #:make-double-matrix #:height #:width
-           #:double-matrix-product #:double-matrix-transpose #:double-matrix-determinant #:invert-double-matrix #:map-double-matrix))
+  (:export #:degrees->radians #:radians->degrees #:normalize-angle #:angle-difference #:square #:clamp #:linear-interpolation
+           #:average #:mean #:variance #:standard-deviation #:covariance #:gauss #:sample-gauss #:2d-cov-ellipse
+           #:double-vector #:make-double-vector #:double-vector-sum #:double-vector-difference #:double-vector-product
+           #:scale-double-vector #:double-vector-norm
+           #:double-matrix #:make-double-matrix #:make-identity-matrix #:copy-double-matrix #:height #:width #:map-double-matrix
+           #:double-matrix-sum #:double-matrix-difference #:scale-double-matrix #:double-matrix-product #:double-matrix-transpose
+           #:double-matrix-determinant #:invert-double-matrix #:normalize-double-matrix
+           #:sample-from-distribution-matrix #:hsv->rgb #:rgb->hsv))
 
 (in-package #:cram-math)
 
@@ -22,6 +27,21 @@
   "The same angle between -pi (exclusive) and pi."
   (let ((angle (mod radians (* 2 pi))))
     (if (> angle pi) (- angle (* 2 pi)) angle)))
+
+(defun angle-difference (from to)
+  "The angle by which one turns from FROM to TO, the shorter way: between -pi (exclusive) and pi."
+  (normalize-angle (- to from)))
+
+(defun square (number)
+  (* number number))
+
+(defun clamp (number low high)
+  "NUMBER, or the nearer one of LOW and HIGH when it is not between them."
+  (max low (min high number)))
+
+(defun linear-interpolation (from to share)
+  "The number between FROM (SHARE is 0) and TO (SHARE is 1)."
+  (+ from (* share (- to from))))
 
 (defun average (numbers)
   "The mean of a sequence of numbers."
@@ -44,6 +64,23 @@
           do (loop for number in row for x from 0 do (setf (aref matrix y x) (float number 1d0))))
     matrix))
 
+(defun double-vector-sum (left right)
+  (map 'double-vector #'+ left right))
+
+(defun double-vector-difference (left right)
+  (map 'double-vector #'- left right))
+
+(defun double-vector-product (left right)
+  "The scalar product of two vectors."
+  (reduce #'+ (map 'vector #'* left right) :initial-value 0d0))
+
+(defun scale-double-vector (vector factor)
+  (map 'double-vector (lambda (number) (float (* number factor) 1d0)) vector))
+
+(defun double-vector-norm (vector)
+  "The length of VECTOR."
+  (sqrt (double-vector-product vector vector)))
+
 (defun height (matrix) (array-dimension matrix 0))
 (defun width (matrix) (array-dimension matrix 1))
 
@@ -52,6 +89,34 @@
   (let ((result (make-double-matrix (width matrix) (height matrix))))
     (dotimes (index (array-total-size matrix) result)
       (setf (row-major-aref result index) (float (funcall function (row-major-aref matrix index)) 1d0)))))
+
+(defun copy-double-matrix (matrix)
+  (map-double-matrix #'identity matrix))
+
+(defun combine (function left right)
+  "A matrix of what FUNCTION makes of the elements of LEFT and RIGHT at each place."
+  (unless (equal (array-dimensions left) (array-dimensions right))
+    (error "Matrices of ~D x ~D and ~D x ~D elements do not fit." (height left) (width left) (height right) (width right)))
+  (let ((result (make-double-matrix (width left) (height left))))
+    (dotimes (index (array-total-size left) result)
+      (setf (row-major-aref result index)
+            (float (funcall function (row-major-aref left index) (row-major-aref right index)) 1d0)))))
+
+(defun double-matrix-sum (left right) (combine #'+ left right))
+(defun double-matrix-difference (left right) (combine #'- left right))
+
+(defun scale-double-matrix (matrix factor)
+  (map-double-matrix (lambda (number) (* number factor)) matrix))
+
+(defun total (matrix)
+  (loop for index below (array-total-size matrix) sum (row-major-aref matrix index)))
+
+(defun normalize-double-matrix (matrix)
+  "A matrix in the same proportions whose elements have the sum 1, a distribution; a sum that is not positive is an error."
+  (let ((sum (total matrix)))
+    (unless (plusp sum)
+      (error "A matrix whose elements have the sum ~S is no distribution: the sum must be positive." sum))
+    (scale-double-matrix matrix (/ sum))))
 
 (defun double-matrix-transpose (matrix)
   "MATRIX with rows for columns."
@@ -100,21 +165,36 @@
                 (subtract matrix y factor step)
                 (subtract right y factor step)))))))))
 
-(defun identity-matrix (size)
+(defun make-identity-matrix (size)
+  "A square matrix with ones from its upper left to its lower right corner."
   (let ((matrix (make-double-matrix size size)))
     (dotimes (index size matrix) (setf (aref matrix index index) 1d0))))
 
 (defun double-matrix-determinant (matrix)
-  (eliminate (map-double-matrix #'identity matrix) (identity-matrix (height matrix))))
+  (eliminate (copy-double-matrix matrix) (make-identity-matrix (height matrix))))
 
 (defun invert-double-matrix (matrix)
   "The inverse of MATRIX; one that has none is an error."
-  (let ((inverse (identity-matrix (height matrix))))
-    (when (zerop (eliminate (map-double-matrix #'identity matrix) inverse))
+  (let ((inverse (make-identity-matrix (height matrix))))
+    (when (zerop (eliminate (copy-double-matrix matrix) inverse))
       (error "The matrix ~S has no inverse." matrix))
     inverse))
 
 ;;; -------------------------------------------------------------------------------------------------------------- statistics
+
+(defun mean (samples)
+  "The vector of the means of SAMPLES, a list of vectors of one length."
+  (make-double-vector (length (first samples))
+                      :initial-contents (loop for index below (length (first samples))
+                                              collect (average (mapcar (lambda (sample) (elt sample index)) samples)))))
+
+(defun variance (numbers)
+  "The mean of the squares of the distances from the mean, of a sequence of numbers."
+  (let ((middle (average numbers)))
+    (average (map 'list (lambda (number) (square (- number middle))) numbers))))
+
+(defun standard-deviation (numbers)
+  (sqrt (float (variance numbers) 1d0)))
 
 (defun covariance (samples)
   "The matrix of covariances of SAMPLES, a list of vectors of one length."
@@ -140,3 +220,55 @@
            (exp (* -1/2 (loop for y below size
                               sum (loop for x below size
                                         sum (* (aref offset y) (aref inverse y x) (aref offset x)))))))))))
+
+(defun sample-gauss (mean standard-deviation)
+  "A random number of the normal distribution, by the method of Box and Muller."
+  (+ mean (* standard-deviation
+             (sqrt (* -2 (log (- 1d0 (random 1d0)))))
+             (cos (* 2 pi (random 1d0))))))
+
+(defun 2d-cov-ellipse (covariance)
+  "The ellipse of a 2 x 2 matrix of covariances: three values, half its greater axis, half its smaller one, and the angle of the former."
+  (let* ((a (aref covariance 0 0)) (b (aref covariance 0 1)) (c (aref covariance 1 1))
+         (middle (/ (+ a c) 2))
+         (distance (sqrt (+ (square (/ (- a c) 2)) (square b)))))
+    (values (sqrt (max 0d0 (+ middle distance)))
+            (sqrt (max 0d0 (- middle distance)))
+            (if (and (zerop b) (>= a c)) 0d0 (atan (- (+ middle distance) a) b)))))
+
+(defun sample-from-distribution-matrix (matrix)
+  "The row and the column, two values, of an element of MATRIX that is drawn by lot; its value is its chance against the others.
+No element may be negative. A matrix of zeros is an error."
+  (let ((left (random 1d0)) (sum (total matrix)))
+    (unless (plusp sum)
+      (error "Nothing can be drawn from a matrix whose elements have the sum ~S: the sum must be positive." sum))
+    (setf left (* left sum))
+    (let ((drawn nil))
+      (dotimes (index (array-total-size matrix))
+        (let ((weight (row-major-aref matrix index)))
+          (when (plusp weight)
+            (setf drawn index)
+            (when (< left weight) (return))
+            (decf left weight))))
+      (floor drawn (width matrix)))))
+
+;;; ------------------------------------------------------------------------------------------------------------------ colours
+
+(defun hsv->rgb (hsv)
+  "The list (red green blue) of a colour (hue saturation value): the hue in degrees, all others from 0 to 1."
+  (destructuring-bind (hue saturation value) (coerce hsv 'list)
+    (flet ((part (offset)
+             (let ((place (mod (+ offset (/ hue 60)) 6)))
+               (- value (* value saturation (clamp (min place (- 4 place)) 0 1))))))
+      (list (part 5) (part 3) (part 1)))))
+
+(defun rgb->hsv (rgb)
+  "The list (hue saturation value) of a colour (red green blue), as HSV->RGB takes it."
+  (destructuring-bind (red green blue) (coerce rgb 'list)
+    (let* ((value (max red green blue)) (range (- value (min red green blue))))
+      (list (cond ((zerop range) 0)
+                  ((= value red) (mod (* 60 (/ (- green blue) range)) 360))
+                  ((= value green) (+ 120 (* 60 (/ (- blue red) range))))
+                  (t (+ 240 (* 60 (/ (- red green) range)))))
+            (if (zerop value) 0 (/ range value))
+            value))))

@@ -13,6 +13,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.data import Cons, LispString, python_list, truth
 from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.hash_tables import HashTable
 from cramhy_runtime.ground.output import standard_output
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import princ_to_string
@@ -39,6 +40,9 @@ ROSOUT_DELAY = 0.05
 """Seconds until the log collector has connected to a new node. Before that, log calls reach no subscriber."""
 
 NODE_NAME = special("ROSLISP::*ROS-NODE-NAME*")
+NODE_STATUS, NAMESPACE = special("ROSLISP::*NODE-STATUS*", sym(":SHUTDOWN")), special("ROSLISP::*NAMESPACE*", "/")
+REMAPPED_NAMES, LOG_LOCATION = special("ROSLISP::*REMAPPED-NAMES*"), special("ROSLISP::*ROS-LOG-LOCATION*")
+"""Internal variables of roslisp, which programs look at all the same."""
 RUNNING_FROM_COMMAND_LINE = special("ROSLISP::*RUNNING-FROM-COMMAND-LINE*")
 
 
@@ -95,7 +99,10 @@ def start_ros_node(
         prepare()
     here.before_first_node.clear()
     MASTER_URI.value = address
-    NODE_NAME.value = naming.node_name
+    NODE_NAME.value, NAMESPACE.value = naming.node_name, naming.namespace
+    REMAPPED_NAMES.value = table = HashTable("EQUAL")
+    for left, right in naming.remappings.items():
+        table.put(left, right)
     _contact_master(naming, address)
     _open_log_file(naming)
     node = here.add_node(naming)
@@ -106,6 +113,7 @@ def start_ros_node(
         if kernel.active().clock.virtual:
             kernel.sleep(STARTUP_SECONDS)
         here.lisp_node = node
+        NODE_STATUS.value = node_status()
         _connect_services(node)
         node.on_shutdown.append(_ended)  # also when somebody else ends it, as rosnode kill does
         return _top("Node startup complete")
@@ -181,6 +189,7 @@ def _upload_parameters(node: graph.Node) -> None:
 
 def _open_log_file(naming: names.Naming) -> None:
     path = log_file.place(naming, graph.active().now())
+    LOG_LOCATION.value = None if path is None else str(path)
     if path is None:
         return
     try:
@@ -212,6 +221,7 @@ def _entries(table: dict[str, list[Any]]) -> list[Any]:
 
 
 def _ended() -> None:
+    NODE_STATUS.value = sym(":SHUTDOWN")
     _top("Shutdown complete")
     log_file.stop()
 

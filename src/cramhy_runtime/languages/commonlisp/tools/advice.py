@@ -18,7 +18,8 @@ from cramhy_runtime.ground.source_places import describe, describe_frame, excerp
 from ..printer.clos_printing import specializer_names
 from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
-from cramhy_runtime.ground.packages import all_packages, near_names, sym, symbol_name
+from cramhy_runtime.ground.packages import all_packages, is_symbol, near_names, sym, symbol_name
+from cramhy_runtime.ground.ports import PORTS
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
 from ..printer.printer import princ_to_string
@@ -26,6 +27,8 @@ from ..streams.streams import ERROR_OUTPUT, output_stream
 from .fluent_advice import fluent_advice
 from .operators_around import undefined_operator
 from .words_of_hy import hint_for_operator, hint_for_variable
+
+CONDITION = sym("CONDITION")
 
 COMPILATION_UNIT = sym("CRAMHY::*COMPILATION-UNIT*")
 SHOWN_PLACES = 3
@@ -134,6 +137,10 @@ def _advice(condition):
             return _variable(name)
         if undefined == "function" or isinstance(condition, types.UndefinedFunction):
             return _function(name)
+        if undefined == "type":
+            return _class(name, object)
+    if isinstance(condition, types.SimpleTypeError) and condition.expected_type is CONDITION and is_symbol(condition.datum):
+        return _class(condition.datum, types.Condition)
     if isinstance(condition, NoApplicableMethodError):
         return _methods(condition.generic_function)
     if isinstance(condition, types.PackageDoesNotExist):
@@ -194,6 +201,26 @@ def _function(symbol):
         return f"There is one in the package {home.name}: (in-package :{name}) goes there; from here it is {name}::{symbol.name.lower()}."
     near = near_names(symbol.name, set(_visible(is_operator)))
     return f"Did you mean {' or '.join(near)}?" if near else None
+
+
+def _class(symbol, root):
+    """Which classes below ``root``, or types, have a name like that of ``symbol``, here or exported by another package."""
+
+    def fits(other):
+        cls = PORTS.classes.find(other, False)
+        return isinstance(cls, type) and issubclass(cls, root) or root is object and PORTS.types.known(other)
+
+    here = set(_visible(fits))
+    near = near_names(symbol.name, here)
+    if near:
+        return f"Did you mean {' or '.join(near)}?"
+    others = {}
+    for package in all_packages():
+        for name, other in package.external.items():
+            if isinstance(other, Symbol) and name not in others and near_names(symbol.name, [name]) and fits(other):
+                others[name] = other
+    near = near_names(symbol.name, others)
+    return f"Did you mean {' or '.join(_qualified(others[name]) for name in near)}?" if near else None
 
 
 def is_operator(symbol):

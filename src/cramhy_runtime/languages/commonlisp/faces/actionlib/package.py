@@ -1,7 +1,7 @@
 """The Lisp packages ACTIONLIB-LISP and ACTIONLIB. Source: roslisp.md 13.
 
 They are made when a program first names one of them or asks for their system (``image.define_actionlib``); the course has no
-actions. ``cancel-at-before-time`` is exported and has no definition, as in the original.
+actions. The functions of both on goals that were sent are the same; ACTIONLIB's take the handles of its `send-goal`, too.
 """
 
 from __future__ import annotations
@@ -35,23 +35,25 @@ def define_faces():
             simple_client: "cancel-all-goals cancel-goal comm-state goal-id goal-status is-connected make-simple-action-client result "
             "send-goal send-goal-and-wait state stop-tracking-goal terminal-state wait-for-result wait-for-server",
             "cancel": simple_client.cancel_goal,
+            "cancel-at-before-time": simple_client.cancel_at_before_time,
         },
-        export="cancel-at-before-time simple-action-client",
+        export="simple-action-client",
     )
     define_face(
         "ACTIONLIB",
         functions={
-            calls: "make-action-client call-goal goal feedback",
-            simple_client: "wait-for-server",
+            calls: "make-action-client call-goal send-goal goal feedback",
+            simple_client: "wait-for-server wait-for-result cancel-goal cancel-all-goals cancel-at-before-time is-connected goal-id "
+            "goal-status comm-state terminal-state result",
             server: "start-action-server cancel-request-received",
             macro_support: "build-goal end-goal tell-feedback",
         },
-        export="abort-goal action-client feedback-signal server-lost",
+        export="abort-goal action-client feedback-signal goal-handle server-lost",
         internal="build-goal end-goal tell-feedback",  # macros expand into them: a kept file names them, and so makes the packages
     )
     register_class(sym("ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"), ActionClient)
     alias_class(sym("ACTIONLIB::ACTION-CLIENT"), ActionClient)
-    for cls in (calls.ServerLost, calls.FeedbackSignal):
+    for cls in (calls.ServerLost, calls.FeedbackSignal, calls.GoalHandle):
         register_class(sym(cls.lisp_name), cls)
     export(ACTIONLIB)
     importlib.import_module("cramhy.actionlib")

@@ -98,7 +98,7 @@ REACHED_FOR = """fl-member child-tasks parent-task task-constraints execute remo
 """What other CRAM code reaches for with ``::`` (cpl.md 1.5): exported here, but not by CPL, whose users may have such names too."""
 
 WALKER = """plan-tree-node plan-tree-node-sexp plan-tree-node-parent plan-tree-node-children plan-tree-node-path find-plan-node
-    expand-plan"""
+    expand-plan make-plan-tree-node copy-plan-tree-node plan-tree-node-p"""
 """What CRAM-WALKER exports together with the plan language (cpl.md 12)."""
 
 MACROS_AND_MARKERS = """fluent value-fluent current-task task toplevel-task status-indicator plan-failure simple-plan-failure

@@ -8,7 +8,7 @@ from __future__ import annotations
 from cramhy_runtime.ros import messages
 from cramhy_runtime.ros.roslisp import structs
 from ...systems import systems
-from . import reading
+from . import reading, serializing
 
 from operator import attrgetter
 
@@ -18,10 +18,17 @@ from ...syntax.operator_macros import export
 from ....operators import ROSLISP as OPERATORS
 from cramhy_runtime.ground.classes import register_class
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method_error
+from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.ground.printing import define_printer
 from cramhy_runtime.ros import message_building
 from . import message_printing
 from cramhy_runtime.ros.roslisp import clock, logging, master, node, parameters, services, time, topics, utilities
+
+
+INHERITED = "ros-message-to-list list-to-ros-message ros-datatype message-definition md5sum " + " ".join(serializing.FUNCTIONS)
+"""What roslisp has of ROSLISP-MSG-PROTOCOL besides, and does not export."""
+INTERNAL_VARIABLES = {"*node-status*": keyword("SHUTDOWN"), "*namespace*": "/", "*remapped-names*": None, "*ros-log-location*": None}
+"""Variables of roslisp that programs look at with two colons. The node sets them."""
 
 
 class FieldReader:
@@ -84,11 +91,13 @@ def define():
         "ROSLISP-MSG-PROTOCOL",
         functions={
             message_building: "ros-message-to-list list-to-ros-message symbol-codes symbol-code code-symbols code-symbol ros-datatype "
-            "message-definition md5sum"
+            "message-definition md5sum",
+            **{name: function for name, (function, *_) in serializing.FUNCTIONS.items()},
         },
-        export="ros-message serialize deserialize serialization-length service-request-type service-response-type",
+        export="ros-message",
     )
-    define_face("ROSLISP-UTILS", export="tokens until-timeout")
+    serializing.open_functions()
+    define_face("ROSLISP-UTILS", functions={"tokens": serializing.tokens}, export="until-timeout")
     export(OPERATORS)
     EXTENDED_REALS = define_face("ROSLISP-EXTENDED-REALS", export="infty -infty")
     EXTENDED_REALS.intern("INFTY").value = EXTENDED_REALS.intern("INFTY")
@@ -97,8 +106,8 @@ def define():
         "ROSLISP",
         use=["COMMON-LISP"],
         imports={
-            "ROSLISP-MSG-PROTOCOL": "ros-message symbol-codes symbol-code code-symbols code-symbol",
-            "ROSLISP-UTILS": "loop-at-most-every spin-until",
+            "ROSLISP-MSG-PROTOCOL": f"ros-message symbol-codes symbol-code code-symbols code-symbol {INHERITED}",
+            "ROSLISP-UTILS": "loop-at-most-every spin-until tokens",
         },
         functions={
             master: "make-uri",
@@ -115,7 +124,11 @@ def define():
             reading: "read-ros-message",
             message_printing: "pprint-ros-message",
         },
-        variables={"*ros-node-name*": None, "*master-uri*": None, "*default-master-uri*": None, "*running-from-command-line*": None},
+        variables={
+            **{"*ros-node-name*": None, "*master-uri*": None, "*default-master-uri*": None, "*running-from-command-line*": None},
+            **INTERNAL_VARIABLES,
+        },
+        internal=f"{INHERITED} tokens {' '.join(INTERNAL_VARIABLES)}",
         export="defservice persistent-service reconnect roslisp ros-time-not-yet-received service-call-error service-error tcp top "
         "*current-ros-package*",
     )

@@ -82,6 +82,7 @@ def define_faces(names):
             broadcasting: "make-transform-broadcaster send-transform send-transforms send-static-transforms-blocking "
             "send-static-transforms transform->tf-msg transforms->tf-msg tf-msg->transforms restamp-tf-msg "
             "while-broadcasting",
+            "topic": broadcasting.topic,
             "transform-pose": transformer.old_transform_pose,
             "transform-point": transformer.old_transform_point,
         },

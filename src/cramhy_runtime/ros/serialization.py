@@ -1,4 +1,4 @@
-"""A message as the bytes that ROS 1 puts on its wire, for clients that ask for ``cbor-raw``, as Foxglove does.
+"""A message as the bytes that ROS 1 puts on its wire: for roslisp's `serialize`, and for clients that ask for ``cbor-raw``.
 
 Little-endian numbers one after the other; strings and arrays of no fixed length begin with their length in 32 bits; a time is two
 integers. Source: wiki.ros.org/msg, "Serialization".
@@ -10,7 +10,17 @@ import math
 import reprlib
 import struct
 
-from ..ros.wire import NONFINITE, as_float
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+from .messages import part_class
+from .wire import NONFINITE, as_float, lisp_float
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .definition_text import Field
+    from .messages import RosMessage
+    from .signatures import MessageType
 
 _FORMATS = {
     "bool": "B",
@@ -30,14 +40,14 @@ _FORMATS = {
 _LENGTH = struct.Struct("<I")
 
 
-def serialize(message):
+def serialize(message: RosMessage) -> bytes:
     """The bytes of MESSAGE, as the graph delivers it. Raises ValueError with the field that ROS 1 cannot write."""
-    parts = []
+    parts: list[bytes] = []
     _write(message, parts.append)
     return b"".join(parts)
 
 
-def _write(message, put):
+def _write(message: RosMessage, put: Callable[[bytes], object]) -> None:
     for field in message.fields:
         value = getattr(message, field.attribute)
         try:
@@ -48,7 +58,7 @@ def _write(message, put):
             ) from None
 
 
-def _write_field(field, value, put):
+def _write_field(field: Field, value: Any, put: Callable[[bytes], object]) -> None:
     if not field.is_array:
         _write_one(field.base, value, put)
         return
@@ -62,7 +72,7 @@ def _write_field(field, value, put):
             _write_one(field.base, each, put)
 
 
-def _write_one(base, value, put):
+def _write_one(base: str, value: Any, put: Callable[[bytes], object]) -> None:
     form = _FORMATS.get(base)
     if form is not None:
         put(struct.pack("<" + form, _number(base, value)))
@@ -79,7 +89,7 @@ def _write_one(base, value, put):
         _write(value, put)
 
 
-def _number(base, value):
+def _number(base: str, value: Any) -> Any:
     if base == "bool":
         return value is not None and value is not False
     if base in ("float32", "float64"):
@@ -87,3 +97,33 @@ def _number(base, value):
     if base == "byte":
         return value - 256 if value > 127 else value
     return value
+
+
+def deserialize(message_type: MessageType, take: Callable[[int], bytes]) -> RosMessage:
+    """The message of MESSAGE_TYPE whose bytes ``take(count)`` gives, one piece after the other. It may raise what it likes at an end."""
+    message = message_type()
+    for field in message_type.fields:
+        setattr(message, field.attribute, _read_field(field, take))
+    return message
+
+
+def _read_field(field: Field, take: Callable[[int], bytes]) -> Any:
+    if not field.is_array:
+        return _read_one(field.base, take)
+    count = field.length or _LENGTH.unpack(take(4))[0]
+    return [_read_one(field.base, take) for _ in range(count)]
+
+
+def _read_one(base: str, take: Callable[[int], bytes]) -> Any:
+    form = _FORMATS.get(base)
+    if form is not None:
+        (number,) = struct.unpack("<" + form, take(struct.calcsize(form)))
+        if base == "bool":
+            return True if number else None
+        return lisp_float(number) if base in ("float32", "float64") else number
+    if base == "string":
+        return take(_LENGTH.unpack(take(4))[0]).decode("latin-1")
+    if base in ("time", "duration"):
+        seconds, nanoseconds = struct.unpack("<II" if base == "time" else "<ii", take(8))
+        return lisp_float(seconds + nanoseconds / 1e9)
+    return deserialize(part_class(base), take)

@@ -1,0 +1,122 @@
+"""ACTIONLIB's client: goals that are sent and followed by handles, several at a time (roslisp.md 13)."""
+
+import pytest
+
+EXPORTS = """make-action-client action-client wait-for-server call-goal send-goal wait-for-result make-action-goal cancel-goal cancel-all-goals
+cancel-at-before-time is-connected goal-handle goal-id goal-status comm-state terminal-state result goal feedback feedback-signal
+server-lost abort-goal start-action-server def-exec-callback succeed-current abort-current preempt-current publish-feedback
+cancel-request-received""".split()
+
+
+@pytest.fixture
+def client(lisp):
+    """`lisp` with a server that works on one goal at a time, and a client of ACTIONLIB."""
+    lisp("""(serve) (setf *client* (actionlib:make-action-client "count" "actionlib_tutorials/FibonacciAction"))
+            (actionlib:wait-for-server *client*)
+            (defun send (n &rest options) (apply #'actionlib:send-goal *client* (actionlib:make-action-goal *client* :order n) options))""")
+    return lisp
+
+
+def test_everything_is_exported_and_defined(lisp):
+    for name in EXPORTS:
+        assert lisp(f'(nth-value 1 (find-symbol "{name.upper()}" :actionlib))') == ":EXTERNAL", name
+        kinds = f"(fboundp 'actionlib:{name}) (macro-function 'actionlib:{name}) (find-class 'actionlib:{name} nil)"
+        assert name == "abort-goal" or lisp(f"(and (or {kinds}) t)") == "T", name
+
+
+def test_a_goal_is_sent_and_followed(client):
+    assert client("(defvar *h* (send 2)) (list (typep *h* 'actionlib:goal-handle) (stringp (actionlib:goal-id *h*)))") == "(T T)"
+    assert client("(list (actionlib:terminal-state *h*) (actionlib:result *h*))") == "(NIL NIL)"
+    assert client("(wait-duration 0.5) (list (actionlib:comm-state *h*) (actionlib:goal-status *h*))") == "(:ACTIVE :ACTIVE)"
+    assert client("(actionlib:wait-for-result *h* 0.5)") == "NIL"
+    assert client("(actionlib:wait-for-result *h* 0)") == "T"
+    assert client("(list (actionlib:comm-state *h*) (actionlib:terminal-state *h*) (sequence-of (actionlib:result *h*)))") == (
+        "(:DONE :SUCCEEDED #(2 2))"
+    )
+
+
+def test_a_goal_waits_for_the_server_s_word(client):
+    assert client("(actionlib:comm-state (send 2))") == ":WAITING-FOR-GOAL-ACK"
+
+
+def test_callbacks(client):
+    client("""(send 2 :active-cb (lambda () (note :active)) :feedback-cb (lambda (f) (note (sequence-of f)))
+                      :done-cb (lambda (state result) (note (list state (sequence-of result)))))""")
+    assert client("(wait-duration 3) *notes*") == "(:ACTIVE #(1) #(2) (:SUCCEEDED #(2 2)))"
+
+
+def test_two_goals_are_tracked_side_by_side(client):
+    """The server preempts the first for the second, and each handle knows of its own."""
+    client("(defvar *one* (send 9)) (wait-duration 1.5) (defvar *two* (send 1))")
+    assert (
+        client("""(list (actionlib:wait-for-result *one* 0) (actionlib:terminal-state *one*)
+                           (actionlib:wait-for-result *two* 0) (actionlib:terminal-state *two*))""")
+        == "(T :PREEMPTED T :SUCCEEDED)"
+    )
+    assert client("(list (sequence-of (actionlib:result *one*)) (sequence-of (actionlib:result *two*)))") == "(#(3) #(1 1))"
+
+
+def test_a_call_beside_a_goal_that_was_sent_loses_none_of_them(client):
+    client("(defvar *one* (send 9)) (wait-duration 1.5)")
+    assert client("(nth-value 1 (actionlib:call-goal *client* (goal 1)))") == ":SUCCEEDED"
+    assert client("(actionlib:terminal-state *one*)") == ":PREEMPTED"
+
+
+def test_calls_of_two_branches_of_a_plan_on_one_client(client):
+    assert (
+        client("""(let (one two)
+                       (cpl:top-level (par (setf one (nth-value 1 (actionlib:call-goal *client* (goal 5))))
+                                           (progn (wait-duration 1.5) (setf two (nth-value 1 (actionlib:call-goal *client* (goal 1)))))))
+                       (list one two))""")
+        == "(:PREEMPTED :SUCCEEDED)"
+    )
+
+
+def test_one_goal_is_cancelled_by_its_handle(client):
+    client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib:cancel-goal *h*)")
+    assert client("(list (actionlib:wait-for-result *h* 5) (actionlib:terminal-state *h*))") == "(T :PREEMPTED)"
+
+
+def test_goals_up_to_a_time_are_cancelled(client):
+    client("(defvar *early* (send 9)) (wait-duration 1.5) (actionlib:cancel-at-before-time *client* (- (ros-time) 1)) (wait-duration 1)")
+    client("(defvar *late* (send 1))")
+    assert client(
+        """(list (actionlib:wait-for-result *late* 0) (actionlib:terminal-state *early*) (actionlib:terminal-state *late*))"""
+    ) == ("(T :PREEMPTED :SUCCEEDED)")
+    assert client.error('(actionlib:cancel-at-before-time *client* "now")', "type-error")
+
+
+def test_all_goals_are_cancelled(client):
+    client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib:cancel-all-goals *client*)")
+    assert client("(list (actionlib:wait-for-result *h* 5) (actionlib:terminal-state *h*))") == "(T :PREEMPTED)"
+
+
+def test_the_client_stands_for_its_newest_goal(client):
+    client("(send 1)")
+    assert client("(list (actionlib:wait-for-result *client* 0) (actionlib:terminal-state *client*))") == "(T :SUCCEEDED)"
+    assert client("(stringp (actionlib:goal-id *client*))") == "T"
+
+
+def test_a_handle_whose_server_falls_silent_is_lost(lisp):
+    lisp("""(setf *client* (actionlib:make-action-client "nobody" "actionlib_tutorials/FibonacciAction"))
+            (defvar *h* (actionlib:send-goal *client* (goal 1)))""")
+    assert (
+        lisp("(list (actionlib:wait-for-result *h* 0) (actionlib:terminal-state *h*) (actionlib:is-connected *client*))") == "(T :LOST NIL)"
+    )
+
+
+@pytest.mark.parametrize("form", ["(actionlib:send-goal 4 (goal 1))", "(actionlib:cancel-goal 4)", "(actionlib:result nil)"])
+def test_what_is_no_client_is_a_type_error(client, form):
+    assert client.error(form, "type-error")
+
+
+def test_the_simple_client_still_forgets_the_goal_before(lisp):
+    lisp("(both) (defvar *states* nil) (actionlib-lisp:send-goal *client* (goal 9) :done-cb (lambda (s r) (push s *states*)))")
+    assert lisp("(actionlib-lisp:send-goal *client* (goal 1)) (actionlib-lisp:wait-for-result *client* 0)") == "T"
+    assert lisp("(list *states* (actionlib-lisp:state *client*))") == "(NIL :SUCCEEDED)"
+
+
+def test_goals_that_are_over_are_not_kept(client):
+    for _ in range(3):
+        client("(actionlib:wait-for-result (send 1) 0)")
+    assert len(client.value("*client*").tracked) == 0
