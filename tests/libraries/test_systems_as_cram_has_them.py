@@ -90,8 +90,9 @@ def test_the_exit_code_says_whether_all_passed(wrong):
     assert "HANGS hangs" in done.stdout and "plan-tests.lisp:" in done.stdout
 
 
-def test_pytest_runs_them_too(wrong):
-    asd = wrong / "cram_tray_delivery" / "cram-tray-delivery-tests.asd"
-    done = run(wrong, "pytest", "-q", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", str(asd))
-    assert "2 failed, 15 passed in" in done.stdout, done.stdout + done.stderr
+def test_pytest_runs_them_too_and_finds_the_system_beside_that_of_the_tests(wrong, tmp_path):
+    package = wrong / "cram_tray_delivery"
+    files = package / "cram-tray-delivery-tests.asd", package / "tests" / "time-tests.lisp"
+    done = run(tmp_path, "pytest", "-q", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", *map(str, files))
+    assert "2 failed, 20 passed in" in done.stdout, done.stdout + done.stderr
     assert done.returncode == 1

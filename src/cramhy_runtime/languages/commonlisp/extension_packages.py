@@ -27,7 +27,7 @@ INFINITIES = {
 """Constants of SB-EXT: what the printer writes for numbers without end must be read back."""
 
 
-LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL")
+LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL", "SB-INT")
 """The packages of which a part comes late."""
 
 

@@ -129,7 +129,8 @@ def find_asd(name):
         for path in _asd_files(folder):
             if path.name == wanted:
                 return path
-    return None
+    beside = (path.parent / wanted for path in (*_reading, *_read))  # a package's system and its tests have a file each
+    return next((path for path in beside if path.is_file()), None)
 
 
 def find_package_folder(name):
