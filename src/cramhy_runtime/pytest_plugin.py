@@ -209,10 +209,12 @@ class ChecksFailed(Exception):
 
 def _explained(problem):
     """What, where and why, as at the REPL; a Python error of the plugin itself keeps its Python text."""
+    from cramhy_runtime import kernel
     from cramhy_runtime.languages.commonlisp.tools.advice import explanation
     from cramhy_runtime.repl.session import condition_of
 
-    return explanation(condition_of(problem))
+    with kernel.at_hand():  # that of the test has ended
+        return explanation(condition_of(problem))
 
 
 def pytest_runtest_makereport(item, call):

@@ -7,6 +7,8 @@ import pytest
 from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
+collect_ignore = ["workspace"]  # packages that test_systems_as_cram_has_them.py runs in sessions and processes of their own
+
 
 @pytest.fixture
 def values(session):

@@ -26,7 +26,7 @@ from .dynamic import bind, binding, special, unbind
 from . import plain_answers  # noqa: F401  the ports have answers from here on
 from .ports import PORTS
 from .python_exceptions import condition_for
-from .packages import CURRENT, find_package_or_error, intern, is_symbol, sym
+from .packages import CURRENT, ensure_package, find_package_or_error, intern, is_symbol, sym
 from .restarts import *  # noqa: F403  they are part of this module's interface, as the classes are
 from .restarts import compute_restarts, innermost_restarts, restart_case, with_condition_restarts, with_simple_restart
 
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 _handlers = special(Symbol("*HANDLER-CLUSTERS*"), None)
 
 DEBUGGER_HOOK = special("*DEBUGGER-HOOK*")
+SBCL_HOOK = special(ensure_package("SB-EXT").intern("*INVOKE-DEBUGGER-HOOK*"))
+SBCL_HOOK.package.export(SBCL_HOOK)
 BREAK_ON_SIGNALS = special("*BREAK-ON-SIGNALS*")
 
 EVERYBODY = ("every handler on its way",)
@@ -327,11 +329,15 @@ def style_warn(control, *arguments):
 
 
 def enter_debugger(condition):
-    """Call ``*debugger-hook*``, then the installed debugger. Returns when neither leaves by a restart, as where nobody is asked."""
-    hook = DEBUGGER_HOOK.value
-    if truth(hook):
-        with binding(DEBUGGER_HOOK, None):
-            (hook.function if isinstance(hook, Symbol) else hook)(condition, hook)
+    """Call ``sb-ext:*invoke-debugger-hook*``, ``*debugger-hook*``, then the installed debugger.
+
+    Returns when none leaves by a restart, as where nobody is asked.
+    """
+    for variable in (SBCL_HOOK, DEBUGGER_HOOK):
+        hook = variable.value
+        if truth(hook):
+            with binding(variable, None):
+                (hook.function if isinstance(hook, Symbol) else hook)(condition, hook)
     if _debugger.value is not None:
         _debugger.value(condition)
 

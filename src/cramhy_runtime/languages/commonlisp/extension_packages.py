@@ -27,7 +27,7 @@ INFINITIES = {
 """Constants of SB-EXT: what the printer writes for numbers without end must be read back."""
 
 
-LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL")
+LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL", "SB-INT")
 """The packages of which a part comes late."""
 
 
@@ -66,8 +66,9 @@ def define_faces():
             environment: environment.EXTENSION_NAMES,
         },
         variables={**INFINITIES, **environment.EXTENSION_VARIABLES},
-        export="""muffle-conditions unmuffle-conditions disable-package-locks enable-package-locks
-                maybe-inline truly-dynamic-extent global always-bound freeze-type deprecated inhibit-warnings""",
+        export="""muffle-conditions unmuffle-conditions disable-package-locks enable-package-locks without-package-locks
+                with-unlocked-packages exit quit maybe-inline truly-dynamic-extent
+                global always-bound freeze-type deprecated inhibit-warnings""",
     )
     for name in INFINITIES:
         sym(f"SB-EXT::{name.upper()}").constant = True

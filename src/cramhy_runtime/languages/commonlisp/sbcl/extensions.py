@@ -10,11 +10,13 @@ import sys
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import hash_tables
+from cramhy_runtime.ground.condition_types import SeriousCondition
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, boolean, lisp_list
+from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, boolean, lisp_list, list_from
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.hash_tables import need_table
 from cramhy_runtime.ground.packages import printed, sym
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.locks import lock_of_table
 
@@ -113,6 +115,33 @@ def assert_version(*least: int) -> None:
 
 def no_effect(*arguments: object) -> None:
     """Functions that change how SBCL works inside, of which there is nothing here."""
+
+
+_exit_hooks: list[Any] = per_image([])
+
+
+def exit_hooks() -> object:
+    """The value of ``sb-ext:*exit-hooks*``: functions that are called when the session ends."""
+    return list_from(_exit_hooks)
+
+
+def set_exit_hooks(hooks: Any) -> None:
+    """Assign ``sb-ext:*exit-hooks*``."""
+    _exit_hooks[:] = list(hooks or ())
+    if _exit_hooks and kernel.active() is not None:
+        kernel.active().at_stop(_run_exit_hooks)
+
+
+def _run_exit_hooks() -> None:
+    hooks, _exit_hooks[:] = list(_exit_hooks), []
+    for hook in hooks:
+        function_of(hook)()
+
+
+class InteractiveInterrupt(SeriousCondition):
+    """What SBCL signals for Ctrl-C. Here Ctrl-C is no condition: it ends the form through its cleanup."""
+
+    lisp_name = "SB-SYS::INTERACTIVE-INTERRUPT"
 
 
 def save_lisp_and_die(core: Any, **options: object) -> object:

@@ -64,13 +64,16 @@ class Mutex(Lock):
             me.local.waits_for = None
 
     def _refuse_deadlock(self, me: Task[object]) -> None:
-        cycle, task, mutex = [], me, self
-        while mutex is not None and task is not None:
+        """An error if waiting for this mutex would close a circle."""
+        cycle: list[tuple[Task[object], Mutex]] = [(me, self)]
+        task = self.holder
+        while task is not me:
+            mutex = getattr(task.local, "waits_for", None)
+            if mutex is None or mutex.holder is None or mutex.holder is task:  # it has been given what it waited for
+                return
             cycle.append((task, mutex))
             task = mutex.holder
-            if task is me:
-                error(ThreadDeadlock(thread=thread_of(me), cycle=cycle))
-            mutex = None if task is None else getattr(task.local, "waits_for", None)
+        error(ThreadDeadlock(thread=thread_of(me), cycle=cycle))
 
 
 def _mutex(thing: object) -> Mutex:

@@ -49,6 +49,9 @@ TABLES = (
         ("(with-current-source-form (source...) form...)", "(progn form...)", "The body."),
     ),
     Table(
+        "SB-INT", ("(with-float-traps-masked (trap...) form...)", "(progn form...)", "The body: a division by zero in it stays an error.")
+    ),
+    Table(
         "SB-SYS",
         (
             "(with-deadline (option...) form...)",

@@ -83,6 +83,9 @@ def _names(functions: dict) -> list[str]:
 
 def define_extensions() -> None:
     """The part of SB-EXT that most programs do not name."""
+    package = find_package_or_error("SB-EXT")
+    if not package.present("*EXIT-HOOKS*"):
+        package.export(define_task_state("SB-EXT", "*EXIT-HOOKS*", extensions.exit_hooks, extensions.set_exit_hooks))
     define_face(
         "SB-EXT",
         functions={
@@ -147,6 +150,11 @@ def define_debug() -> None:
     )
 
 
+def define_internals() -> None:
+    """The one macro of SB-INT that programs use."""
+    _macros("SB-INT")
+
+
 def define_gray() -> None:
     """SB-GRAY."""
     from . import gray_streams
@@ -167,6 +175,7 @@ MAKERS = {
     "SB-SYS": define_system,
     "SB-POSIX": define_posix,
     "SB-DEBUG": define_debug,
+    "SB-INT": define_internals,
     "SB-GRAY": define_gray,
     "SB-MOP": define_metaobjects,
     "SB-PCL": define_metaobjects,

@@ -156,7 +156,11 @@ def find_asd(name):
         if os.path.isfile(folder / wanted):
             return folder / wanted
     found = _find_below(wanted)
-    return _find_below(wanted) if found is None and look_again() else found
+    if found is None and look_again():
+        found = _find_below(wanted)
+    if found is None:  # a package's system and its tests have a file each
+        found = next((path.parent / wanted for path in (*_reading, *_read) if (path.parent / wanted).is_file()), None)
+    return found
 
 
 def _find_below(wanted, on_path_only=False):

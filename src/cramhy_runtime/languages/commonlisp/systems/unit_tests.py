@@ -85,8 +85,14 @@ def _loaded(package):
     return package not in packages.on_demand and packages.find_package(package) is not None
 
 
+def _symbol(name):
+    """The symbol ``"LIBRARY::NAME"`` of this image: each image loads the libraries for itself, so `sym` must not remember it."""
+    package, _, short = name.rpartition("::")
+    return packages.intern(short, package or "COMMON-LISP")
+
+
 def _call(name, *arguments):
-    return sym(name).function(*arguments)
+    return _symbol(name).function(*arguments)
 
 
 def _place(lisp_list):
@@ -97,13 +103,13 @@ def defined_tests(files=None):
     """The tests that have been defined, in order; of ``files`` only, if they are given."""
     found = []
     if _loaded("LISP-UNIT"):
-        for package, table in sym("LISP-UNIT::*TESTS*").value.items():
+        for package, table in _symbol("LISP-UNIT::*TESTS*").value.items():
             found += [LispTest("lisp-unit", name, package, _place(_call("LISP-UNIT::PLACE", test)), test) for name, test in table.items()]
     if _loaded("FIVEAM"):
-        case = _call("COMMON-LISP::FIND-CLASS", sym("FIVEAM::TEST-CASE"))
+        case = _call("COMMON-LISP::FIND-CLASS", _symbol("FIVEAM::TEST-CASE"))
         found += [
             LispTest("fiveam", name, _call("FIVEAM::RUNTIME-PACKAGE", test), _place(_call("FIVEAM::PLACE", test)), test)
-            for name, test in sym("FIVEAM::*TESTS*").value.items()
+            for name, test in _symbol("FIVEAM::*TESTS*").value.items()
             if isinstance(test, case)
         ]
     if files is None:
@@ -132,7 +138,7 @@ def within_limit(thunk):
         return error(from_python(problem))
     finally:
         if _loaded("FIVEAM"):
-            settings.took[sym("FIVEAM::*CURRENT-TEST*").value] = time.perf_counter() - begun
+            settings.took[_symbol("FIVEAM::*CURRENT-TEST*").value] = time.perf_counter() - begun
 
 
 def printed(function, *arguments):
@@ -153,25 +159,28 @@ def _outcome_of_lisp_unit(result, package):
         for failure in _call("LISP-UNIT::FAIL", result) or ():
             outcome.failures.append(
                 Failure(
-                    printed(sym("LISP-UNIT::PRINT-FAILURES").function, failure).rstrip(" |\n"), _place(_call("LISP-UNIT::PLACE", failure))
+                    printed(_symbol("LISP-UNIT::PRINT-FAILURES").function, failure).rstrip(" |\n"),
+                    _place(_call("LISP-UNIT::PLACE", failure)),
                 )
             )
         if _call("LISP-UNIT::EXERR", result) is not None:
             outcome.failures.append(
-                Failure(printed(sym("LISP-UNIT::PRINT-ERRORS").function, result).rstrip(" |\n"), _place(_call("LISP-UNIT::PLACE", result)))
+                Failure(
+                    printed(_symbol("LISP-UNIT::PRINT-ERRORS").function, result).rstrip(" |\n"), _place(_call("LISP-UNIT::PLACE", result))
+                )
             )
     return outcome
 
 
 def _run_fiveam(test):
-    with binding(sym("FIVEAM::*TEST-DRIBBLE*"), None):
+    with binding(_symbol("FIVEAM::*TEST-DRIBBLE*"), None):
         return _outcome_of_fiveam(list(_call("FIVEAM::RUN", test.symbol) or ()), test.object)
 
 
 def _outcome_of_fiveam(results, test):
     """The `Outcome` of ``test``, an object of FiveAM, from ``results``, the newest first; they may be those of tests that it needs, too."""
     outcome = Outcome()
-    kinds = [_call("COMMON-LISP::FIND-CLASS", sym(f"FIVEAM::{name}")) for name in ("TEST-PASSED", "TEST-SKIPPED")]
+    kinds = [_call("COMMON-LISP::FIND-CLASS", _symbol(f"FIVEAM::{name}")) for name in ("TEST-PASSED", "TEST-SKIPPED")]
     for result in reversed(results):
         owner = _call("FIVEAM::TEST-CASE", result)
         if isinstance(result, kinds[0]):
@@ -268,8 +277,8 @@ def run_all(tests):
 def _run_all_of_lisp_unit(tests):
     ours = [test for test in tests if test.library == "lisp-unit"]
     for package in dict.fromkeys(test.package for test in ours):
-        shown = sym("LISP-UNIT::*PRINT-FAILURES*"), True, sym("LISP-UNIT::*PRINT-ERRORS*"), True
-        results = _call("MAKE-INSTANCE", sym("LISP-UNIT::TEST-RESULTS-DB"))
+        shown = _symbol("LISP-UNIT::*PRINT-FAILURES*"), True, _symbol("LISP-UNIT::*PRINT-ERRORS*"), True
+        results = _call("MAKE-INSTANCE", _symbol("LISP-UNIT::TEST-RESULTS-DB"))
         for test in ours:
             if test.package is package:
                 begun = time.perf_counter()
