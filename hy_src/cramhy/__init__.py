@@ -10,6 +10,15 @@ import hy  # teaches Python to import .hy files
 
 from . import language
 from cramhy_runtime.cli import live_page
+from cramhy_runtime.cpl import (  # noqa: F401  the classes of failures, by the names of Python
+    CompositeFailure,
+    PlanFailure,
+    PolicyCheckConditionMet,
+    PolicyFailure,
+    PolicyInitFailed,
+    PolicyNotFound,
+    SimplePlanFailure,
+)
 from cramhy_runtime.languages.hy.plan_macros import functions
 from cramhy_runtime.languages.hy.required_macros import RequiredMacros
 

@@ -81,6 +81,10 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   (setv problem.hint form)
   (error problem))
 
+(defn is-code [part]
+  "Whether PART is Hy code in a Lisp form, such as the name of a class with its module before it."
+  (hasattr part "model"))
+
 (defn failure-types [clause]
   "The types of the conditions that a clause of `with-failure-handling` handles."
   (defn no-clause [why]
@@ -91,9 +95,9 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   (setv named clause.car parameters (elements clause.cdr.car) unions (and (listp named) (is named.car (sym "OR"))))
   (setv types (if unions (elements named.cdr) [named]))
   (for [each types]
-    (unless (is-symbol each)
+    (unless (or (is-symbol each) (is-code each))
       (no-clause (if unions "OR takes names of condition types." "its type must be a name or (OR name*).")))
-    (mention-type each))
+    (when (is-symbol each) (mention-type each)))
   (setv required (list (itertools.takewhile (fn [name] (not (.startswith (symbol-name name) "&"))) parameters)))
   (when (or (> (len required) 1) (not parameters))
     (no-clause "its parameter list must take one argument, the condition."))
@@ -115,7 +119,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
             (if (and (is variables.cdr None) (not (.startswith (symbol-name variables.car) "&")))
                 `(lambda [~variables.car ~again] ~@body)
                 `(lambda [~condition ~again] (funcall (lambda ~variables ~@body) ~condition))))))
-  (lfor #(each function) (.items found) `(list (quote ~each) ~function)))
+  (lfor #(each function) (.items found) `(list ~(if (is-code each) each `(quote ~each)) ~function)))
 
 (defoperator with-failure-handling [clauses #* body]
   (setv again (gensym "RETRY"))

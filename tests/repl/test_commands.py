@@ -9,7 +9,8 @@ import platform
 import pytest
 from systems import RUNS_HY_FILES, WHY_NO_HY_FILES
 
-from cramhy_runtime import __version__
+from cramhy_runtime import __version__, cli
+from cramhy_runtime.session import Image
 
 from .terminal import Terminal
 
@@ -214,3 +215,41 @@ def test_a_folder_that_cannot_be_read_hides_no_packages_elsewhere(tmp_path, monk
     monkeypatch.setattr(os, "access", lambda path, mode: path.name != "closed")
     found = workspace.packages()
     assert "yours" in found and "turtlesim" in found and "mine" not in found
+
+
+class TestFilesThatAreMissing:
+    """A command that is given a file which is not there says so, and does not speak of systems."""
+
+    @pytest.mark.parametrize(
+        "words, told, hint",
+        [
+            (["run", "spiral.lsp"], "spiral.lsp: No such file or directory.", "Did you mean spiral.lisp?"),
+            (["run", "spirl.lisp"], "spirl.lisp: No such file or directory.", "Did you mean spiral.lisp?"),
+            (["run", "spiral"], "spiral: No such file or directory.", "Did you mean spiral.lisp?"),
+            (
+                ["run", "./nothing"],
+                "nothing: No such file or directory.",
+                "What is loaded is a .lisp, .hy or .asd file, or a system by its name.",
+            ),
+            (["run", "no/where.hy"], "no/where.hy: No such file or directory.", ""),
+            (["run", "nothing.asd"], "nothing.asd: No such file or directory.", ""),
+            (["run", "folder"], "folder: Is a directory.", "What is loaded is a .lisp, .hy or .asd file, or a system by its name."),
+            (["test", "spiral.lsp"], "spiral.lsp: No such file or directory.", "Did you mean spiral.lisp?"),
+            (["eval", "--load", "spiral.lsp"], "spiral.lsp: No such file or directory.", "Did you mean spiral.lisp?"),
+        ],
+    )
+    def test_it_says_so(self, tmp_path, monkeypatch, capfd, words, told, hint):
+        (tmp_path / "spiral.lisp").write_text("(print 1)\n")
+        (tmp_path / "folder").mkdir()
+        monkeypatch.chdir(tmp_path)
+        with Image():
+            assert cli.main(words) == 1
+        shown = "".join(capfd.readouterr())
+        assert shown == f"cramhy: FILE-ERROR\n  Cannot load {tmp_path}/{told}\n" + (f"  {hint}\n" if hint else "")
+
+    @pytest.mark.parametrize("name", ["no-such-system", "alexandria/tests", "cram-math/nothing"])
+    def test_a_name_without_a_file_is_that_of_a_system(self, tmp_path, monkeypatch, capfd, name):
+        monkeypatch.chdir(tmp_path)
+        with Image():
+            assert cli.main(["run", name]) == 1
+        assert f'ASDF:MISSING-COMPONENT\n  Component "{name}" not found' in "".join(capfd.readouterr())

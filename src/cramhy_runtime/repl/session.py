@@ -23,7 +23,8 @@ from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import all_values, list_from
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package_or_error, on_demand, registered, sym
+from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package_or_error, near_names, on_demand, registered, sym
+from cramhy_runtime.ros.search_folders import entries, is_file
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 from cramhy_runtime.ground.source_places import circumstance, locate
 from cramhy_runtime.session import fresh_start
@@ -156,7 +157,9 @@ class Session:
     def _load(self, system):
         from cramhy_runtime.languages.commonlisp.systems import loader
 
-        if system.endswith((".lisp", ".hy")):
+        if self._is_missing_file(system):
+            self._no_file(system)
+        elif system.endswith((".lisp", ".hy")):
             loader.load_file(system, as_source=True)
         elif system.endswith(".asd"):
             systems.load_asd(system)
@@ -169,6 +172,33 @@ class Session:
             )
         else:
             systems.load_system(system)
+
+    @staticmethod
+    def _is_missing_file(name):
+        """Whether ``name`` is meant for a file that is not there, and not for a system."""
+        path = Path(name)
+        if path.is_file():
+            return False
+        if path.suffix in (".lisp", ".hy", ".asd"):
+            return True
+        beside = any(os.path.isfile(f"{name}{suffix}") for suffix in (".lisp", ".hy"))
+        if not (beside or path.is_dir() or path.suffix[1:].isalpha() or path.is_absolute() or name.startswith(".")):
+            return False
+        system = name.lower()
+        return not systems.is_provided(system) and system not in systems.systems and systems.find_asd(system) is None
+
+    @staticmethod
+    def _no_file(name):
+        """Signal that the file ``name`` is missing; what stands beside its place is suggested."""
+        path = Path(name)
+        beside = [entry.name for entry in entries(path.parent) if entry.name.endswith((".lisp", ".hy", ".asd")) and is_file(entry)]
+        near = [other for other in beside if Path(other).stem == path.stem] or near_names(path.name, beside)
+        what = "Is a directory" if path.is_dir() else "No such file or directory"
+        hint = None if path.suffix in (".lisp", ".hy", ".asd") else "What is loaded is a .lisp, .hy or .asd file, or a system by its name."
+        conditions.error(
+            conditions.types.FileError(name, "Cannot load ~A: ~A.", str(path.absolute()), what),
+            hint=f"Did you mean {' or '.join(near)}?" if near else hint,
+        )
 
     def test(self, path: str, junit: str | None = None) -> bool:
         """Run the tests of a system by name, a file, or the test files below a folder; whether there were some and all passed.
@@ -210,6 +240,8 @@ class Session:
         return not any(result.kind == "failed" for result in results)
 
     def _tests(self, path):
+        if not Path(path).is_dir() and self._is_missing_file(path):
+            self._no_file(path)
         if Path(path).is_dir():
             files = sorted(file for file in Path(path).rglob("*") if unit_tests.looks_like_tests(file))
             return [test for file in files for test in unit_tests.load_tests(file)]

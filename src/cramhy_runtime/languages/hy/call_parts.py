@@ -102,8 +102,10 @@ class Call:
             return Code(models.Expression([call_of("items"), argument]))
         if isinstance(item, Word) and item in CODE and (item in ("form", "body-form") or not _is_object(argument)):
             return self.code_part(argument)
+        if item == "failure-type" and _is_dotted(argument):  # module.Class
+            return Code(argument)
         if item == "failure-type" and isinstance(argument, models.Tuple):
-            made = Cons(sym("OR"), self.data(argument))
+            made = Cons(sym("OR"), list_from([Code(each) if _is_dotted(each) else self.data(each) for each in argument]))
         else:
             made = self.data(argument)
         if item in ("function", "failure-type"):

@@ -14,6 +14,7 @@ from itertools import product
 
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, LispString
+from cramhy_runtime.ground.heap import check_room
 from .arrays import array_element_type, dimensions_of, without_fill_pointer
 from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
@@ -75,6 +76,8 @@ def make_array(
     element_type = upgraded_element_type(element_type)
     adjustable = adjustable is not None and adjustable is not False
     size = math.prod(dimensions)
+    if displaced_to is None or displaced_to is False:
+        check_room(size)
     if len(dimensions) != 1 and fill_pointer is not None and fill_pointer is not False:
         error("Only vectors can have fill pointers.")
     fill_pointer = _fill_pointer(fill_pointer, size)

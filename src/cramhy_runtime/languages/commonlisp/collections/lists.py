@@ -14,6 +14,7 @@ import itertools
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import STRETCH, Cons, MultipleValues, conses, list_end, list_from, list_parts
 from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.heap import CONS, check_room
 from cramhy_runtime.kernel.active import checkpoint
 
 LISP_NAMES = """
@@ -211,7 +212,9 @@ def list_star(item, *items):
 
 def make_list(size, *, initial_element=None):
     """``make-list``: a list of ``size`` elements."""
-    return list_from([initial_element] * index_of(size, expected="(UNSIGNED-BYTE 58)"))
+    size = index_of(size, expected="(UNSIGNED-BYTE 58)")
+    check_room(size, CONS)
+    return list_from([initial_element] * size)
 
 
 def copy_list(lst):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import STRETCH, TEXTS, UNSUPPLIED, Character, Cons, FreshString, LispString, list_from
+from cramhy_runtime.ground.heap import CONS, POINTER, check_room
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.packages import sym
 from .element_types import check_element
@@ -137,6 +138,7 @@ def make_sequence(result_type, size, *, initial_element=UNSUPPLIED):
     if size.__class__ is not int or size < 0:
         type_error(size, INDEX_TYPE, "\nwhen binding LENGTH")
     wanted.check_length(size)
+    check_room(size, POINTER if wanted.element_type is not None else CONS)
     if wanted.element_type is None:
         return list_from([None if initial_element is UNSUPPLIED else initial_element] * size)
     if initial_element is UNSUPPLIED:

@@ -14,6 +14,7 @@ from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, LispString
 from cramhy_runtime.ground.equality import folded
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.ground.heap import check_room
 from .arrays import InvalidArrayIndex
 from .characters import downcased, is_alphanumeric, upcased
 from .sequence_types import INDEX_TYPE, bounds, constant_changed, elements
@@ -63,6 +64,7 @@ def make_string(size, *, initial_element=UNSUPPLIED, element_type=None):
     """``make-string``: a string of ``size`` characters that can be changed in place."""
     if size.__class__ is not int or size < 0:
         type_error(size, INDEX_TYPE, "\nwhen binding COUNT")
+    check_room(size, 1)
     if initial_element is UNSUPPLIED:
         return FreshString("\0" * size)
     if initial_element.__class__ is not Character:
