@@ -14,7 +14,7 @@ from cramhy_runtime.robot_world.descriptions import Description, DescriptionErro
 
 
 @pytest.mark.skipif(not FIGURES.is_dir(), reason="needs ../shared/robots")
-@pytest.mark.parametrize("file", ["pr2.urdf", "kitchen.urdf"])
+@pytest.mark.parametrize("file", ["pr2.urdf", "kitchen.urdf", "objects.json"])
 def test_our_files_are_made_from_the_figures(file):
     assert (DATA / file).read_text() == made()[file]
 

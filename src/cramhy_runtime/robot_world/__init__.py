@@ -2,6 +2,7 @@
 
 ========================  ===========================================================================================
 ``descriptions``          links, joints and shapes of a robot or of furniture; ``urdf`` reads and writes them as URDF
+``models``                the PR2, the kitchen and the objects that come with cramhy
 ``skeleton``              where the links are, given the joints (forward kinematics)
 ``inverse_kinematics``    the joints, given where the tool is to be
 ``placements``            positions and rotations, and the poses of plans
