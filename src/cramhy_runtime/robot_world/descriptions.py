@@ -86,7 +86,7 @@ class Joint:
         return min(max(value, self.lower), self.upper)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Description:
     """Links and joints, as a tree.
 

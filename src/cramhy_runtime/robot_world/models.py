@@ -1,7 +1,7 @@
 """What comes with cramhy to fill a world: the PR2, the kitchen of Bremen, and the objects of the tutorials.
 
-The figures (sizes, joints, limits) are those of the original's files; the shapes are boxes, cylinders and spheres of our own. An object's pose is
-where the origin of the original's mesh is, which is not its middle.
+The figures (sizes, joints, limits) are those of the original's files; the shapes are boxes, cylinders and spheres of our own. An object's
+pose is where the origin of the original's mesh is, which is not its middle.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ numpy array in the order of `Skeleton.joints`, radians or metres. Poses of links
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from .placements import Placement
+
+
+@functools.lru_cache(maxsize=64)
+def skeleton_of(description: Description) -> Skeleton:
+    """The skeleton of a description, made once."""
+    return Skeleton(description)
 
 
 class Skeleton:

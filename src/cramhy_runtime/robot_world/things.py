@@ -18,13 +18,26 @@ if TYPE_CHECKING:
 
     from .descriptions import Description, Shape
     from .skeleton import Skeleton
+    from .world import World
 
 Colour = tuple[float, float, float, float]
 GREY: Colour = (0.5, 0.5, 0.5, 1.0)
 
 
-@dataclass
-class Item:
+class Thing:
+    """What is in a world."""
+
+    lisp_name = "ROBOT-WORLD::THING"
+    name: Hashable
+    placement: Placement
+    world: World | None = None
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}>"
+
+
+@dataclass(eq=False, repr=False)
+class Item(Thing):
     """A rigid object.
 
     name: what the world knows it by. shapes: what it is made of, in its own frame. placement: where it is in the world. mass: kilograms; 0
@@ -52,8 +65,8 @@ class Grip:
     loose: bool = False
 
 
-@dataclass
-class Machine:
+@dataclass(eq=False, repr=False)
+class Machine(Thing):
     """A robot, or furniture.
 
     name: what the world knows it by. skeleton: computes where its links are. placement: where its root is in the world. joints: their

@@ -8,29 +8,38 @@ Law: after each function the things are consistent: what is held is where its li
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import list_from
+
 from .placements import Placement, placement
 from .scene import FLOOR, Part, Scene
-from .skeleton import Skeleton
-from .things import GREY, Colour, Grip, Item, Machine
+from .skeleton import Skeleton, skeleton_of
+from .things import GREY, Colour, Grip, Item, Machine, Thing
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
 
     from .descriptions import Description, Shape
 
-    Thing = Item | Machine
+
+T = TypeVar("T", bound=Thing)
 
 
-class WorldError(ValueError):
+class WorldError(SimpleError):
     """Something was asked of a world that it cannot do: a thing that is not there, a name that is taken, a link that there is not."""
+
+    lisp_name = "ROBOT-WORLD::WORLD-ERROR"
 
 
 class World:
     """Things by their names, in the order in which they were added."""
+
+    lisp_name = "ROBOT-WORLD::WORLD"
 
     def __init__(self) -> None:
         self.things: dict[Hashable, Thing] = {}
@@ -56,19 +65,22 @@ class World:
         self, name: Hashable, description: Description | Skeleton, at: Placement | None = None, joints: Mapping[str, float] | None = None
     ) -> Machine:
         """Add a robot, or furniture, with the given positions of its joints, the others 0. Errors: `WorldError`, when the name is taken."""
-        skeleton = description if isinstance(description, Skeleton) else Skeleton(description)
+        skeleton = description if isinstance(description, Skeleton) else skeleton_of(description)
         return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {})))
 
-    def _add(self, thing: Thing) -> Thing:
+    def _add(self, thing: T) -> T:
         if thing.name in self.things or thing.name == FLOOR:
-            raise WorldError(f"there is a thing named {thing.name} already.")
+            error(WorldError("there is a thing named ~S already.", thing.name))
         self.things[thing.name] = thing
+        thing.world = self
         self._scene = None
         return thing
 
     def remove(self, name: Hashable) -> None:
         """Take a thing away; who holds it holds it no more. Errors: `WorldError`, when it is not there."""
-        del self.things[self.thing(name).name]
+        thing = self.thing(name)
+        del self.things[name]
+        thing.world = None
         for machine in self.machines():
             machine.holds.pop(name, None)
         self._scene = None
@@ -77,22 +89,21 @@ class World:
         """The thing of that name. Errors: `WorldError`, when there is none."""
         found = self.things.get(name)
         if found is None:
-            known = ", ".join(map(str, self.things)) or "none"
-            raise WorldError(f"there is no thing named {name}; there are {known}.")
+            return error(WorldError("there is no thing named ~S; there are ~:[none~;~:*~{~S~^, ~}~].", name, list_from(self.things)))
         return found
 
     def item(self, name: Hashable) -> Item:
         """The item of that name. Errors: `WorldError`."""
         found = self.thing(name)
         if not isinstance(found, Item):
-            raise WorldError(f"{name} has joints; an item was expected.")
+            error(WorldError("~S has joints; an item was expected.", name))
         return found
 
     def machine(self, name: Hashable) -> Machine:
         """The robot, or furniture, of that name. Errors: `WorldError`."""
         found = self.thing(name)
         if not isinstance(found, Machine):
-            raise WorldError(f"{name} has no joints; a robot or furniture was expected.")
+            error(WorldError("~S has no joints; a robot or furniture was expected.", name))
         return found
 
     def items(self) -> list[Item]:
@@ -118,7 +129,7 @@ class World:
         machine = self.machine(name)
         for joint in joints:
             if joint not in machine.skeleton.joint_numbers:
-                raise WorldError(f"{name} has no joint {joint} that moves.")
+                error(WorldError("~S has no joint ~A that moves.", name, joint))
         machine.bend(joints)
         self._carry(machine)
         self._placed = False
@@ -127,7 +138,7 @@ class World:
         """Where a link of a machine is. Errors: `WorldError`, for a link that it has not."""
         machine = self.machine(name)
         if link not in machine.skeleton.links:
-            raise WorldError(f"{name} has no link {link}.")
+            error(WorldError("~S has no link ~A.", name, link))
         return machine.link(link)
 
     def _carry(self, machine: Machine) -> None:
@@ -196,5 +207,7 @@ class World:
     def copy(self) -> World:
         """A world with the same things at the same places, which goes its own way."""
         new = World()
-        new.things = {name: thing.copy() for name, thing in self.things.items()}
+        for name, thing in self.things.items():
+            new.things[name] = copied = thing.copy()
+            copied.world = new
         return new
