@@ -153,4 +153,4 @@ def test_methods_of_a_program_on_worlds_and_objects(ask):
     ask("(defmethod kind ((thing btr:item)) :item)")
     ask("(defmethod kind ((thing btr:robot-object)) :robot)")
     assert ask("(mapcar #'kind (btr:objects *world*))") == "(:ROBOT :ROBOT :ITEM :ITEM)"
-    assert ask('(subseq (format nil "~s" (named \'cup)) 0 29)') == '"#<CRAM-BULLET-REASONING:ITEM"'
+    assert ask('(subseq (format nil "~s" (named \'cup)) 0 28)') == '"#<CRAM-BULLET-REASONING:ITEM"'
