@@ -11,6 +11,6 @@
    #:environment-manipulation-event #:container-opening-event #:container-closing-event
    #:event-object-designator #:perception-source #:event-object-name #:event-arm #:opening-distance
    #:environment-event-joint-name #:environment-event-arm #:environment-event-object #:environment-event-distance
-   #:event-object #:link #:event-link #:side #:event-side #:event #:object #:object-designator #:container-handle-grasping-event
+   #:event-object #:link #:event-link #:side #:event-side #:object #:object-designator #:container-handle-grasping-event
    ;; occasions
    #:object-in-hand #:object-placed-at #:object-picked #:object-put #:loc #:looking-at #:arms-parked))
