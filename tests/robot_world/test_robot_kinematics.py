@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from make_descriptions import FIGURES
 
+pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
+
 from cramhy_runtime.robot_world.descriptions import Description, Joint, Link
 from cramhy_runtime.robot_world.inverse_kinematics import PRECISION, Reach
 from cramhy_runtime.robot_world.placements import Placement, placement

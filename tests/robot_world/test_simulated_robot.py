@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
+
 from cramhy_runtime.robot_world.descriptions import Frame, Shape, turned
 from cramhy_runtime.robot_world.placements import placement
 from cramhy_runtime.robot_world.simulated_robot import (

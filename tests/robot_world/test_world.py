@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
+
 from cramhy_runtime.robot_world import vision
 from cramhy_runtime.robot_world.descriptions import Frame, Shape, turned
 from cramhy_runtime.robot_world.placements import Placement, of_pose, placement
