@@ -1,6 +1,6 @@
 (defsystem "cram-bullet-reasoning"
   :description "Worlds of robots and objects, and reasoning about them: what lies where, touches, stands, is seen."
-  :depends-on ("cl-bullet" "cram-prolog" "cram-utilities" "cl-transforms-stamped")
+  :depends-on ("cl-bullet" "cram-prolog" "cram-utilities" "cl-transforms-stamped" "cram-robot-interfaces" "cram-tf")
   :serial t
   :components ((:file "package")
                (:file "world")

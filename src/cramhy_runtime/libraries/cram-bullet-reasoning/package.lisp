@@ -1,7 +1,7 @@
 ;;;; cram-bullet-reasoning: worlds of robots and objects, and what can be said about them.
 
 (defpackage #:cram-bullet-reasoning
-  (:use #:common-lisp #:prolog #:cl-bullet #:cut #:cl-transforms-stamped)
+  (:use #:common-lisp #:prolog #:cl-bullet #:cut #:cram-robot-interfaces #:cl-transforms-stamped #:cram-tf)
   (:nicknames #:btr)
   (:shadow #:copy-object)
   (:shadowing-import-from #:cl-bullet #:pose #:points)

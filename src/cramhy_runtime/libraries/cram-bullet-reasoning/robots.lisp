@@ -71,9 +71,7 @@
 
 (defun get-robot-name ()
   "The name of the robot that a fact (robot name) tells of, or nil."
-  (let ((robot (find-symbol "ROBOT" "CRAM-ROBOT-INTERFACES")))
-    (when robot
-      (cdr (assoc '?name (lazy-car (prolog (list robot '?name))))))))
+  (cdr (assoc '?name (lazy-car (prolog '(robot ?name))))))
 
 (defun get-robot-object ()
   "The robot in the current world, or nil."

@@ -1,4 +1,4 @@
-"""The Lisp package ROBOT-WORLD: the functions of ``world_calls.py``, and the classes of worlds, items and machines.
+"""The Lisp package ROBOT-WORLD: the functions of ``world_calls.py`` and ``motion_calls.py``, and the classes of worlds, items and machines.
 
 It is made when a program first names it, which the libraries ``cl-bullet``, ``cram-bullet-reasoning`` and ``cl-urdf`` do.
 """
@@ -12,7 +12,7 @@ from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.world import World
 
 from ...packages.face_definition import define_face
-from . import world_calls
+from . import motion_calls, world_calls
 
 CLASSES = {"WORLD": World, "THING": Thing, "ITEM": Item, "MACHINE": Machine, "DESCRIPTION": Description, "LINK": Link, "JOINT": Joint}
 
@@ -20,6 +20,11 @@ CLASSES = {"WORLD": World, "THING": Thing, "ITEM": Item, "MACHINE": Machine, "DE
 def define_faces() -> None:
     """Make the package."""
     on_demand.pop("ROBOT-WORLD", None)
-    package = define_face("ROBOT-WORLD", use=("COMMON-LISP",), functions={world_calls: world_calls.LISP_NAMES}, export=" ".join(CLASSES))
+    package = define_face(
+        "ROBOT-WORLD",
+        use=("COMMON-LISP",),
+        functions={world_calls: world_calls.LISP_NAMES, motion_calls: motion_calls.LISP_NAMES},
+        export=" ".join(CLASSES),
+    )
     for name, cls in CLASSES.items():
         register_class(package.intern(name), cls)
