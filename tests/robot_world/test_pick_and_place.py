@@ -52,7 +52,7 @@ def ask(session):
     session.evaluate_text(FRESH)
 
     def asked(form):
-        caught = f'(handler-case {form} (error (problem) (format nil "~a: ~a" (type-of problem) problem)))'
+        caught = f'(handler-case {form} (serious-condition (problem) (format nil "~a: ~a" (type-of problem) problem)))'
         return prin1_to_string(session.evaluate_text(caught)[0]).strip('"')
 
     return asked

@@ -1,7 +1,7 @@
 """The functions of the Lisp package ROBOT-WORLD that move a simulated robot.
 
-A robot is given as a machine of a world and the list of its parts, which `make_parts` makes. What a motion could not do is its value, and nil
-when it did what it should, so that Lisp says it with its own failures.
+A robot is given as a machine of a world and the list of its parts, which `make_parts` makes. What a motion could not do is its value, and
+nil when it did what it should, so that Lisp says it with its own failures.
 """
 
 from __future__ import annotations
@@ -107,8 +107,9 @@ def move_arm_joints(machine: Machine, parts: RobotParts, arm: Symbol, values: Co
 
 
 def move_tools(machine: Machine, parts: RobotParts, goals: Cons) -> Cons | None:
-    """Bring tool points to poses in the frame of the base; ``goals`` is a list of (arm . pose). If no posture does that: a list of the arm and
-    of the number of heights of the torso that were tried.
+    """Bring tool points to poses in the frame of the base; ``goals`` is a list of (arm . pose).
+
+    If no posture does that: a list of the arm and of the number of heights of the torso that were tried.
     """
     try:
         _robot(machine, parts).move_tools({entry.car: of_pose(entry.cdr) for entry in python_list(goals)})
