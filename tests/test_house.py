@@ -24,7 +24,7 @@ FLOORS = [
     ["ground"],
     ["utilities", "transforms"],
     ["cpl", "prolog", "ros"],
-    ["designators", "turtlesim", "episodes", "actionlib", "rosbridge"],
+    ["designators", "turtlesim", "episodes", "actionlib", "rosbridge", "robot_world"],
     ["occasions", "tf"],
     ["process_modules"],
     ["projection"],

@@ -48,6 +48,7 @@ def boot():
         systems.provide_system(SYSTEMS)
         packages.on_demand.update(systems.LIBRARY_PACKAGES)
         packages.on_demand.update(dict.fromkeys(TF_PACKAGES, define_tf))
+        packages.on_demand["ROBOT-WORLD"] = define_robot_world
         packages.on_demand.update(dict.fromkeys(("ACTIONLIB-LISP", "ACTIONLIB"), define_actionlib))
         ros_load.define_faces()
         asdf.define_faces()
@@ -67,6 +68,13 @@ def booted():
 def define_actionlib():
     """Make the packages of the room ``actionlib``."""
     from cramhy_runtime.languages.commonlisp.faces.actionlib import package
+
+    package.define_faces()
+
+
+def define_robot_world():
+    """Make the package ROBOT-WORLD, which needs the extra ``robot``."""
+    from cramhy_runtime.languages.commonlisp.faces.robot_world import package
 
     package.define_faces()
 

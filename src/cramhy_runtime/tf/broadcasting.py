@@ -6,7 +6,7 @@ the same one field, and who listens to one hears the other. What is republished 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from .. import kernel
@@ -116,6 +116,21 @@ def send_static_transforms(broadcaster, interval, new_thread, *transforms):
     owner = graph.active().kernel
     owner.spawn(lambda: send_static_transforms_blocking(broadcaster, interval, *transforms), name="static transforms", parent=owner.main)
     return None
+
+
+def repeat_beside(publication: Publication, interval: float, function: Callable[[], object]) -> Callable[[], None]:
+    """Call ``function``, which publishes, every ``interval`` seconds in the background, until the node of ``publication`` ends or the
+    function that is returned is called."""
+    _checked(publication, "START-PUBLISHING-TRANSFORMS", interval, ())
+    owner, wanted = graph.active().kernel, [True]
+
+    def repeat() -> None:
+        while wanted and publication.node.alive:
+            function()
+            kernel.sleep(float(interval))
+
+    owner.spawn(repeat, name="tf broadcaster", parent=owner.main)
+    return wanted.clear
 
 
 def while_broadcasting(broadcaster, transforms, body):

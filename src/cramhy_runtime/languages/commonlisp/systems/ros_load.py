@@ -39,7 +39,8 @@ def check_package(name, system):
     Nothing is checked for a ``system`` that is not there: whoever looks for it tells that.
     """
     file = systems.find_asd(system)
-    if systems.is_provided(name.lower()) or systems.is_provided(name.lower().replace("_", "-")):
+    system_name = name.lower().replace("_", "-")
+    if systems.is_provided(name.lower()) or systems.is_provided(system_name) or f"{system_name}.asd" in systems.libraries():
         return
     if file is None and not systems.is_provided(system) or file is not None and name in [folder.name for folder in file.parents]:
         return

@@ -1,0 +1,115 @@
+"""The kitchen: steps of the world, copies, contacts, what is seen, reaching, and a bottle carried from the table to the island.
+
+    python benchmarks/robot_bench.py
+
+Microseconds of the processor per unit. The original cannot be measured here: it runs at the speed of Bullet's steps and of a service for the
+arms. So steps stand beside those of bare MuJoCo, on the same model.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+
+import numpy as np
+from measuring import Table, repeat, rounds
+
+from cramhy_runtime import kernel
+from cramhy_runtime.repl.session import Session
+from cramhy_runtime.robot_world import models, vision
+from cramhy_runtime.robot_world.inverse_kinematics import Reach
+from cramhy_runtime.robot_world.mujoco_parts import mujoco
+from cramhy_runtime.robot_world.placements import Placement, placement
+from cramhy_runtime.robot_world.scene import STEP
+from cramhy_runtime.robot_world.world import World
+
+TRANSPORT = """
+(progn
+  (dolist (system '(:cram-mobile-pick-place-plans :cram-pr2-description :cram-knowrob-pick-place :cram-pr2-projection
+                    :cram-bullet-reasoning-utilities))
+    (asdf:load-system system))
+  (setf roslisp::*debug-levels* nil)
+  (defun at (frame x y z &optional (qz 0) (qw 1))
+    (cl-transforms-stamped:make-pose-stamped
+     frame 0.0 (cl-transforms:make-3d-vector x y z) (cl-transforms:make-quaternion 0 0 qz qw)))
+  (defun go-to (x y qz qw)
+    (let ((?pose (at "map" x y 0 qz qw)))
+      (exe:perform (desig:an action (type going) (target (desig:a location (pose ?pose)))))))
+  (defun transport ()
+    (cram-occasions-events:clear-belief)
+    (btr-utils:spawn-object 'bottle :bottle :pose '((-2 -0.9 0.86) (0 0 0 1)))
+    (btr:simulate btr:*current-bullet-world* 100)
+    (pr2-proj:with-simulated-robot
+      (cpl:par (exe:perform (desig:a motion (type moving-torso) (joint-angle 0.3))) (pp-plans:park-arms))
+      (go-to -1.447 -0.15 -0.70710678 0.70710678)
+      (let ((?look (at "base_footprint" 0.65335 0.076 0.758))
+            (?target (at "map" -0.8 2 0.9)))
+        (exe:perform (desig:an action (type looking) (target (desig:a location (pose ?look)))))
+        (let ((?bottle (exe:perform (desig:an action (type detecting) (object (desig:an object (type bottle)))))))
+          (exe:perform (desig:an action (type picking-up) (arm right) (grasp left-side) (object ?bottle)))
+          (pp-plans:park-arms :arm :right)
+          (go-to -0.15 2.0 1 0)
+          (exe:perform (desig:an action (type placing) (arm right) (object ?bottle) (target (desig:a location (pose ?target))))))))))
+"""
+
+
+def kitchen() -> World:
+    """The kitchen with the PR2, and a bottle on the table."""
+    world = World()
+    world.add_machine("kitchen", models.described("kitchen"))
+    world.add_machine("pr2", models.described("pr2"))
+    world.add_item("bottle", models.object_shapes("bottle"), placement((-2.0, -0.9, 0.86)))
+    world.simulate(10)
+    return world
+
+
+def measured(table: Table, name: str, work, count: int, goal: float | None = None, other: float | None = None) -> None:
+    times = rounds(work, count, time.process_time)
+    table.line(name, min(times), statistics.median(times), goal=goal, cram=other if other is not None else "")
+
+
+def reaching(table: Table) -> None:
+    reach, draw = Reach(models.described("pr2"), "torso_lift_link", "r_wrist_roll_link"), np.random.default_rng(3)
+    chain = reach.skeleton
+    low = np.where(np.isfinite(chain.lower), chain.lower, -np.pi)
+    high = np.where(np.isfinite(chain.upper), chain.upper, np.pi)
+    goals = [chain.pose(draw.uniform(low, high), reach.tip) for _ in range(50)]
+
+    def work(count: int) -> None:
+        for number in range(count):
+            reach.solve(*goals[number % len(goals)])
+
+    measured(table, "a posture of the arm for a pose of the tool", work, 50, 1000)
+
+
+def steps(table: Table) -> None:
+    world = kitchen()
+    world.put("bottle", placement((0.0, 0.5, 30.0)))  # it falls all the time
+    scene = world.scene
+    model, data = scene.model, scene.data
+    bare = min(rounds(repeat(lambda: mujoco.mj_step(model, data)), 200, time.process_time))
+
+    def work(count: int) -> None:
+        world.put("bottle", placement((0.0, 0.5, 30.0)))
+        world.simulate(count * STEP)
+
+    measured(table, "a step of the world, while a bottle falls", work, 200, 1.2 * bare, bare)
+
+
+def main() -> None:
+    session = Session(time="virtual", turtlesim=False)
+    table = Table("The kitchen (us)", kernel.active().backend.name, last="bare MuJoCo")
+    world = kitchen()
+    camera = Placement(np.array([-1.9, 0.2, 1.4]), np.array([0.35, 0.61, -0.61, 0.35]) / np.linalg.norm([0.35, 0.61, -0.61, 0.35]))
+    measured(table, "a copy of the world", repeat(world.copy), 100, 1000)
+    measured(table, "what the robot touches", repeat(lambda: world.contacts("pr2")), 20)
+    measured(table, "whether a bottle is seen", repeat(lambda: vision.seen(world.scene, camera, world.item("bottle"))), 20)
+    steps(table)
+    reaching(table)
+    session.evaluate_text(TRANSPORT)
+    measured(table, "a bottle carried from the table to the island", repeat(lambda: session.evaluate_text("(transport)")), 1, 2e6)
+    kernel.stop()
+
+
+if __name__ == "__main__":
+    main()

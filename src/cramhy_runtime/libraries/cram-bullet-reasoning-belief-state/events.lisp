@@ -1,0 +1,45 @@
+;;;; Events change the world.
+
+(in-package #:cram-bullet-reasoning-belief-state)
+
+(defun end-effector (arm)
+  "The link that holds what ARM grips."
+  (let ((solution (cut:lazy-car (prolog `(and (cram-robot-interfaces:robot ?robot)
+                                              (cram-robot-interfaces:end-effector-link ?robot ,arm ?link))))))
+    (when solution (cut:var-value '?link solution))))
+
+(defmethod cram-occasions-events:on-event btr-attach-object ((event cpoe:object-attached))
+  (let* ((name (cpoe:event-object-name event))
+         (object (btr:object btr:*current-bullet-world* name))
+         (robot (btr:get-robot-object))
+         (furniture (btr:get-environment-object))
+         (link (end-effector (cpoe:event-arm event))))
+    (cond ((null object))
+          ((null link) (error "[BTR-BELIEF OBJECT-ATTACHED] Couldn't find robot's EE link."))
+          (t
+           (when (and furniture (btr:object-attached furniture object))
+             (btr:detach-object furniture object))
+           (btr:attach-object robot object link :loose (and (btr:object-attached robot object) t))))))
+
+(defmethod cram-occasions-events:on-event btr-detach-object ((event cpoe:object-detached))
+  (let ((object (btr:object btr:*current-bullet-world* (cpoe:event-object-name event)))
+        (link (end-effector (cpoe:event-arm event))))
+    (when (and object link)
+      (btr:detach-object (btr:get-robot-object) object link)
+      (btr:simulate btr:*current-bullet-world* 10))))
+
+(defun move-container (event sign)
+  (let* ((furniture (btr:object btr:*current-bullet-world* (or (cpoe:environment-event-object event) :kitchen)))
+         (joint (cpoe:environment-event-joint-name event)))
+    (when furniture
+      (incf (btr:joint-state furniture joint) (* sign (cpoe:environment-event-distance event))))))
+
+(defmethod cram-occasions-events:on-event btr-open-container ((event cpoe:container-opening-event))
+  (move-container event 1))
+
+(defmethod cram-occasions-events:on-event btr-close-container ((event cpoe:container-closing-event))
+  (move-container event -1))
+
+(defmethod cram-occasions-events:on-event btr-note-name ((event cpoe:object-perceived-event))
+  (let ((designator (cpoe:event-object-designator event)))
+    (setf (gethash (desig:first-desig designator) *names*) (desig:desig-prop-value designator :name))))

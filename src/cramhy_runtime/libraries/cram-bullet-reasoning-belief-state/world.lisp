@@ -1,0 +1,46 @@
+;;;; The world at the beginning: the kitchen, and the robot with its arms parked.
+
+(in-package #:cram-bullet-reasoning-belief-state)
+
+(defvar *robot-urdf* nil "The description of the robot, once it was read.")
+(defvar *kitchen-urdf* nil "The description of the kitchen, once it was read.")
+(defvar *robot-parameter* "robot_description" "The ROS parameter with the robot's URDF.")
+(defvar *kitchen-parameter* "kitchen_description" "The ROS parameter with the kitchen's URDF.")
+(defvar *spawn-debug-window* t "For code that sets it: there is no window.")
+
+(defvar *names* (make-hash-table :test 'eq)
+  "Designators, and the names of the objects that they were found to be.")
+
+(defun parameter-text (parameter model)
+  "The text of a ROS parameter; that of MODEL, which comes with cramhy, where there is none."
+  (or (ignore-errors (roslisp:get-param parameter nil))
+      (robot-world:description-text model)))
+
+(defun robot-urdf ()
+  (or *robot-urdf*
+      (setf *robot-urdf* (robot-world:read-description (substitute #\Space #\\ (parameter-text *robot-parameter* :pr2)) *robot-parameter*))))
+
+(defun kitchen-urdf ()
+  (or *kitchen-urdf*
+      (setf *kitchen-urdf* (robot-world:read-description (parameter-text *kitchen-parameter* :kitchen) *kitchen-parameter*))))
+
+(defun setup-world-database ()
+  "Fill the current world with the kitchen and the robot, whose arms are parked."
+  (let ((world btr:*current-bullet-world*)
+        (robot (btr:get-robot-name)))
+    (btr:add-object world :urdf :kitchen '((0 0 0) (0 0 0 1)) :urdf (kitchen-urdf))
+    (if (null robot)
+        (warn "ROBOT was not defined. Have you loaded a robot package?")
+        (let ((machine (btr:add-object world :urdf robot '((0 0 0) (0 0 0 1)) :urdf (robot-urdf))))
+          (dolist (solution (cut:force-ll (prolog `(cram-robot-interfaces:robot-arms-parking-joint-states ,robot ?states ?arm))))
+            (btr:set-robot-state-from-joints (cut:var-value '?states solution) machine))
+          (btr:set-robot-state-from-joints `((,(torso-joint robot) 0.15)) machine)))
+    world))
+
+(defun torso-joint (robot)
+  (cut:var-value '?joint (cut:lazy-car (prolog `(cram-robot-interfaces:robot-torso-link-joint ,robot ?link ?joint)))))
+
+(defmethod cram-occasions-events:clear-belief bullet-world ()
+  (setf btr:*current-bullet-world* (robot-world:make-world))
+  (setup-world-database)
+  (clrhash *names*))

@@ -1,0 +1,65 @@
+;;;; Objects by their names.
+
+(in-package #:cram-bullet-reasoning-utilities)
+
+(def-fact-group scenario-objects (scenario-objects-init-pose scenario-objects-default-color scenario-object-color)
+  (<- (scenario-objects-init-pose ((2 0 0) (0 0 0 1))))
+  (<- (scenario-objects-default-color (0.5 0.5 0.5)))
+  (<- (scenario-object-color :plate (0.8 0.58 0.35)))
+  (<- (scenario-object-color :fork (0.2 0.1 0.3)))
+  (<- (scenario-object-color :knife (0.5 0 0)))
+  (<- (scenario-object-color :mug (0.8 0.3 0)))
+  (<- (scenario-object-color :pot (0.1 0.2 0.3)))
+  (<- (scenario-object-color :bowl (0 0.3 0)))
+  (<- (scenario-object-color :mondamin (0.5 0.1 0)))
+  (<- (scenario-object-color :spatula (0.1 0.1 0.1))))
+
+(defun answer (variable goal)
+  "The value of VARIABLE in the first solution of GOAL, or nil."
+  (cdr (assoc variable (lazy-car (prolog goal)))))
+
+(defun color-of (type)
+  (or (answer '?color `(scenario-object-color ,type ?color))
+      (answer '?color '(scenario-objects-default-color ?color))))
+
+(defun init-pose ()
+  (answer '?pose '(scenario-objects-init-pose ?pose)))
+
+(defun object-instance (name)
+  "The object of that name in the current world, or nil."
+  (object *current-bullet-world* name))
+
+(defun object-exists (name)
+  "Whether there is an object of that name."
+  (and (object-instance name) t))
+
+(defun item-exists (name)
+  "Whether there is an object of that name that is neither robot nor furniture."
+  (typep (object-instance name) 'item))
+
+(defgeneric spawn-object (name type &key pose color mass world)
+  (:documentation "Put an object of TYPE into the world, and return it. One of that name that is there already is moved to POSE, if one is given.")
+  (:method (name type &key pose color (mass 0.2) (world *current-bullet-world*))
+    (cond ((not (object world name))
+           (add-object world :mesh name (or pose (init-pose)) :mesh type :mass mass :color (or color (color-of type))))
+          (pose
+           (prolog `(assert ,world (object-pose ,name ,pose)))))))
+
+(defun move-object (name &optional (new-pose (init-pose)))
+  "Put an object somewhere else."
+  (prolog `(assert ?world (object-pose ,name ,new-pose))))
+
+(defun kill-object (name)
+  "Take an object out of the world."
+  (remove-object *current-bullet-world* name))
+
+(defun kill-all-objects ()
+  "Take all objects out of the world; robot and furniture stay."
+  (dolist (item (find-objects *current-bullet-world* (lambda (thing) (typep thing 'item))))
+    (kill-object (name item))))
+
+(defun respawn-object (object)
+  "Take an object out, and put one like it where it was."
+  (let ((name (name object)) (types (item-types object)) (pose (pose object)))
+    (kill-object name)
+    (add-object *current-bullet-world* :mesh name pose :mesh (first types) :types types)))

@@ -1,0 +1,33 @@
+;;;; cram-bullet-reasoning: worlds of robots and objects, and what can be said about them.
+
+(defpackage #:cram-bullet-reasoning
+  (:use #:common-lisp #:prolog #:cl-bullet #:cut #:cram-robot-interfaces #:cl-transforms-stamped #:cram-tf)
+  (:nicknames #:btr)
+  (:shadow #:copy-object)
+  (:shadowing-import-from #:cl-bullet #:pose #:points)
+  (:export
+   ;; worlds
+   #:*current-bullet-world* #:bt-reasoning-world #:with-current-bullet-world #:copy-world #:simulate #:prolog-?w
+   #:with-stored-world #:with-world #:with-copied-world #:get-state #:restore-world-state
+   ;; objects
+   #:object #:objects #:find-objects #:add-object #:remove-object #:item #:item-types #:name #:pose #:ensure-pose #:ensure-vector
+   #:aabb #:calculate-bb-dims #:item-dimensions #:bounding-box-center #:bounding-box-dimensions
+   #:contact-p #:find-all-contacts #:find-objects-in-contact #:link-contacts #:above-p #:stable-p
+   ;; robots and furniture
+   #:robot-object #:urdf #:joint-names #:joint-state #:joint-states #:link-names #:links #:link-pose #:set-robot-state-from-joints
+   #:attach-object #:detach-object #:detach-all-objects #:attached-objects #:object-attached
+   #:get-robot-object #:get-robot-name #:get-environment-object #:robot-colliding-objects-without-attached
+   ;; seeing
+   #:*visibility-threshold* #:object-visible-p #:calculate-object-visibility #:occluding-objects
+   ;; predicates
+   #:bullet-world #:clear-bullet-world #:assert #:retract #:%object #:object-pose #:object-pose-on #:item-type #:object-type #:object-bottom-pose
+   #:contact #:object-not-in-collision #:stable #:stable-items #:above #:below #:supported-by #:visible #:visible-from
+   #:occluding-object #:link #:attached #:step))
+
+(in-package #:cram-bullet-reasoning)
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (loop for (name class) in '((bt-reasoning-world robot-world:world) (object robot-world:thing)
+                              (item robot-world:item) (robot-object robot-world:machine))
+        do (setf (find-class name) (find-class class)
+                 (class-name (find-class class)) name)))

@@ -1,0 +1,244 @@
+;;;; What Prolog can ask of a world, and change in it. A world that is not bound is the current one.
+
+(in-package #:cram-bullet-reasoning)
+
+(defun poses-near-p (pose other)
+  "Whether two poses differ by no more than a centimetre and a hundredth of a radian."
+  (and (< (v-dist (origin pose) (origin other)) 0.01)
+       (< (abs (nth-value 1 (quaternion->axis-angle (q* (q-inv (orientation pose)) (orientation other))))) 0.01)))
+
+(defun bottom-pose (object)
+  "The pose of OBJECT, at the height of its lowest point."
+  (let ((pose (pose object)) (box (aabb object)))
+    (copy-pose pose :origin (make-3d-vector (x (origin pose)) (y (origin pose))
+                                            (- (z (bounding-box-center box)) (/ (z (bounding-box-dimensions box)) 2))))))
+
+(defun world-items (world)
+  (find-objects world (lambda (object) (typep object 'item))))
+
+(defun put-object (world type name pose arguments)
+  "Add an object, or give one of that name its own pose again: as in the original, POSE counts for new ones only."
+  (let ((old (object world name)))
+    (if old
+        (setf (pose old) (pose old))
+        (apply #'add-object world type name pose arguments))))
+
+(defun put-bottom (object pose)
+  "Put OBJECT so that its lowest point is at the height of POSE."
+  (let ((pose (ensure-pose pose)))
+    (setf (pose object) pose)
+    (let ((up (- (z (origin pose)) (z (origin (bottom-pose object))))))
+      (setf (pose object) (copy-pose pose :origin (v+ (origin pose) (make-3d-vector 0 0 up)))))))
+
+(def-fact-group bullet-worlds (bullet-world clear-bullet-world simulate)
+  (<- (bullet-world ?world)
+    (lisp-fun get-current-world ?world))
+
+  (<- (bullet-world ?world ?name)
+    (bullet-world ?world)
+    (object ?world ?name))
+
+  (<- (clear-bullet-world)
+    (lisp-fun clear-world ?))
+
+  (<- (simulate ?world ?seconds)
+    (bullet-world ?world)
+    (lisp-fun simulate ?world ?seconds ?)))
+
+(defun get-current-world ()
+  "The current world; there is always one."
+  (or *current-bullet-world* (setf *current-bullet-world* (robot-world:make-world))))
+
+(defun clear-world ()
+  "Begin with a world in which there is nothing."
+  (setf *current-bullet-world* (robot-world:make-world)))
+
+(def-fact-group bullet-objects (assert retract object %object item-type object-type object-pose pose object-bottom-pose)
+  (<- (assert (object ?world ?type ?name ?pose . ?arguments))
+    (assert ?world (object ?type ?name ?pose . ?arguments)))
+
+  (<- (assert ?world (object ?type ?name ?pose . ?arguments))
+    (bullet-world ?world)
+    (lisp-fun put-object ?world ?type ?name ?pose ?arguments ?))
+
+  (<- (assert (object-pose ?world ?name ?pose))
+    (assert ?world (object-pose ?name ?pose)))
+
+  (<- (assert ?world (object-pose ?name ?pose))
+    (%object ?world ?name ?object)
+    (lisp-fun move-to ?object ?pose ?))
+
+  (<- (assert ?world (object-pose-on ?name ?pose))
+    (%object ?world ?name ?object)
+    (lisp-fun put-bottom ?object ?pose ?))
+
+  (<- (assert ?world (joint-state ?robot ?states))
+    (%object ?world ?robot ?object)
+    (lisp-fun set-robot-state-from-joints ?states ?object ?))
+
+  (<- (retract (object ?world ?name))
+    (retract ?world (object ?name)))
+
+  (<- (retract ?world (object ?name))
+    (object ?world ?name)
+    (lisp-fun remove-object ?world ?name ?))
+
+  (<- (object ?world ?name)
+    (%object ?world ?name ?))
+
+  (<- (%object ?world ?name ?object)
+    (bullet-world ?world)
+    (bound ?name)
+    (lisp-fun object ?world ?name ?object)
+    (lisp-pred identity ?object))
+
+  (<- (%object ?world ?name ?object)
+    (bullet-world ?world)
+    (not (bound ?name))
+    (lisp-fun objects ?world ?objects)
+    (member ?object ?objects)
+    (lisp-fun name ?object ?name))
+
+  (<- (item-type ?world ?name ?type)
+    (%object ?world ?name ?object)
+    (lisp-type ?object item)
+    (lisp-fun item-types ?object ?types)
+    (member ?type ?types))
+
+  (<- (object-type ?world ?name ?type)
+    (item-type ?world ?name ?type))
+
+  (<- (object-pose ?world ?name ?pose)
+    (not (bound ?pose))
+    (%object ?world ?name ?object)
+    (lisp-fun pose ?object ?pose))
+
+  (<- (object-pose ?world ?name ?pose)
+    (bound ?pose)
+    (%object ?world ?name ?object)
+    (lisp-fun pose ?object ?is)
+    (lisp-fun ensure-pose ?pose ?wanted)
+    (lisp-pred poses-near-p ?is ?wanted))
+
+  (<- (pose ?world ?name ?pose)
+    (object-pose ?world ?name ?pose))
+
+  (<- (pose ?world ?name ?position ?orientation)
+    (object-pose ?world ?name ?pose)
+    (lisp-fun origin ?pose ?position)
+    (lisp-fun orientation ?pose ?orientation))
+
+  (<- (object-bottom-pose ?world ?name ?pose)
+    (%object ?world ?name ?object)
+    (lisp-fun bottom-pose ?object ?pose)))
+
+(defun move-to (object pose)
+  (setf (pose object) (ensure-pose pose)))
+
+(def-fact-group bullet-contacts (contact object-not-in-collision stable stable-items above below supported-by)
+  (<- (contact ?world ?name ?other-name)
+    (%object ?world ?name ?object)
+    (lisp-fun find-objects-in-contact ?world ?object ?others)
+    (member ?other ?others)
+    (lisp-fun name ?other ?other-name))
+
+  (<- (contact ?world ?name ?other-name ?link)
+    (%object ?world ?name ?object)
+    (lisp-fun contacts-with-links ?world ?object ?others)
+    (member (?other-name . ?link) ?others))
+
+  (<- (object-not-in-collision ?world ?name)
+    (%object ?world ?name ?object)
+    (forall (contact ?world ?name ?other)
+            (attached ?world ?other ? ?name)))
+
+  (<- (stable ?world ?name)
+    (%object ?world ?name ?object)
+    (lisp-type ?object item)
+    (lisp-pred stable-p ?object))
+
+  (<- (stable ?world)
+    (bullet-world ?world)
+    (lisp-fun world-items ?world ?items)
+    (forall (member ?item ?items) (lisp-pred stable-p ?item)))
+
+  (<- (stable-items ?world)
+    (stable ?world))
+
+  (<- (above ?world ?name ?other-name)
+    (%object ?world ?name ?object)
+    (%object ?world ?other-name ?other)
+    (not (== ?name ?other-name))
+    (lisp-pred above-p ?object ?other))
+
+  (<- (below ?world ?name ?other-name)
+    (above ?world ?other-name ?name))
+
+  (<- (supported-by ?world ?top ?bottom)
+    (supported-by ?world ?top ?bottom ?))
+
+  (<- (supported-by ?world ?top ?bottom ?link)
+    (%object ?world ?top ?object)
+    (lisp-fun contacts-with-links ?world ?object ?others)
+    (member (?bottom . ?link) ?others)
+    (%object ?world ?bottom ?other)
+    (lisp-pred rests-on-p ?object ?other ?link)))
+
+(defun contacts-with-links (world object)
+  "A list (name . link) for each object that touches OBJECT; the link is that of whichever has links."
+  (remove-duplicates
+   (loop for (nil own-link other link) in (robot-world:contacts world object)
+         when other collect (cons (name other) (or link own-link)))
+   :test #'equal :from-end t))
+
+(defun rests-on-p (object other link)
+  "Whether the middle of OBJECT is above that of OTHER; of the one that has links the middle of LINK counts."
+  (flet ((height (thing)
+           (z (if (and link (typep thing 'robot-object))
+                  (first (robot-world:part-bounds thing link))
+                  (bounding-box-center (aabb thing))))))
+    (>= (height object) (height other))))
+
+(def-fact-group bullet-robots (link link-pose joint-state attached)
+  (<- (link ?world ?robot ?link)
+    (%object ?world ?robot ?object)
+    (lisp-type ?object robot-object)
+    (lisp-fun link-names ?object ?links)
+    (member ?link ?links))
+
+  (<- (link-pose ?robot ?link ?pose)
+    (link-pose ?world ?robot ?link ?pose))
+
+  (<- (link-pose ?world ?robot ?link ?pose)
+    (link ?world ?robot ?link)
+    (%object ?world ?robot ?object)
+    (lisp-fun link-pose ?object ?link ?pose))
+
+  (<- (joint-state ?world ?robot ?joint ?state)
+    (%object ?world ?robot ?object)
+    (lisp-type ?object robot-object)
+    (lisp-fun joint-states ?object ?states)
+    (member (?joint . ?state) ?states))
+
+  (<- (attached ?world ?robot ?link ?name)
+    (%object ?world ?robot ?object)
+    (lisp-type ?object robot-object)
+    (lisp-fun attached-objects ?object ?attached)
+    (member (?name . ?links) ?attached)
+    (member ?link ?links)))
+
+(def-fact-group bullet-vision (visible-from occluding-objects occluding-object)
+  (<- (visible-from ?world ?camera-pose ?name)
+    (%object ?world ?name ?object)
+    (lisp-fun ensure-pose ?camera-pose ?camera)
+    (lisp-pred object-visible-p ?world ?camera ?object))
+
+  (<- (occluding-objects ?world ?camera-pose ?name ?names)
+    (%object ?world ?name ?object)
+    (lisp-fun ensure-pose ?camera-pose ?camera)
+    (lisp-fun occluding-objects ?world ?camera ?object ?objects)
+    (lisp-fun mapcar name ?objects ?names))
+
+  (<- (occluding-object ?world ?camera-pose ?name ?hiding)
+    (occluding-objects ?world ?camera-pose ?name ?names)
+    (member ?hiding ?names)))

@@ -1,0 +1,95 @@
+;;;; Robots and furniture: joints, links, and what they hold.
+
+(in-package #:cram-bullet-reasoning)
+
+(defun urdf (robot)
+  "The description of ROBOT."
+  (robot-world:machine-description robot))
+
+(defun joint-names (robot)
+  "The names of the joints of ROBOT that move."
+  (robot-world:machine-joints robot))
+
+(defgeneric joint-state (robot name)
+  (:documentation "The position of a joint, nil when ROBOT has none of that name.")
+  (:method ((robot robot-object) name) (robot-world:machine-joint robot name)))
+
+(defgeneric (setf joint-state) (new-value robot name)
+  (:documentation "Set a joint, whatever its limits are. What hangs on it, and what that holds, goes along.")
+  (:method (new-value (robot robot-object) name)
+    (unless (robot-world:set-machine-joint robot name new-value)
+      (error "Joint ~a unknown" name))
+    new-value))
+
+(defun joint-states (robot)
+  "A list (name . position) for each joint of ROBOT."
+  (loop for joint in (joint-names robot) collect (cons joint (joint-state robot joint))))
+
+(defgeneric set-robot-state-from-joints (joint-states robot)
+  (:documentation "Set joints of ROBOT from a list of (name position) or (name . position). Joints that it does not have are passed over.")
+  (:method ((joint-states list) (robot robot-object))
+    (loop for (joint . value) in joint-states
+          do (robot-world:set-machine-joint robot joint (if (consp value) (first value) value)))))
+
+(defun link-names (robot)
+  "The names of the links of ROBOT."
+  (robot-world:machine-links robot))
+
+(defgeneric link-pose (robot name)
+  (:documentation "Where a link is in the world, nil when ROBOT has none of that name.")
+  (:method ((robot robot-object) name) (robot-world:machine-link robot name)))
+
+;;; What is held.
+
+(defgeneric attach-object (robot object link &key loose)
+  (:documentation "Let LINK hold OBJECT, where it is now. LOOSE: another link, that holds it too, says where it goes.")
+  (:method ((robot robot-object) (object item) link &key loose)
+    (unless (member link (link-names robot) :test #'equal)
+      (error "Link ~a unknown" link))
+    (unless (member link (object-attached robot object) :test #'equal)
+      (robot-world:attach robot object link :loose loose))))
+
+(defgeneric detach-object (robot object &optional link)
+  (:documentation "Let OBJECT go, by LINK or by all links. It falls when the world is simulated.")
+  (:method ((robot robot-object) (object item) &optional link)
+    (robot-world:detach robot object link)))
+
+(defun attached-objects (robot)
+  "A list (name . links) for each object that ROBOT holds."
+  (robot-world:attachments robot))
+
+(defun object-attached (robot object)
+  "The links of ROBOT that hold OBJECT."
+  (cdr (assoc (name object) (attached-objects robot) :test #'equal)))
+
+(defun detach-all-objects (robot)
+  "Let go all that ROBOT holds."
+  (loop for (name) in (attached-objects robot)
+        do (detach-object robot (object (robot-world:thing-world robot) name))))
+
+;;; The robot and the kitchen of the current world.
+
+(defun get-robot-name ()
+  "The name of the robot that a fact (robot name) tells of, or nil."
+  (cdr (assoc '?name (lazy-car (prolog '(robot ?name))))))
+
+(defun get-robot-object ()
+  "The robot in the current world, or nil."
+  (object *current-bullet-world* (get-robot-name)))
+
+(defun get-environment-object ()
+  "The furniture in the current world, whose name is :KITCHEN, or nil."
+  (object *current-bullet-world* :kitchen))
+
+(defun robot-colliding-objects-without-attached ()
+  "The names of the objects that the robot touches and does not hold."
+  (let ((robot (get-robot-object)))
+    (remove-if (lambda (name) (assoc name (attached-objects robot) :test #'equal))
+               (mapcar #'name (find-objects-in-contact *current-bullet-world* robot)))))
+
+(defun link-contacts (robot)
+  "A list (object . link) for each link of ROBOT that touches an object."
+  (remove-duplicates
+   (loop for (nil link other) in (robot-world:contacts (robot-world:thing-world robot) robot)
+         when other collect (cons other link))
+   :test #'equal :from-end t))

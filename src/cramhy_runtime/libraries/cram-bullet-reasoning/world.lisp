@@ -1,0 +1,39 @@
+;;;; The world that is current, copies of it, and forms that run in one.
+
+(in-package #:cram-bullet-reasoning)
+
+(defvar *current-bullet-world* (robot-world:make-world)
+  "The world that functions and predicates mean when none is named.")
+
+(defmacro with-current-bullet-world (world &body body)
+  "Run BODY with WORLD as the current one."
+  `(let ((*current-bullet-world* ,world)) ,@body))
+
+(defun simulate (world seconds &optional (step 0.1) realtime)
+  "Let what is free in WORLD fall for SECONDS, at most as long as Bullet would compute: a sixtieth of a second in each STEP."
+  (declare (ignore realtime))
+  (robot-world:settle world (/ (ceiling seconds step) 60))
+  nil)
+
+(defmacro prolog-?w (&body clauses)
+  "The solutions of CLAUSES, in which ?w is the current world."
+  (let ((?w (intern "?W")))
+    `(prolog (list* 'and (list 'bullet-world ',?w) ',clauses))))
+
+;;; What a world was, to come back to it. As in the original, what a robot holds is not part of that.
+
+(defun get-state (world)
+  "Where all things in WORLD are, and how the joints stand."
+  (loop for thing in (robot-world:things world)
+        collect (list (robot-world:thing-name thing)
+                      (robot-world:thing-pose thing)
+                      (when (typep thing 'robot-object) (joint-states thing)))))
+
+(defun restore-world-state (state world)
+  "Put the things in WORLD where STATE, of `get-state', says."
+  (loop for (name pose joints) in state
+        for thing = (robot-world:find-thing world name)
+        when thing
+          do (when joints (set-robot-state-from-joints joints thing))
+             (setf (pose thing) pose))
+  world)

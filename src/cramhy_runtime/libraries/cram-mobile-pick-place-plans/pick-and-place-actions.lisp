@@ -1,0 +1,128 @@
+;;;; (an action (type picking-up) ...) and (an action (type placing) ...): which arm, which grasp, and the poses on the way.
+
+(in-package #:cram-mobile-pick-place-plans)
+
+(defun grasping-poses (side arm object-name object-type grasp object-transform)
+  "The poses of the arm on SIDE, or nil where ARM, one or a list, is not that one."
+  (when (member side (arms-of arm))
+    (obj-int:get-object-grasping-poses object-name object-type side grasp object-transform)))
+
+(defun split-poses (poses)
+  "The first two of POSES, the third, and the rest: the way to an object, where it is grasped, and the way on."
+  (when poses
+    (list (subseq poses 0 2) (subseq poses 2 3) (subseq poses 3))))
+
+(defun split-poses-for-placing (poses)
+  "The same the other way round: an object is put down as it was lifted."
+  (split-poses (reverse poses)))
+
+(defun base-frame ()
+  "The name of the frame of the robot's base."
+  (or cram-tf:*robot-base-frame*
+      (cut:var-value '?frame (cut:lazy-car (prolog '(and (cram-robot-interfaces:robot ?robot)
+                                                     (cram-robot-interfaces:robot-base-frame ?robot ?frame)))))))
+
+(defun target-transform (object-name target-pose)
+  "The transform from the robot's base to an object that is at TARGET-POSE."
+  (cram-tf:pose-stamped->transform-stamped
+   (cram-tf:ensure-pose-in-frame target-pose (base-frame) :use-zero-time t)
+   (roslisp-utilities:rosify-underscores-lisp-name object-name)))
+
+(def-fact-group pick-and-place-actions (desig:action-grounding)
+
+  (<- (desig:action-grounding ?designator (pick-up ?current-object ?arm ?gripper-opening ?effort ?grasp
+                                                   ?left-reach-poses ?right-reach-poses
+                                                   ?left-grasp-poses ?right-grasp-poses
+                                                   ?left-lift-poses ?right-lift-poses))
+    (spec:property ?designator (:type :picking-up))
+    (spec:property ?designator (:object ?object))
+    (desig:current-designator ?object ?current-object)
+    (spec:property ?current-object (:type ?object-type))
+    (spec:property ?current-object (:name ?object-name))
+    (lisp-fun obj-int:get-object-transform ?current-object ?transform)
+    (lisp-pred identity ?transform)
+    (arm-to-use ?designator ?arm)
+    (grasp-to-use ?designator ?object-type ?transform ?arm ?grasp)
+    (lisp-fun obj-int:get-object-type-gripping-effort ?object-type ?effort)
+    (lisp-fun obj-int:get-object-type-gripper-opening ?object-type ?gripper-opening)
+    (lisp-fun grasping-poses :left ?arm ?object-name ?object-type ?grasp ?transform ?left-poses)
+    (lisp-fun grasping-poses :right ?arm ?object-name ?object-type ?grasp ?transform ?right-poses)
+    (lisp-fun split-poses ?left-poses ?left-parts)
+    (lisp-fun split-poses ?right-poses ?right-parts)
+    (parts ?left-parts ?left-reach-poses ?left-grasp-poses ?left-lift-poses)
+    (parts ?right-parts ?right-reach-poses ?right-grasp-poses ?right-lift-poses))
+
+  (<- (arm-to-use ?designator ?arm)
+    (-> (spec:property ?designator (:arm ?given))
+        (equal ?arm ?given)
+        (and (cram-robot-interfaces:robot ?robot)
+             (cram-robot-interfaces:arm ?robot ?arm))))
+
+  (<- (grasp-to-use ?designator ?object-type ?transform ?arm ?grasp)
+    (-> (spec:property ?designator (:grasp ?given))
+        (equal ?grasp ?given)
+        (and (lisp-fun obj-int:calculate-object-faces ?transform (?facing-robot ?bottom))
+             (-> (obj-int:object-rotationally-symmetric ?object-type)
+                 (equal ?symmetric t)
+                 (equal ?symmetric nil))
+             (lisp-fun obj-int:get-object-type-grasps ?object-type ?facing-robot ?bottom ?symmetric ?arm ?grasps)
+             (member ?grasp ?grasps))))
+
+  (<- (parts nil nil nil nil))
+
+  (<- (parts (?first ?second ?third) ?first ?second ?third))
+
+  (<- (desig:action-grounding ?designator (place ?current-object ?arm
+                                                 ?left-reach-poses ?right-reach-poses
+                                                 ?left-put-poses ?right-put-poses
+                                                 ?left-retract-poses ?right-retract-poses
+                                                 ?target))
+    (spec:property ?designator (:type :placing))
+    (held-object ?designator ?current-object ?arm)
+    (spec:property ?current-object (:type ?object-type))
+    (spec:property ?current-object (:name ?object-name))
+    (place-to-use ?designator ?current-object ?object-name ?target ?transform)
+    (grasp-in-hand ?object-type ?object-name ?arm ?transform ?grasp)
+    (lisp-fun grasping-poses :left ?arm ?object-name ?object-type ?grasp ?transform ?left-poses)
+    (lisp-fun grasping-poses :right ?arm ?object-name ?object-type ?grasp ?transform ?right-poses)
+    (lisp-fun split-poses-for-placing ?left-poses ?left-parts)
+    (lisp-fun split-poses-for-placing ?right-poses ?right-parts)
+    (parts ?left-parts ?left-reach-poses ?left-put-poses ?left-retract-poses)
+    (parts ?right-parts ?right-reach-poses ?right-put-poses ?right-retract-poses))
+
+  (<- (held-object ?designator ?current-object ?arm)
+    (-> (spec:property ?designator (:arm ?given-arm))
+        (equal ?arm ?given-arm)
+        (true))
+    (-> (spec:property ?designator (:object ?given-object))
+        (desig:current-designator ?given-object ?current-object)
+        (true))
+    (-> (and (bound ?arm) (bound ?current-object))
+        (true)
+        (and (-> (bound ?arm) (true) (and (cram-robot-interfaces:robot ?robot) (cram-robot-interfaces:arm ?robot ?arm)))
+             (cpoe:object-in-hand ?held ?arm)
+             (desig:current-designator ?held ?current-held)
+             (-> (bound ?current-object)
+                 (desig:desig-equal ?current-object ?current-held)
+                 (equal ?current-object ?current-held)))))
+
+  (<- (place-to-use ?designator ?object ?object-name ?target ?transform)
+    (-> (spec:property ?designator (:target ?given-target))
+        (and (desig:current-designator ?given-target ?target)
+             (desig:designator-groundings ?target ?poses)
+             (member ?pose ?poses)
+             (lisp-fun target-transform ?object-name ?pose ?transform))
+        (and (equal ?target nil)
+             (lisp-fun obj-int:get-object-transform ?object ?transform)
+             (lisp-pred identity ?transform))))
+
+  (<- (grasp-in-hand ?object-type ?object-name ?arm ?transform ?grasp)
+    (-> (lisp-pred grasp-of ?object-name ?arm)
+        (lisp-fun grasp-of ?object-name ?arm ?grasp)
+        (and (lisp-fun obj-int:calculate-object-faces ?transform (?facing-robot ?bottom))
+             (lisp-fun obj-int:get-object-type-grasps ?object-type ?facing-robot ?bottom nil ?arm ?grasps)
+             (once (member ?grasp ?grasps))))))
+
+(defun grasp-of (object-name arm)
+  "The grasp by which ARM, or the first of a list, took the object, or nil."
+  (remembered-grasp object-name (first (arms-of arm))))

@@ -1,0 +1,16 @@
+;;;; The robot as a whole: its name, frames and torso.
+
+(in-package #:cram-pr2-description)
+
+(def-fact-group pr2 (robot robot-base-frame robot-odom-frame robot-torso-link-joint
+                    cram-robot-interfaces::robot-description-file)
+
+  (<- (robot pr2))
+
+  (<- (cram-robot-interfaces::robot-description-file pr2 "pr2.urdf"))
+
+  (<- (robot-base-frame pr2 "base_footprint"))
+
+  (<- (robot-odom-frame pr2 "odom_combined"))
+
+  (<- (robot-torso-link-joint pr2 "torso_lift_link" "torso_lift_joint")))

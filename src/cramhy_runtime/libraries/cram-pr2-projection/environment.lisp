@@ -1,0 +1,32 @@
+;;;; The environment in which plans run on the robot of the current world.
+
+(in-package #:cram-pr2-projection)
+
+(defun new-transformer ()
+  "A transformer that knows where the frames of the robot are."
+  (unless cram-tf:*fixed-frame*
+    (cram-tf::set-frames))
+  (let ((transformer (make-instance 'cl-tf:transformer)))
+    (btr-belief:set-tf-from-bullet :transformer transformer)
+    transformer))
+
+(cram-projection:define-projection-environment pr2-bullet-projection-environment
+  :special-variable-initializers
+  ((cram-tf:*transformer* (new-transformer))
+   (desig:*default-role* 'projection-role))
+  :process-module-definitions
+  (pr2-proj-navigation pr2-proj-torso pr2-proj-ptu pr2-proj-perception pr2-proj-grippers pr2-proj-arms))
+
+(defmethod cram-occasions-events:on-event update-tf ((event cpoe:robot-state-changed))
+  (when (eq cram-projection:*projection-environment* 'pr2-bullet-projection-environment)
+    (btr-belief:set-tf-from-bullet)))
+
+(defmacro with-simulated-robot (&body body)
+  "Run BODY as a plan of the robot in the current world; the first value of BODY."
+  `(let ((result (cram-projection:with-projection-environment pr2-bullet-projection-environment
+                   (cpl:top-level ,@body))))
+     (first (slot-value result 'cram-projection::result))))
+
+(defmacro with-projected-robot (&body body)
+  "As `with-simulated-robot'."
+  `(with-simulated-robot ,@body))

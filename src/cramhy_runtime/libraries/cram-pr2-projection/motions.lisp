@@ -1,0 +1,88 @@
+;;;; Base, torso, head, grippers and arms.
+
+(in-package #:cram-pr2-projection)
+
+(defvar *torso-step* 0.01
+  "How far apart the heights of the torso are from which an arm tries to reach, in metres.")
+
+(defun touched ()
+  "After a motion: the frames are where the links are."
+  (btr-belief:set-tf-from-bullet)
+  nil)
+
+(defun drive (pose-stamped)
+  "Put the base at a pose in the room."
+  (let ((things (robot-world:drive (robot) (parts) (cram-tf:ensure-pose-in-frame pose-stamped cram-tf:*fixed-frame* :use-zero-time t))))
+    (when things
+      (cpl:fail 'common-fail:navigation-pose-unreachable
+                :description (format nil "The robot would touch ~{~a~^, ~} at ~a." (mapcar #'btr:name things) pose-stamped)))
+    (touched)))
+
+(defun move-torso (height)
+  "Raise or lower the torso."
+  (let ((beyond (robot-world:move-torso (robot) (parts) height)))
+    (touched)
+    (when beyond
+      (cpl:fail 'common-fail:torso-goal-not-reached :description (format nil "Torso goal ~a was out of joint limits" height)))))
+
+(defun look-at (goal-type goal)
+  "Look at a pose, at the origin of a frame, or :FORWARD."
+  (let ((beyond (ecase goal-type
+                  (:pose (look-at-pose goal))
+                  (:frame (look-at-pose (cram-tf:frame-to-pose-in-fixed-frame goal)))
+                  (:direction
+                   (unless (eq goal :forward)
+                     (error "~a direction is unknown for PR2 projection PTU" goal))
+                   (robot-world:look-forward (robot) (parts))))))
+    (touched)
+    (when beyond
+      (cpl:fail 'common-fail:ptu-goal-not-reached :description "Look action wanted to twist the neck"))))
+
+(defun look-at-pose (pose)
+  (let ((pose (cram-tf:ensure-pose-in-frame pose cram-tf:*fixed-frame* :use-zero-time t)))
+    (robot-world:look-at (robot) (parts) (cl-transforms:origin pose))))
+
+(defun gripper-action (action arm &optional effort)
+  "Open, close or grip with an arm, or with several; ACTION may be a width in metres."
+  (declare (ignore effort))
+  (if (listp arm)
+      (dolist (each arm) (gripper-action action each))
+      (let ((found (etypecase action
+                     ((eql :open) (robot-world:set-fingers (robot) (parts) arm) t)
+                     ((eql :close) (robot-world:set-fingers (robot) (parts) arm 0) t)
+                     ((eql :grip) (robot-world:grip (robot) (parts) arm))
+                     (number (robot-world:set-fingers (robot) (parts) arm action) t))))
+        (touched)
+        (unless found
+          (cpl:fail 'common-fail:gripper-closed-completely :description "There was no object to grip")))))
+
+(defun move-tcp (left-pose right-pose &optional collision-mode)
+  "Bring the tools of the arms to poses in the frame of the base."
+  (declare (ignore collision-mode))
+  (let ((goals (loop for (arm pose) in `((:left ,left-pose) (:right ,right-pose))
+                     when pose collect (cons arm (tool-pose pose)))))
+    (when goals
+      (let ((failed (robot-world:move-tools (robot) (parts) goals)))
+        (touched)
+        (when failed
+          (destructuring-bind (arm heights) failed
+            (cpl:fail 'common-fail:manipulation-pose-unreachable
+                      :description (format nil "~a is unreachable for EE." (cdr (assoc arm goals)))
+                      :hint (format nil "No posture of the ~(~a~) arm was found from ~d height~:p of the torso." arm heights))))))))
+
+(defun tool-pose (pose)
+  (unless (string= (cl-transforms-stamped:frame-id pose) cram-tf:*robot-base-frame*)
+    (error "Arm movement goals should be given in robot base frame"))
+  pose)
+
+(defun move-joints (left right)
+  "Bring the joints of the arms to lists of values."
+  (loop for (arm values) in `((:left ,left) (:right ,right))
+        when values
+          do (unless (robot-world:move-arm-joints (robot) (parts) arm values)
+               (error "[PROJECTION MOVE-JOINTS] length of joints list is incorrect.")))
+  (touched))
+
+(defun move-with-constraints (constraints)
+  (declare (ignore constraints))
+  (warn "Moving with constraints is not supported in projection! Ignoring."))

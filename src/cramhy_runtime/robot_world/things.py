@@ -1,0 +1,114 @@
+"""The things of a world: items, which are rigid and fall, and machines, which have joints and stand where they are put.
+
+A thing knows what it is made of and where it is; what happens between things is the world's (``world.py``). A machine is a robot or
+furniture: both have a description. Items that a machine holds go with the link that holds them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .placements import Placement
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Mapping
+
+    from .descriptions import Description, Shape
+    from .skeleton import Skeleton
+    from .world import World
+
+Colour = tuple[float, float, float, float]
+GREY: Colour = (0.5, 0.5, 0.5, 1.0)
+
+
+class Thing:
+    """What is in a world."""
+
+    lisp_name = "ROBOT-WORLD::THING"
+    name: Hashable
+    placement: Placement
+    world: World | None = None
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}>"
+
+
+@dataclass(eq=False, repr=False)
+class Item(Thing):
+    """A rigid object.
+
+    name: what the world knows it by. shapes: what it is made of, in its own frame. placement: where it is in the world. mass: kilograms; 0
+    is for what never moves by itself. types: what it is, the most special first (``("bottle",)``).
+    """
+
+    name: Hashable
+    shapes: tuple[Shape, ...]
+    placement: Placement
+    mass: float = 0.2
+    colour: Colour = GREY
+    types: tuple[Hashable, ...] = ()
+
+    def copy(self) -> Item:
+        return replace(self)
+
+
+@dataclass
+class Grip:
+    """That a link holds an item: where the item is in the frame of the link. loose: it does not keep the item from moving with another
+    link."""
+
+    link: str
+    offset: Placement
+    loose: bool = False
+
+
+@dataclass(eq=False, repr=False)
+class Machine(Thing):
+    """A robot, or furniture.
+
+    name: what the world knows it by. skeleton: computes where its links are. placement: where its root is in the world. joints: their
+    positions, in the order of ``skeleton.joints``. holds: the grips of each item that it holds.
+    """
+
+    name: Hashable
+    skeleton: Skeleton
+    placement: Placement
+    joints: np.ndarray
+    colour: Colour = (0.8, 0.8, 0.8, 1.0)
+    holds: dict[Hashable, list[Grip]] = field(default_factory=dict)
+    _links: tuple[np.ndarray, np.ndarray] | None = None
+
+    @property
+    def description(self) -> Description:
+        return self.skeleton.description
+
+    def copy(self) -> Machine:
+        return replace(self, holds={item: list(grips) for item, grips in self.holds.items()})
+
+    def stand(self, placement: Placement) -> None:
+        """Put the root there."""
+        self.placement, self._links = placement, None
+
+    def bend(self, values: Mapping[str, float]) -> None:
+        """Set the joints of these names, whatever their limits. Errors: KeyError, for a joint that there is not."""
+        self.joints, self._links = self.skeleton.positions(values, self.joints), None
+
+    def joint(self, name: str) -> float | None:
+        """The position of a joint; ``None`` for one that does not move or is not there."""
+        number = self.skeleton.joint_numbers.get(name)
+        return None if number is None else float(self.joints[number])
+
+    def links(self) -> tuple[np.ndarray, np.ndarray]:
+        """(positions, rotations) of all bodies in the world, by the numbers of ``skeleton.links``."""
+        if self._links is None:
+            self._links = self.skeleton.placed(self.placement, self.joints)
+        return self._links
+
+    def link(self, name: str) -> Placement:
+        """Where a link is in the world. Errors: KeyError, for a link that there is not."""
+        positions, rotations = self.links()
+        number = self.skeleton.links[name]
+        return Placement(positions[number], rotations[number])

@@ -1,0 +1,213 @@
+"""A world of robots, furniture and objects, as CRAM's projection sees it: things stand where they are put, and what is let go falls.
+
+A robot teleports, its arms are where its joints say, and what it holds goes with it. Nothing takes time but `simulate`, in which free
+items fall until they lie. A world is copied in well under a millisecond, so a plan can try what it is going to do.
+
+Law: after each function the things are consistent: what is held is where its link holds it. The same calls give the same world, to the bit.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.data import list_from
+
+from .placements import Placement, placement
+from .scene import FLOOR, Part, Scene
+from .skeleton import Skeleton, skeleton_of
+from .things import GREY, Colour, Grip, Item, Machine, Thing
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Mapping, Sequence
+
+    from .descriptions import Description, Shape
+
+
+T = TypeVar("T", bound=Thing)
+
+
+class WorldError(SimpleError):
+    """Something was asked of a world that it cannot do: a thing that is not there, a name that is taken, a link that there is not."""
+
+    lisp_name = "ROBOT-WORLD::WORLD-ERROR"
+
+
+class World:
+    """Things by their names, in the order in which they were added."""
+
+    lisp_name = "ROBOT-WORLD::WORLD"
+
+    def __init__(self) -> None:
+        self.things: dict[Hashable, Thing] = {}
+        self._scene: Scene | None = None
+        self._placed = False
+
+    # ----------------------------------------------------------------------------------------------------------------- things
+
+    def add_item(
+        self,
+        name: Hashable,
+        shapes: Sequence[Shape],
+        at: Placement | None = None,
+        *,
+        mass: float = 0.2,
+        colour: Colour = GREY,
+        types: Sequence[Hashable] = (),
+    ) -> Item:
+        """Add a rigid object. See `Item` for the arguments. Errors: `WorldError`, when the name is taken."""
+        return self._add(Item(name, tuple(shapes), at or placement(), mass, colour, tuple(types)))
+
+    def add_machine(
+        self, name: Hashable, description: Description | Skeleton, at: Placement | None = None, joints: Mapping[str, float] | None = None
+    ) -> Machine:
+        """Add a robot, or furniture, with the given positions of its joints, the others 0. Errors: `WorldError`, when the name is taken."""
+        skeleton = description if isinstance(description, Skeleton) else skeleton_of(description)
+        return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {})))
+
+    def _add(self, thing: T) -> T:
+        if thing.name in self.things or thing.name == FLOOR:
+            error(WorldError("there is a thing named ~S already.", thing.name))
+        self.things[thing.name] = thing
+        thing.world = self
+        self._scene = None
+        return thing
+
+    def remove(self, name: Hashable) -> None:
+        """Take a thing away; who holds it holds it no more. Errors: `WorldError`, when it is not there."""
+        thing = self.thing(name)
+        del self.things[name]
+        thing.world = None
+        for machine in self.machines():
+            machine.holds.pop(name, None)
+        self._scene = None
+
+    def thing(self, name: Hashable) -> Thing:
+        """The thing of that name. Errors: `WorldError`, when there is none."""
+        found = self.things.get(name)
+        if found is None:
+            return error(WorldError("there is no thing named ~S; there are ~:[none~;~:*~{~S~^, ~}~].", name, list_from(self.things)))
+        return found
+
+    def item(self, name: Hashable) -> Item:
+        """The item of that name. Errors: `WorldError`."""
+        found = self.thing(name)
+        if not isinstance(found, Item):
+            error(WorldError("~S has joints; an item was expected.", name))
+        return found
+
+    def machine(self, name: Hashable) -> Machine:
+        """The robot, or furniture, of that name. Errors: `WorldError`."""
+        found = self.thing(name)
+        if not isinstance(found, Machine):
+            error(WorldError("~S has no joints; a robot or furniture was expected.", name))
+        return found
+
+    def items(self) -> list[Item]:
+        return [thing for thing in self.things.values() if isinstance(thing, Item)]
+
+    def machines(self) -> list[Machine]:
+        return [thing for thing in self.things.values() if isinstance(thing, Machine)]
+
+    # ----------------------------------------------------------------------------------------------------------------- places
+
+    def put(self, name: Hashable, at: Placement) -> None:
+        """Put a thing there; a machine takes with it what it holds. Errors: `WorldError`."""
+        thing = self.thing(name)
+        if isinstance(thing, Item):
+            thing.placement = at
+        else:
+            thing.stand(at)
+            self._carry(thing)
+        self._placed = False
+
+    def bend(self, name: Hashable, joints: Mapping[str, float]) -> None:
+        """Set joints of a machine, whatever their limits. Errors: `WorldError`, for joints that it has not."""
+        machine = self.machine(name)
+        for joint in joints:
+            if joint not in machine.skeleton.joint_numbers:
+                error(WorldError("~S has no joint ~A that moves.", name, joint))
+        machine.bend(joints)
+        self._carry(machine)
+        self._placed = False
+
+    def link(self, name: Hashable, link: str) -> Placement:
+        """Where a link of a machine is. Errors: `WorldError`, for a link that it has not."""
+        machine = self.machine(name)
+        if link not in machine.skeleton.links:
+            error(WorldError("~S has no link ~A.", name, link))
+        return machine.link(link)
+
+    def _carry(self, machine: Machine) -> None:
+        for name, grips in machine.holds.items():
+            grip = next((grip for grip in grips if not grip.loose), grips[0])
+            self.item(name).placement = machine.link(grip.link) @ grip.offset
+
+    # ------------------------------------------------------------------------------------------------------------------ grips
+
+    def attach(self, name: Hashable, item: Hashable, link: str, loose: bool = False) -> None:
+        """Let a link of a machine hold an item from now on, as it is now. loose: another link decides where the item goes."""
+        machine, held = self.machine(name), self.item(item)
+        machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose))
+        self._scene = None
+
+    def detach(self, name: Hashable, item: Hashable, link: str | None = None) -> None:
+        """Let an item go, by default all links. It stays where it is until the world is simulated."""
+        machine = self.machine(name)
+        grips = [grip for grip in machine.holds.pop(item, ()) if link is not None and grip.link != link]
+        if grips:
+            machine.holds[item] = grips
+        self._scene = None
+
+    def holders(self, item: Hashable) -> list[tuple[Machine, str]]:
+        """The machines and links that hold an item."""
+        return [(machine, grip.link) for machine in self.machines() for grip in machine.holds.get(item, ())]
+
+    # ---------------------------------------------------------------------------------------------- what happens between things
+
+    @property
+    def scene(self) -> Scene:
+        """The things as MuJoCo sees them, where they are now."""
+        if self._scene is None:
+            held = frozenset(item for machine in self.machines() for item in machine.holds)
+            self._scene, self._placed = Scene(self.things.values(), held), False
+        if not self._placed:
+            self._scene.place()
+            self._placed = True
+        return self._scene
+
+    def contacts(self, name: Hashable | None = None) -> list[tuple[Part, Part | None]]:
+        """What touches what, or touches the thing ``name``: see `Scene.contacts`."""
+        return self.scene.contacts(None if name is None else self.thing(name))
+
+    def touching(self, name: Hashable) -> list[Thing]:
+        """The things that touch the thing ``name``, in the order of the world; the floor is not among them."""
+        others = {id(other.thing) for _, other in self.contacts(name) if other is not None}
+        return [thing for thing in self.things.values() if id(thing) in others]
+
+    def bounds(self, name: Hashable, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """The lowest and the highest corner of the box along the axes around a thing, or around one of its links."""
+        return self.scene.bounds(self.thing(name), link)
+
+    def simulate(self, seconds: float) -> float:
+        """Let free items fall for so long, or until all are at rest; the seconds that it took."""
+        took = self.scene.settle(seconds)
+        self._placed = False
+        return took
+
+    def stable(self, name: Hashable, metres: float = 0.005, radians: float = 0.15) -> bool:
+        """Whether an item would still be where it is after five seconds."""
+        ahead = self.copy()
+        ahead.simulate(5.0)
+        return self.item(name).placement.near(ahead.item(name).placement, metres, radians)
+
+    def copy(self) -> World:
+        """A world with the same things at the same places, which goes its own way."""
+        new = World()
+        for name, thing in self.things.items():
+            new.things[name] = copied = thing.copy()
+            copied.world = new
+        return new
