@@ -18,7 +18,7 @@ def lisp(session):
     session.package = ensure_package("ROBOT-TESTS", use=[COMMON_LISP])
 
     def values(text):
-        text = f"(handler-case (progn {text}) (serious-condition (c) (format nil \"~A: ~A\" (type-of c) c)))"
+        text = f'(handler-case (progn {text}) (serious-condition (c) (format nil "~A: ~A" (type-of c) c)))'
         return " ".join(" ".join(prin1_to_string(value).split()) for value in session.evaluate_text(text, "<test>"))
 
     return values

@@ -6,31 +6,35 @@ LOW, HIGH = "Low-level failure happened", "High-level failure happened"
 FAILURES = [
     ("low-level-failure", "cpl:simple-plan-failure", LOW),
     ("high-level-failure", "cpl:simple-plan-failure", HIGH),
-    *((name, "common-fail:" + parent, text) for parent, names, text in (
-        (
-            "low-level-failure",
-            "actionlib-action-timed-out navigation-low-level-failure perception-low-level-failure ptu-low-level-failure "
-            "manipulation-low-level-failure",
-            LOW,
-        ),
-        ("navigation-low-level-failure", "navigation-pose-unreachable navigation-goal-not-reached", LOW),
-        ("perception-low-level-failure", "perception-object-not-found", LOW),
-        ("ptu-low-level-failure", "ptu-goal-unreachable ptu-goal-not-reached", LOW),
-        (
-            "manipulation-low-level-failure",
-            "manipulation-goal-not-reached manipulation-pose-unreachable gripper-low-level-failure torso-low-level-failure",
-            LOW,
-        ),
-        ("gripper-low-level-failure", "gripper-closed-completely gripper-goal-not-reached", LOW),
-        ("torso-low-level-failure", "torso-goal-unreachable torso-goal-not-reached", LOW),
-        (
-            "high-level-failure",
-            "navigation-high-level-failure looking-high-level-failure manipulation-goal-in-collision environment-unreachable "
-            "environment-manipulation-impossible object-unreachable object-unfetchable object-undeliverable object-nowhere-to-be-found",
-            HIGH,
-        ),
-        ("navigation-high-level-failure", "navigation-goal-in-collision", HIGH),
-    ) for name in names.split()),
+    *(
+        (name, "common-fail:" + parent, text)
+        for parent, names, text in (
+            (
+                "low-level-failure",
+                "actionlib-action-timed-out navigation-low-level-failure perception-low-level-failure ptu-low-level-failure "
+                "manipulation-low-level-failure",
+                LOW,
+            ),
+            ("navigation-low-level-failure", "navigation-pose-unreachable navigation-goal-not-reached", LOW),
+            ("perception-low-level-failure", "perception-object-not-found", LOW),
+            ("ptu-low-level-failure", "ptu-goal-unreachable ptu-goal-not-reached", LOW),
+            (
+                "manipulation-low-level-failure",
+                "manipulation-goal-not-reached manipulation-pose-unreachable gripper-low-level-failure torso-low-level-failure",
+                LOW,
+            ),
+            ("gripper-low-level-failure", "gripper-closed-completely gripper-goal-not-reached", LOW),
+            ("torso-low-level-failure", "torso-goal-unreachable torso-goal-not-reached", LOW),
+            (
+                "high-level-failure",
+                "navigation-high-level-failure looking-high-level-failure manipulation-goal-in-collision environment-unreachable "
+                "environment-manipulation-impossible object-unreachable object-unfetchable object-undeliverable object-nowhere-to-be-found",
+                HIGH,
+            ),
+            ("navigation-high-level-failure", "navigation-goal-in-collision", HIGH),
+        )
+        for name in names.split()
+    ),
 ]
 
 
@@ -124,7 +128,8 @@ def test_a_changed_robot_needs_nothing_and_a_removed_object_has_a_name(lisp):
 
 
 @pytest.mark.parametrize(
-    "occasion", ["object-in-hand ?x", "object-placed-at ?x ?y", "object-picked ?x", "object-put ?x", "loc ?x ?y", "looking-at ?x", "arms-parked"]
+    "occasion",
+    ["object-in-hand ?x", "object-placed-at ?x ?y", "object-picked ?x", "object-put ?x", "loc ?x ?y", "looking-at ?x", "arms-parked"],
 )
 def test_an_occasion_does_not_hold_until_somebody_says_so(lisp, occasion):
     name, *variables = occasion.split()

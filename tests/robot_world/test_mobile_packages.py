@@ -90,10 +90,10 @@ def test_a_package_is_there_when_it_is_named(lisp, name):
     nickname, used, exported = PACKAGES[name]
     assert lisp(f"(package-name (find-package '#:{nickname or name}))") == f'"{name.upper()}"'
     assert lisp(f"(package-nicknames '#:{name})") == (f'("{nickname.upper()}")' if nickname else "NIL")
-    assert set(eval(lisp(f'(format nil "~{{~S ~}}" (mapcar #\'package-name (package-use-list \'#:{name})))')).split()) == {
+    assert set(eval(lisp(f"(format nil \"~{{~S ~}}\" (mapcar #'package-name (package-use-list '#:{name})))")).split()) == {
         f'"{other.upper()}"' for other in used.split()
     }
-    there = lisp(f"(let (names) (do-external-symbols (s '#:{name}) (push (string-downcase s) names)) (format nil \"~{{~A ~}}\" names))")
+    there = lisp(f'(let (names) (do-external-symbols (s \'#:{name}) (push (string-downcase s) names)) (format nil "~{{~A ~}}" names))')
     assert sorted(there.strip('"').split()) == sorted(exported.split())
 
 

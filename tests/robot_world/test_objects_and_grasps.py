@@ -101,9 +101,9 @@ def test_where_the_gripper_is(objects, kind):
 
 
 def test_the_frames_of_a_grasp_are_those_of_the_object_and_of_the_tool(objects):
-    assert objects('(let ((g (grasp-of :cup :left :top))) (list (cl-transforms-stamped:frame-id g) (cl-transforms-stamped:child-frame-id g)))') == (
-        '("cup_1" "left_tool_frame")'
-    )
+    assert objects(
+        "(let ((g (grasp-of :cup :left :top))) (list (cl-transforms-stamped:frame-id g) (cl-transforms-stamped:child-frame-id g)))"
+    ) == ('("cup_1" "left_tool_frame")')
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,10 @@ def test_the_frames_of_a_grasp_are_those_of_the_object_and_of_the_tool(objects):
     ],
 )
 def test_what_a_gripper_needs_to_know(objects, kind, effort, opening, grasps):
-    assert objects(f"(list (obj-int:get-object-type-gripping-effort :{kind}) (obj-int:get-object-type-gripper-opening :{kind}))") == f"({effort} {opening})"
+    assert (
+        objects(f"(list (obj-int:get-object-type-gripping-effort :{kind}) (obj-int:get-object-type-gripper-opening :{kind}))")
+        == f"({effort} {opening})"
+    )
     assert objects(f"(all-grasps :{kind})") == (f"({grasps})" if grasps else "NIL")
 
 
@@ -174,13 +177,15 @@ def test_the_poses_on_the_way(objects):
     assert objects("(poses :cup :right :back (from-robot 0.7 0 (/ pi 2)))") == (
         "((0.7 -0.13 0.98) (0.7 -0.13 0.83) (0.7 0.02 0.83) (0.7 0.02 0.98) (0.7 0.02 0.98))"
     )
-    assert objects("(mapcar #'cl-transforms-stamped:frame-id (obj-int:get-object-grasping-poses 'x :cup :left :back (from-robot 1 0 0)))") == (
-        '("base_footprint" "base_footprint" "base_footprint" "base_footprint" "base_footprint")'
-    )
+    assert objects(
+        "(mapcar #'cl-transforms-stamped:frame-id (obj-int:get-object-grasping-poses 'x :cup :left :back (from-robot 1 0 0)))"
+    ) == ('("base_footprint" "base_footprint" "base_footprint" "base_footprint" "base_footprint")')
 
 
 def test_an_object_that_looks_the_same_from_all_sides_is_not_turned(objects):
-    objects("(prolog:def-fact-group round-things (obj-int:object-rotationally-symmetric) (prolog:<- (obj-int:object-rotationally-symmetric :cup)))")
+    objects(
+        "(prolog:def-fact-group round-things (obj-int:object-rotationally-symmetric) (prolog:<- (obj-int:object-rotationally-symmetric :cup)))"
+    )
     assert objects("(poses :cup :right :back (from-robot 0.7 0 (/ pi 2)))") == objects("(poses :cup :right :back (from-robot 0.7 0 0))")
     objects("(prolog:def-fact-group round-things (obj-int:object-rotationally-symmetric))")
 
@@ -191,7 +196,10 @@ def test_a_grasp_of_ones_own(objects):
              :grasp-translation '(0 0 0.1) :grasp-rot-matrix obj-int:*top-across-x-grasp-rotation* :lift-offsets (list 0 0 (+ 0.1 0.2)))"""
     )
     assert objects("(place (grasp-of :ladle :left :top))") == "(0 0 0.1)"
-    assert objects("(place (obj-int:get-object-type-to-gripper-lift-transform :whisk 'w :left :top (grasp-of :whisk :left :top)))") == "(0 0 0.4)"
+    assert (
+        objects("(place (obj-int:get-object-type-to-gripper-lift-transform :whisk 'w :left :top (grasp-of :whisk :left :top)))")
+        == "(0 0 0.4)"
+    )
     assert objects("(obj-int:get-object-type-to-gripper-pregrasp-transform :whisk 'w :left :top (grasp-of :whisk :left :top))") == (
         '"SIMPLE-ERROR: Pregrasp transform not defined for object type WHISK with arm LEFT and grasp TOP "'
     )
@@ -210,11 +218,11 @@ SEEN = """(let* ((pose (cl-transforms-stamped:make-pose-stamped "base_footprint"
 
 
 def test_where_an_object_was_seen(objects):
-    assert objects(SEEN.format("(list (eq pose (obj-int:get-object-pose seen)) (obj-int:get-object-transform seen) (obj-int:get-object-pose cup))")) == (
-        "(T TRANSFORM NIL)"
-    )
+    assert objects(
+        SEEN.format("(list (eq pose (obj-int:get-object-pose seen)) (obj-int:get-object-transform seen) (obj-int:get-object-pose cup))")
+    ) == ("(T TRANSFORM NIL)")
     assert objects(SEEN.format("(eq pose (desig:reference (desig:make-designator :location `((:of ,cup)))))")) == "T"
     assert objects(SEEN.format("(eq pose (cut:var-value '?p (first (prolog:prolog `(desig:desig-location-prop ,seen ?p)))))")) == "T"
-    assert objects("(desig:reference (desig:make-designator :location `((:of ,(desig:make-designator :object '((:type :cup)))))))").startswith(
-        '"DESIGNATOR-ERROR'
-    )
+    assert objects(
+        "(desig:reference (desig:make-designator :location `((:of ,(desig:make-designator :object '((:type :cup)))))))"
+    ).startswith('"DESIGNATOR-ERROR')

@@ -30,10 +30,14 @@ def tf(lisp):
     if lisp("(fboundp 'shown)") == "NIL":
         lisp("(asdf:load-system :cram-tf)")
         lisp(DEFINE)
-    yield lambda form: lisp(f'(let ((cram-tf:*transformer* *tf*) (cram-tf:*fixed-frame* "map") (cram-tf:*robot-base-frame* "base")) {form})')
+    yield lambda form: lisp(
+        f'(let ((cram-tf:*transformer* *tf*) (cram-tf:*fixed-frame* "map") (cram-tf:*robot-base-frame* "base")) {form})'
+    )
 
 
-@pytest.mark.parametrize("kind, numbers", [("flat-list", "(1 2 3 0 0 1 0)"), ("list", "((1 2 3) (0 0 1 0))"), ("flat-list-w-first", "(1 2 3 0 0 0 1)")])
+@pytest.mark.parametrize(
+    "kind, numbers", [("flat-list", "(1 2 3 0 0 1 0)"), ("list", "((1 2 3) (0 0 1 0))"), ("flat-list-w-first", "(1 2 3 0 0 0 1)")]
+)
 def test_poses_as_lists_and_back(tf, kind, numbers):
     assert tf(f"(shown (cram-tf:pose->{kind} (cram-tf:{kind}->pose '{numbers})))") == numbers
     assert tf(f"(shown (cram-tf:{kind}->pose '{numbers}))") == "((1 2 3) 3.142)"
@@ -51,7 +55,10 @@ def test_poses_as_lists_and_back(tf, kind, numbers):
         ('(cram-tf:strip-transform-stamped (from "a" "b" 1 2 3 1 4.0))', '("a" 4 (1 2 3) 1)'),
         ('(cram-tf:transform-stamped-inv (from "a" "b" 1 0 0 (/ pi 2) 4.0))', '("b" "a" 4 (0 1 0) -1.571)'),
         ('(cram-tf:translate-transform-stamped (from "a" "b" 1 2 3 1 4.0) :z-offset 1)', '("a" "b" 4 (1 2 4) 1)'),
-        ('(cram-tf:copy-transform-stamped (from "a" "b" 1 2 3) :frame-id "c" :translation (vec 0 0 0) :stamp 2.0)', '("c" "b" 2 (0 0 0) 0)'),
+        (
+            '(cram-tf:copy-transform-stamped (from "a" "b" 1 2 3) :frame-id "c" :translation (vec 0 0 0) :stamp 2.0)',
+            '("c" "b" 2 (0 0 0) 0)',
+        ),
         ('(cram-tf:apply-transform (from "a" "b" 1 0 0 (/ pi 2) 4.0) (from "b" "c" 1 0 0 0 3.0))', '("a" "c" 3 (1 1 0) 1.571)'),
         (
             '(cram-tf:multiply-transform-stampeds "a" "c" (from "a" "b" 1 0 0 0 4.0) (from "b" "c" 1 0 0 0 9.0) :result-as-pose-or-transform :pose)',
@@ -78,7 +85,10 @@ def test_nothing_is_nowhere(tf):
     "form, text",
     [
         ("(cram-tf:rotate-pose (pose 1 2 3) :up 1)", '"SIMPLE-ERROR: [CRAM-TF:ROTATE-POSE] axis UP not specified properly"'),
-        ("(let ((cram-tf:*transformer* nil)) (cram-tf:robot-current-pose))", '"SIMPLE-ERROR: *transformer* is NIL. Have you called STARTUP-ROS?"'),
+        (
+            "(let ((cram-tf:*transformer* nil)) (cram-tf:robot-current-pose))",
+            '"SIMPLE-ERROR: *transformer* is NIL. Have you called STARTUP-ROS?"',
+        ),
         (
             "(let ((cram-tf:*fixed-frame* nil)) (desig:reference (desig:make-designator :location `((:of-plain ,(pose 1 2 3))))))",
             '"SIMPLE-ERROR: cram-tf:*fixed-frame* must be set."',
@@ -107,32 +117,45 @@ def test_solutions_that_are_near_are_the_same(tf, metres, degrees, same):
 
 
 def test_how_near_poses_are(tf):
-    assert tf("(list (cram-tf:poses-equal-p (pose 0 0 0) (pose 0 0 1) 1.1 0.1) (cram-tf:poses-equal-p (pose 0 0 0) (pose 0 0 1 0.2) 1.1 0.1))") == "(T NIL)"
+    assert (
+        tf("(list (cram-tf:poses-equal-p (pose 0 0 0) (pose 0 0 1) 1.1 0.1) (cram-tf:poses-equal-p (pose 0 0 0) (pose 0 0 1 0.2) 1.1 0.1))")
+        == "(T NIL)"
+    )
     converged = '(cram-tf:tf-frame-converged "base" (stamped "map" 1.1 2 7 (/ pi 2) 5.0) {} 0.1)'
     assert tf(f"(list {converged.format(0.2)} {converged.format(0.05)})") == "(T NIL)"
-    assert tf('(let ((far (cram-tf:make-euclidean-distance-filter (stamped "map" 0 0 0) 1))) (mapcar far (list (pose 0.5 0 0) (pose 2 0 0))))') == "(NIL T)"
+    assert (
+        tf('(let ((far (cram-tf:make-euclidean-distance-filter (stamped "map" 0 0 0) 1))) (mapcar far (list (pose 0.5 0 0) (pose 2 0 0))))')
+        == "(NIL T)"
+    )
 
 
 def test_a_location_of_a_pose(tf):
-    place = '(desig:make-designator :location `((:pose ,{})))'
+    place = "(desig:make-designator :location `((:pose ,{})))"
     assert tf(f"(shown (desig:reference {place.format('(stamped `base` 1 0 0)'.replace('`', chr(34)))}))") == '("base" 0 (1 0 0) 0)'
     assert tf(f"(shown (desig:reference {place.format('(pose 1 0 0)')}))") == '("map" 0 (1 0 0) 0)'
-    assert tf(
-        f"""(let ((a {place.format('(stamped "map" 1 2 0)')}) (b {place.format('(stamped "base" 3 0 -0.5 0 5.0)')}))
+    assert (
+        tf(
+            f"""(let ((a {place.format('(stamped "map" 1 2 0)')}) (b {place.format('(stamped "base" 3 0 -0.5 0 5.0)')}))
               (desig:reference a) (desig:reference b)
               (list (shown (desig:designator-pose a)) (near (desig:designator-distance a b))))"""
-    ) == '(("map" 0 (1 2 0) 0) 3)'
+        )
+        == '(("map" 0 (1 2 0) 0) 3)'
+    )
 
 
 @pytest.mark.parametrize(
     "goal, variable, value",
     [
-        ("(cram-tf:pose-stamped ,(stamped \"map\" 1 2 3) ?frame ?stamp ?position ?orientation)", "?frame", '"map"'),
+        ('(cram-tf:pose-stamped ,(stamped "map" 1 2 3) ?frame ?stamp ?position ?orientation)', "?frame", '"map"'),
         ("(and (cram-tf:pose ,(pose 1 2 3) ?p ?q) (cram-tf:position ?p (?x ?y ?z)))", "(near ?z)", "3"),
         ("(and (cram-tf:position ?p (1 2 3)) (cram-tf:orientation ?q (0 0 0 1)) (cram-tf:pose ?v ?p ?q))", "(shown ?v)", "((1 2 3) 0)"),
         ("(cram-tf:poses-equal ,(pose 1 2 3) ,(pose 1 2 3.1) (?d 1))", None, None),
         ("(and (equal ?d 0.2) (cram-tf:poses-equal ,(pose 1 2 3) ,(pose 1 2 3.1) (?d 1)))", "?d", "0.2"),
-        ("(cram-tf:location-pose ,(desig:make-designator :location `((:pose ,(stamped \"map\" 1 2 3)))) ?pose)", "(shown ?pose)", '("map" 0 (1 2 3) 0)'),
+        (
+            '(cram-tf:location-pose ,(desig:make-designator :location `((:pose ,(stamped "map" 1 2 3)))) ?pose)',
+            "(shown ?pose)",
+            '("map" 0 (1 2 3) 0)',
+        ),
     ],
 )
 def test_predicates(tf, goal, variable, value):

@@ -63,7 +63,9 @@ def test_a_listed_property_gives_its_value_and_a_known_one_is_found_twice(motion
         assert motions(form + f"(length (cut:force-ll (prolog:prolog `(spec:property ,d (:{key} ,v))))))") == "2", (key, value)
 
 
-@pytest.mark.parametrize("kind, key", [("motion", "type"), ("motion", "constraints"), ("motion", "collision-mode"), ("location", "on"), ("object", "size")])
+@pytest.mark.parametrize(
+    "kind, key", [("motion", "type"), ("motion", "constraints"), ("motion", "collision-mode"), ("location", "on"), ("object", "size")]
+)
 def test_a_property_that_is_not_listed_is_found_once_if_it_is_known(motions, kind, key):
     designator = f"(desig:make-designator :{kind} '((:{key} :it)))"
     assert motions(f"(values-of {designator} :{key})") == "NIL"
@@ -111,24 +113,30 @@ def test_what_is_no_designator_has_no_properties(motions):
         (":type :moving-gripper-joint :gripper :left :joint-angle 0.1", "(MOVE-GRIPPER-JOINT 0.1 :LEFT NIL)"),
         (":type :moving-tcp", "(MOVE-TCP NIL NIL NIL)"),
         (":type :moving-tcp :left-target (location 1)", "(MOVE-TCP (:AT 1) NIL NIL)"),
-        (":type :moving-tcp :left-target (location 1 2) :right-target (location 3) :collision-mode :allow-all", "(MOVE-TCP (:AT 1) (:AT 3) :ALLOW-ALL)"),
+        (
+            ":type :moving-tcp :left-target (location 1 2) :right-target (location 3) :collision-mode :allow-all",
+            "(MOVE-TCP (:AT 1) (:AT 3) :ALLOW-ALL)",
+        ),
         (":type :moving-arm-joints", "(MOVE-JOINTS NIL NIL)"),
         (":type :moving-arm-joints :right-configuration '(1 2)", "(MOVE-JOINTS NIL (1 2))"),
         (':type :moving-with-constraints :constraints "x > 0"', '(MOVE-WITH-CONSTRAINTS "x > 0")'),
     ],
 )
 def test_a_motion_resolves_to_a_command(motions, entries, solution):
-    assert motions(f"(let ((*package* (find-package :cram-common-designators))) (prin1-to-string (plain (desig:reference (motion {entries})))))") == (
-        '"' + solution.replace('"', '\\"') + '"'
-    )
+    assert motions(
+        f"(let ((*package* (find-package :cram-common-designators))) (prin1-to-string (plain (desig:reference (motion {entries})))))"
+    ) == ('"' + solution.replace('"', '\\"') + '"')
 
 
 @pytest.mark.parametrize("kind, command", [("detecting", "detect"), ("inspecting", "inspect")])
 def test_looking_for_an_object_is_about_what_is_known_of_it_now(motions, kind, command):
-    assert motions(
-        f"(let* ((cup (desig:make-designator :object '((:type :cup)))) (seen (desig:make-designator :object '((:name it)) cup))"
-        f" (found (desig:reference (motion :type :{kind} :object cup)))) (list (eq (second found) seen) (eq (first found) 'cram-common-designators:{command})))"
-    ) == "(T T)"
+    assert (
+        motions(
+            f"(let* ((cup (desig:make-designator :object '((:type :cup)))) (seen (desig:make-designator :object '((:name it)) cup))"
+            f" (found (desig:reference (motion :type :{kind} :object cup)))) (list (eq (second found) seen) (eq (first found) 'cram-common-designators:{command})))"
+        )
+        == "(T T)"
+    )
 
 
 @pytest.mark.parametrize("places", [(1,), (1, 2, 3)])
@@ -138,7 +146,9 @@ def test_a_going_motion_has_as_many_solutions_as_its_target(motions, places):
     assert motions(f"(solutions (motion :type :going :target (location {xs})))") == f"({expected})"
 
 
-@pytest.mark.parametrize("entries", [":type :going", ":type :going :target (location)", ":type :dancing", ":type :opening", ":gripper :left"])
+@pytest.mark.parametrize(
+    "entries", [":type :going", ":type :going :target (location)", ":type :dancing", ":type :opening", ":gripper :left"]
+)
 def test_a_motion_that_lacks_something_is_not_resolved(motions, entries):
     assert motions(f"(desig:reference (motion {entries}))").startswith('"DESIGNATOR-ERROR: Cannot resolve motion designator')
 
@@ -146,7 +156,10 @@ def test_a_motion_that_lacks_something_is_not_resolved(motions, entries):
 def test_opening_is_another_thing_as_a_motion_than_as_an_action(motions):
     motions("(asdf:load-system :cram-mobile-pick-place-plans)")
     description = "'((:type :opening) (:gripper :left))"
-    assert motions(f"(desig:reference (desig:make-designator :motion {description}))") == "(CRAM-COMMON-DESIGNATORS:MOVE-GRIPPER-JOINT :OPEN :LEFT)"
-    assert motions(f"(desig:reference (desig:make-designator :action {description}))") == "(PP-PLANS::OPEN-OR-CLOSE-GRIPPER :LEFT :OPENING)".replace(
-        "PP-PLANS", "CRAM-MOBILE-PICK-PLACE-PLANS"
+    assert (
+        motions(f"(desig:reference (desig:make-designator :motion {description}))")
+        == "(CRAM-COMMON-DESIGNATORS:MOVE-GRIPPER-JOINT :OPEN :LEFT)"
     )
+    assert motions(
+        f"(desig:reference (desig:make-designator :action {description}))"
+    ) == "(PP-PLANS::OPEN-OR-CLOSE-GRIPPER :LEFT :OPENING)".replace("PP-PLANS", "CRAM-MOBILE-PICK-PLACE-PLANS")

@@ -131,21 +131,23 @@ def test_a_joint_that_is_not_there(pr2, function):
 
 
 def test_a_description_on_the_parameter_server(pr2):
-    robot = "<robot name='toy'><link name='a'/><link name='b'/><joint name='j' type='{}'><parent link='a'/><child link='b'/></joint></robot>"
+    robot = (
+        "<robot name='toy'><link name='a'/><link name='b'/><joint name='j' type='{}'><parent link='a'/><child link='b'/></joint></robot>"
+    )
     pr2('(roslisp-utilities:startup-ros :name "describer")')
     pr2(f'(roslisp:set-param "robot_description" "{robot.format("continuous")}")')
     assert pr2('(list (get-joint-type "j") (get-joint-upper-limit "j"))') == "(:CONTINUOUS NIL)"
     pr2(f'(roslisp:set-param "robot_description" "{robot.format("elastic")}")')
-    assert pr2('(get-joint-type "j")').startswith('"SIMPLE-ERROR: The robot\'s description cannot be read: ')
+    assert pr2('(get-joint-type "j")').startswith("\"SIMPLE-ERROR: The robot's description cannot be read: ")
     pr2("(roslisp-utilities:shutdown-ros)")
     assert pr2('(get-joint-type "torso_lift_joint")') == ":PRISMATIC"
 
 
 def test_a_rule_of_the_robots_own(pr2):
     pr2("(prolog:def-fact-group own () (prolog:<- (cram-pr2-description::favourite-cup :left blue)))")
-    assert pr2("(list (symbol-to-prolog-rule 'favourite-cup :left) (symbol-to-prolog-rule 'favourite-cup :right) (symbol-to-prolog-rule :no-rule))") == (
-        "(BLUE CRAM-PR2-DESCRIPTION::FAVOURITE-CUP :NO-RULE)"
-    )
+    assert pr2(
+        "(list (symbol-to-prolog-rule 'favourite-cup :left) (symbol-to-prolog-rule 'favourite-cup :right) (symbol-to-prolog-rule :no-rule))"
+    ) == ("(BLUE CRAM-PR2-DESCRIPTION::FAVOURITE-CUP :NO-RULE)")
 
 
 def test_designators_about_robots(pr2):
