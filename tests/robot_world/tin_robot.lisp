@@ -12,13 +12,15 @@
 (asdf:load-system :cram-knowrob-pick-place)
 
 (defvar *told* '() "What the modules were told, the latest first.")
+(defvar *times* '() "When they were told it, in virtual time.")
 (defvar *events* '() "The classes of the events, the latest first.")
-(defvar *failures* '() "(COMMAND COUNT FAILURE): that many calls of the motion COMMAND fail with an object of FAILURE.")
+(defvar *failures* '()
+  "(COMMAND COUNT FAILURE ARGUMENT...): that many calls of the motion COMMAND with one of the arguments, or any, fail with FAILURE.")
 (defvar *things* '() "What is seen: lists of type and name.")
 (defvar *held* '() "(OBJECT ARM) of what is held.")
 
 (defun forget ()
-  (setf *told* '() *events* '() *failures* '() *things* '() *held* '()))
+  (setf *told* '() *times* '() *events* '() *failures* '() *things* '() *held* '()))
 
 (defun pose (x y z &optional (frame "base_footprint"))
   (cl-transforms-stamped:make-pose-stamped
@@ -33,11 +35,12 @@
 (defun tell (desig)
   (destructuring-bind (command . arguments) (desig:reference desig)
     (push (cons command arguments) *told*)
+    (push (cut:current-timestamp) *times*)
     (cpl:sleep 0.01)
     (let ((failure (assoc command *failures* :test #'string=)))
-      (when (and failure (plusp (second failure)))
+      (when (and failure (plusp (second failure)) (or (null (cdddr failure)) (intersection (cdddr failure) arguments)))
         (decf (second failure))
-        (cpl:fail (third failure))))
+        (cpl:fail (third failure) :description "The robot is of tin.")))
     (values command arguments)))
 
 (cpm:def-process-module body (desig) (tell desig))

@@ -21,7 +21,7 @@ DATA = Path(__file__).parent / "data"
 
 @functools.lru_cache(maxsize=8)
 def description(source: str) -> Description:
-    """The description in a URDF text or file. A name that is no path is that of a file of ours. Errors: `DescriptionError`, OSError."""
+    """The description in a URDF text or file. A name that no folder holds is that of a file of ours. Errors: `DescriptionError`, OSError."""
     if source.lstrip().startswith("<"):
         return urdf.read_text(source, "robot_description")
     path = Path(source)
@@ -42,16 +42,6 @@ def joint_figures(source: str, name: str) -> Cons:
         near = near_names(str(name), robot.joints)
         return error("The robot ~A has no joint ~S.~@[ Did you mean ~A?~]", robot.name, name, " or ".join(near) or None)
     w, x, y, z = joint.frame.rotation
-    lower, upper = (DoubleFloat(limit) if isfinite(limit) and joint.moves else None for limit in (joint.lower, joint.upper))
-    return list_from(
-        [
-            joint.kind,
-            lower,
-            upper,
-            list_from(joint.axis),
-            list_from(joint.frame.position),
-            list_from((x, y, z, w)),
-            joint.parent,
-            joint.child,
-        ]
-    )
+    limits = (DoubleFloat(limit) if isfinite(limit) and joint.moves else None for limit in (joint.lower, joint.upper))
+    places = (list_from(map(DoubleFloat, numbers)) for numbers in (joint.axis, joint.frame.position, (x, y, z, w)))
+    return list_from([joint.kind, *limits, *places, joint.parent, joint.child])

@@ -18,7 +18,7 @@
 
 (defun get-joint-type (joint-name)
   "The type of a joint: :FIXED, :REVOLUTE, :CONTINUOUS or :PRISMATIC."
-  (intern (string-upcase (first (joint-figures joint-name))) :keyword))
+  (values (intern (string-upcase (first (joint-figures joint-name))) :keyword)))
 
 (defun get-joint-lower-limit (joint-name)
   "The least position of a joint, in radians or metres; nil for one that turns without end."

@@ -63,7 +63,7 @@
 
 (defun current-robot-symbol ()
   "The symbol of the robot whose description is loaded, or nil."
-  (solution '?robot '(robot ?robot)))
+  (values (solution '?robot '(robot ?robot))))
 
 (defun current-robot-package ()
   "The package of `current-robot-symbol': that of the robot's description."

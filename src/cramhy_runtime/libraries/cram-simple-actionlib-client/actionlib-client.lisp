@@ -15,17 +15,20 @@
 (defvar *entries* (make-hash-table)
   "The entry of each name.")
 
+(defun connect (entry)
+  "Make the client of ENTRY and wait for its server; nil when none is heard."
+  (with-slots (ros-name ros-type timeout client) entry
+    (let ((new (actionlib:make-action-client ros-name ros-type)))
+      (roslisp:ros-info (simple-actionlib-client) "Waiting for the action server ~A..." ros-name)
+      (cond ((actionlib:wait-for-server new timeout) (setf client new))
+            (t (roslisp:ros-warn (simple-actionlib-client) "There is no action server ~A after ~A seconds." ros-name timeout)
+               nil)))))
+
 (defun connected-client (name)
   "The client that NAME stands for; one that is new has waited for its server. Nil when NAME is not known, or no server was heard."
   (let ((entry (gethash name *entries*)))
     (when entry
-      (or (entry-client entry)
-          (let ((client (actionlib:make-action-client (entry-ros-name entry) (entry-ros-type entry))))
-            (roslisp:ros-info (simple-actionlib-client) "Waiting for the action server ~A..." (entry-ros-name entry))
-            (if (actionlib:wait-for-server client (entry-timeout entry))
-                (setf (entry-client entry) client)
-                (roslisp:ros-warn (simple-actionlib-client) "There is no action server ~A after ~A seconds."
-                                  (entry-ros-name entry) (entry-timeout entry))))))))
+      (or (entry-client entry) (connect entry)))))
 
 (defun make-simple-action-client (name ros-name ros-type timeout &key initialize-now)
   "Let NAME, a symbol, stand for a client of the action ROS-NAME of ROS-TYPE, which waits TIMEOUT seconds for the server. With
