@@ -26,7 +26,7 @@ FLOORS = [
     ["cpl", "prolog", "ros"],
     ["designators", "turtlesim", "episodes", "actionlib", "rosbridge"],
     ["occasions", "tf"],
-    ["process_modules"],
+    ["process_modules", "robot_world"],
     ["projection"],
     ["languages"],
     ["session"],

@@ -51,10 +51,7 @@ def made() -> dict[str, str]:
     """The text of each file."""
     kitchen = read("kitchen")
     table = {"table_area_main_joint": {"xyz": (-1.4, -1.18, 0.0), "rpy": (0.0, 0.0, pi)}}  # under the tutorials' bottle
-    return {
-        "pr2.urdf": urdf.text_of(described("pr2", read("pr2"))),
-        "kitchen.urdf": urdf.text_of(described("iai_kitchen", kitchen, table)),
-    }
+    return {"pr2.urdf": urdf.text_of(described("pr2", read("pr2"))), "kitchen.urdf": urdf.text_of(described("iai_kitchen", kitchen, table))}
 
 
 if __name__ == "__main__":

@@ -110,7 +110,9 @@ class Description:
         roots = [name for name in self.links if name not in above]
         if len(roots) != 1:
             raise DescriptionError(
-                f"it has {len(roots)} roots ({', '.join(roots[:5])}); a robot has one link that no joint leads to." if roots else "it has no root.",
+                f"it has {len(roots)} roots ({', '.join(roots[:5])}); a robot has one link that no joint leads to."
+                if roots
+                else "it has no root.",
                 self.file,
             )
         if len(self.order) != len(self.links):

@@ -49,9 +49,7 @@ class Scene:
         self.things, self.held = list(things), held
         spec = mujoco.MjSpec()
         spec.option.timestep = STEP
-        spec.worldbody.add_geom(
-            name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], contype=_STANDING, conaffinity=_ITEM
-        )
+        spec.worldbody.add_geom(name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], contype=_STANDING, conaffinity=_ITEM)
         self.parts = list(self._add_parts(spec))
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)

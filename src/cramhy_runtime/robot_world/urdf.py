@@ -109,7 +109,9 @@ class _Reading:
         shapes = element.all("collision") or element.all("visual")
         mass = (inertial := element.first("inertial")) and inertial.first("mass")
         return Link(
-            self.name(element), tuple(self.shape(each) for each in shapes), self.number(mass, "value", least=0.0) if mass is not None else 0.0
+            self.name(element),
+            tuple(self.shape(each) for each in shapes),
+            self.number(mass, "value", least=0.0) if mass is not None else 0.0,
         )
 
     def shape(self, element: _Element) -> Shape:

@@ -6,7 +6,8 @@
   (:nicknames #:cma)
   (:export #:degrees->radians #:radians->degrees #:normalize-angle #:average #:covariance #:gauss
            #:double-vector #:double-matrix #:make-double-vector #:make-double-matrix #:height #:width
-           #:double-matrix-product #:double-matrix-transpose #:double-matrix-determinant #:invert-double-matrix #:map-double-matrix))
+           #:double-matrix-product #:double-matrix-transpose #:double-matrix-determinant #:invert-double-matrix #:map-double-matrix
+           #:invalid-probability-distribution))
 
 (in-package #:cram-math)
 
@@ -115,6 +116,10 @@
     inverse))
 
 ;;; -------------------------------------------------------------------------------------------------------------- statistics
+
+(define-condition invalid-probability-distribution (error) ()
+  (:report "The probabilities are 0 everywhere, so that nothing can be drawn from them.")
+  (:documentation "A distribution whose sum is 0."))
 
 (defun covariance (samples)
   "The matrix of covariances of SAMPLES, a list of vectors of one length."

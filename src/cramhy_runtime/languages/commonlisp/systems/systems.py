@@ -84,6 +84,9 @@ LIBRARY_PACKAGES = {
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
     "IT.BESE.FIVEAM": "fiveam",
+    "CRAM-LOCATION-COSTMAP": "cram-location-costmap",
+    "LOCATION-COSTMAP": "cram-location-costmap",
+    "COSTMAP": "cram-location-costmap",
 }
 """Their packages: the library is loaded when its package is first named."""
 
