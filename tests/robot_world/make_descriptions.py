@@ -47,11 +47,39 @@ def read(name: str) -> dict:
     return json.loads((FIGURES / f"{name}.json").read_text())
 
 
+ROUND = frozenset("bottle buttermilk cup bowl plate red-metal-plate blue-metal-plate pot mug".split())
+"""The types of objects that are cylinders; all others are boxes."""
+
+
+def objects(figures: dict) -> dict[str, dict]:
+    """Type of object -> shape, size and middle. Of types that several packages have, the last counts, as when they are loaded in turn."""
+    found = {}
+    for files in figures["mesh_sets"].values():
+        for name, entry in files.items():
+            entry = entry[-1] if isinstance(entry, list) else entry
+            x, y, z = entry["size"]
+            shape = {"shape": "cylinder", "size": [round((x + y) / 4, 4), z]} if name in ROUND else {"shape": "box", "size": [x, y, z]}
+            found[name.split()[0]] = {**shape, "middle": entry["center"]}
+    for name, size in (("cereal-box", [0.058, 0.193, 0.277]), ("sugar-box", [0.055, 0.094, 0.207])):
+        found[name] = {"shape": "box", "size": size, "middle": [0.0, 0.0, 0.0]}
+    return dict(sorted(found.items()))
+
+
+def written(models: dict[str, dict]) -> str:
+    """JSON with a line for each model."""
+    lines = ",\n".join(f" {json.dumps(name)}: {json.dumps(model)}" for name, model in models.items())
+    return f"{{\n{lines}\n}}\n"
+
+
 def made() -> dict[str, str]:
     """The text of each file."""
     kitchen = read("kitchen")
     table = {"table_area_main_joint": {"xyz": (-1.4, -1.18, 0.0), "rpy": (0.0, 0.0, pi)}}  # under the tutorials' bottle
-    return {"pr2.urdf": urdf.text_of(described("pr2", read("pr2"))), "kitchen.urdf": urdf.text_of(described("iai_kitchen", kitchen, table))}
+    return {
+        "objects.json": written(objects(read("objects"))),
+        "pr2.urdf": urdf.text_of(described("pr2", read("pr2"))),
+        "kitchen.urdf": urdf.text_of(described("iai_kitchen", kitchen, table)),
+    }
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Descriptions of what has links and joints: robots, and furniture with doors and drawers.
 
-A `Description` is the tree that a URDF file tells of (``urdf.py``): links with the shapes that may be hit, joints that move one link against
-another. Lengths are metres, angles radians, quaternions (w, x, y, z) as MuJoCo has them; a place is given in the frame of the link around it.
+A `Description` is the tree that a URDF file tells of (``urdf.py``): links with the shapes that may be hit, joints that move one link
+against another. Lengths are metres, angles radians, quaternions (w, x, y, z) as MuJoCo has them; a place is given in the frame of the link
+around it.
 
 Law: a description is a tree with one root; each joint has the limits of the file, and ``inf`` where there are none.
 """
@@ -41,8 +42,8 @@ class Frame:
 class Shape:
     """What a link, or an object, is made of.
 
-    kind: ``"box"``, ``"cylinder"`` (along z), ``"sphere"`` or ``"mesh"``. size: of a box its three lengths, of a cylinder radius and length, of
-    a sphere its radius, of a mesh its scale along x, y and z. mesh: the file or ``package://`` address of a mesh.
+    kind: ``"box"``, ``"cylinder"`` (along z), ``"sphere"`` or ``"mesh"``. size: of a box its three lengths, of a cylinder radius and
+    length, of a sphere its radius, of a mesh its scale along x, y and z. mesh: the file or ``package://`` address of a mesh.
     """
 
     kind: Literal["box", "cylinder", "sphere", "mesh"]

@@ -1,8 +1,8 @@
 """The things of a world as MuJoCo sees them: what touches what, what falls where, what a ray meets.
 
 A `Scene` is made for a set of things and thrown away when the set changes, or when an item is gripped or let go; making one takes some
-milliseconds. Links of machines and items that are held have no degrees of freedom here: they are where their things say. Items that are free
-have six, and fall when the scene is simulated.
+milliseconds. Links of machines and items that are held have no degrees of freedom here: they are where their things say. Items that are
+free have six, and fall when the scene is simulated.
 
 Law: a scene computes from where the things are now (`place`), and writes back only what `settle` moved.
 """
@@ -124,7 +124,8 @@ class Scene:
     # --------------------------------------------------------------------------------------------------------------- contacts
 
     def contacts(self, of: Item | Machine | None = None) -> list[tuple[Part, Part | None]]:
-        """The pairs of parts of different things that touch; ``None`` stands for the floor. of: only those of this thing, which then comes first.
+        """The pairs of parts of different things that touch; ``None`` stands for the floor. of: only those of this thing, which then comes
+        first.
 
         Two machines that nothing moves, as furniture on its floor, touch where they were built so.
         """

@@ -1,7 +1,7 @@
-"""The functions of the package CRAM-LOCATION-COSTMAP that compute: Lisp's arguments in, Lisp's objects out. Source: mobile-manipulation.md 9.
+"""The functions of the package CRAM-LOCATION-COSTMAP that compute: Lisp's arguments in, Lisp's objects out.
 
 What is better said in Lisp (generic functions, hooks, facts, the search for places) is in ``libraries/cram-location-costmap``, which calls
-the functions with a ``%``.
+the functions with a ``%``. Source: mobile-manipulation.md section 9.
 """
 
 from __future__ import annotations
@@ -176,8 +176,12 @@ def two_d_cov(cov: Any) -> Any:
 
 
 def two_d_pose_covariance(positions: Any, minimal_variance: Any = 0.1) -> Any:
-    """The 2 by 2 matrix of covariances of positions (or poses); its variances are at least ``minimal-variance``."""
-    return lisp_matrix(spread.wide_covariance(_places(positions), _real(minimal_variance, "MINIMAL-VARIANCE")))
+    """The list of the mean of positions (or poses) and their 2 by 2 matrix of covariances.
+
+    The variances are at least ``minimal-variance``.
+    """
+    matrix = spread.wide_covariance(_places(positions), _real(minimal_variance, "MINIMAL-VARIANCE"))
+    return lisp_list(points_mean(positions), lisp_matrix(matrix))
 
 
 def _occupied_places(grid: Any) -> Any:
