@@ -83,11 +83,45 @@ def test_a_package_of_property_names(lisp):
     assert lisp('(nth-value 1 (find-symbol "FETCH" :legacy-props))') == ":EXTERNAL"
 
 
-@pytest.mark.parametrize(
-    "form", ["(desig-prop-value (a motion) 'knob)", "(desig-prop-values (a motion) 'knob)", "(prolog `(desig-prop ,(a motion) (knob ?v)))"]
+UNDECLARED = (
+    '"Designator property {} has not been declared properly. This may cause problems. To fix it, use the macro DEF-DESIG-PACKAGE and '
+    'declare the symbol as a designator property."'
 )
-def test_a_property_name_that_is_no_keyword_is_warned_of(lisp, form):
-    assert lisp(f"(handler-case {form} (simple-warning (w) (princ-to-string w)))") == (
-        '"Designator property KNOB has not been declared properly. This may cause problems. To fix it, use the macro DEF-DESIG-PACKAGE and '
-        'declare the symbol as a designator property."'
-    )
+
+
+@pytest.mark.parametrize(
+    ("form", "name"),
+    [
+        ("(desig-prop-value (a motion) 'knob)", "KNOB"),
+        ("(desig-prop-value nil 'knob)", "KNOB"),
+        ("(desig-prop-values (a motion) 'knob)", "KNOB"),
+        ("(prolog `(desig-prop ,(a motion) (knob ?v)))", "KNOB"),
+        ("(prolog `(desig-prop ,(a motion) (knob ?v) ?time))", "KNOB"),
+        ("(prolog `(and (== ?k knob) (desig-prop ,(a motion) (?k ?v))))", "KNOB"),
+        ("(prolog `(knob-of ,(a motion) ?v))", "KNOB"),
+        ("(prolog `(desig-prop ,(a motion) (?key ?v)))", "?KEY"),
+        ("(prolog `(desig-prop ,(a motion) (?key ?v) ?time))", "?KEY"),
+    ],
+)
+def test_a_property_name_that_is_no_keyword_is_warned_of(lisp, form, name):
+    lisp("(def-fact-group knobs (knob-of) (<- (knob-of ?d ?v) (desig-prop ?d (knob ?v))))")
+    assert lisp(f"(handler-case (force-ll {form}) (simple-warning (w) (princ-to-string w)))") == UNDECLARED.format(name)
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(desig-prop-value (a motion (knob 1)) :knob)",
+        "(desig-prop-value (a motion) '#:knob)",
+        "(desig-prop-value (make-designator :motion '((desig-props::knob 1))) 'desig-props::knob)",
+        "(with-desig-props (knob) (a motion (knob 1)) knob)",
+        "(prolog `(any ,(a motion (knob 1)) ?v))",
+        "(prolog `(desig-prop ,(a motion (knob 1)) (?_ ?v)))",
+        "(prolog `(and (== ?k :knob) (desig-prop ,(a motion (knob 1)) (?k ?v))))",
+        "(let ((?key :knob)) (a motion (?key 1)))",
+        "(a motion (knob undeclared) (*key* *key*))",
+    ],
+)
+def test_a_name_that_is_fine_is_not(lisp, form):
+    lisp("(def-fact-group anything (any) (<- (any ?d ?v) (desig-prop ?d (?k ?v)))) (defvar *key* 'knob)")
+    assert lisp(f"(handler-case (progn (force-ll (list {form})) :silent) (warning (w) (princ-to-string w)))") == ":SILENT"

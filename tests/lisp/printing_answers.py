@@ -25,7 +25,7 @@ FUNCTIONS = {
     "VECTOR": lambda *items: list(items),
     "CODE-CHAR": lambda code: Character(chr(code)),
     "MAKE-SYMBOL": Symbol,
-    "WRITE": faces.lispify(printer.lisp_write),
+    **{name.upper(): faces.lispify(function) for name, function in printer.LISP_FUNCTIONS.items()},
 }
 for _module in (printer, format, pretty, pprint_dispatch, stream_functions):
     for _name in _module.LISP_NAMES.split():

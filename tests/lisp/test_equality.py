@@ -11,9 +11,17 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground import equality
 from cramhy_runtime.ground.hash_tables import HashTable, sxhash
 from cramhy_runtime.ground.arrays import LispArray, Vector, bit_vector
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, list_from
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, FreshString, LispString, list_from
 from cramhy_runtime.ground.equality import eq, eql, equal, equalp
 from cramhy_runtime.ground.packages import sym
+
+
+def changed_string(text):
+    """A string that was made with other characters, and has those of ``text`` now."""
+    string = FreshString("b" * len(text))
+    string.writable()[:] = text
+    return string
+
 
 atoms = st.one_of(
     st.none(),
@@ -23,6 +31,8 @@ atoms = st.one_of(
     st.sampled_from([Fraction(1, 2), sym("CAR"), Character("a"), Character("A"), 1j, 0.5]),
     st.text("aA", max_size=2),
     st.text("aA", max_size=2).map(LispString),
+    st.text("aA", max_size=2).map(FreshString),
+    st.text("aA", max_size=2).map(changed_string),
     st.lists(st.integers(0, 1), max_size=2).map(bit_vector),
 )
 things = st.recursive(

@@ -21,7 +21,7 @@ from cramhy_runtime.languages.commonlisp.collections.array_making import make_ar
 from cramhy_runtime.ground.arrays import LispArray, bit_vector
 from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError
 from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol, list_from, one
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, FreshString, LispString, Symbol, list_from, one
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import parse_namestring
@@ -94,7 +94,7 @@ complexes = st.one_of(
 )
 bits = st.lists(st.integers(0, 1), max_size=9).map(bit_vector)
 pathnames = st.text(st.characters(codec="utf-8", exclude_characters="\0*?[]\\"), max_size=12).map(lambda text: one(parse_namestring(text)))
-atoms = st.one_of(symbols, singles, doubles, integers, ratios, complexes, glyphs.map(Character), texts, texts.map(LispString), bits)
+atoms = st.one_of(symbols, singles, doubles, integers, ratios, complexes, glyphs.map(Character), texts, texts.map(FreshString), bits)
 
 
 @st.composite

@@ -253,6 +253,8 @@ def alike(one, other):
         return len(one) == len(other) and all(map(alike, one, other))
     if isinstance(one, Symbol | Character) or one is None or one is True:
         return one is other
+    if isinstance(one, str):
+        return one == other
     return one.__class__ is other.__class__ and one == other
 
 

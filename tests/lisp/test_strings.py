@@ -1,5 +1,8 @@
 """Strings: comparison, case, trimming, and which can be changed in place."""
 
+import copy
+import pickle
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -8,7 +11,7 @@ from sbcl_answers import answer, recorded
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.collections import strings
-from cramhy_runtime.ground.data import Character, LispString, lisp_list
+from cramhy_runtime.ground.data import Character, FreshString, lisp_list
 from cramhy_runtime.ground.packages import intern, keyword
 
 
@@ -39,7 +42,7 @@ def test_a_made_string_can_be_changed_and_a_constant_says_how():
 
 
 def test_the_destructive_case_functions_change_what_can_be_changed():
-    text = LispString("abc")
+    text = FreshString("abc")
     assert strings.nstring_upcase(text) is text
     assert str(text) == "ABC"
     assert strings.nstring_upcase("abc") == "ABC"
@@ -68,3 +71,50 @@ def test_changing_the_case_never_changes_the_length(text):
 def test_strings_of_different_lengths_are_never_string_equal(first, second):
     if len(first) != len(second):
         assert strings.string_equal(first, second) is None
+
+
+def changed(text):
+    """A string that was made with other characters, and has those of ``text`` now."""
+    string = FreshString("\u00e4" * len(text))
+    string.writable()[:] = text
+    return string
+
+
+OPERATIONS = [name for name in dir(str) if name not in dir(object) and name not in ("__getnewargs__", "maketrans")]
+
+
+@given(st.text(max_size=6), st.text(max_size=3), st.sampled_from(OPERATIONS))
+def test_python_sees_a_changed_string_as_it_is_now(text, other, name):
+    def outcome(string):
+        for arguments in ((), (other,), (1,)):
+            try:
+                answer = getattr(string, name)(*arguments)
+            except (TypeError, IndexError, LookupError, ValueError) as problem:
+                yield type(problem)
+            else:
+                yield list(answer) if name == "__iter__" else answer
+
+    assert list(outcome(changed(text))) == list(outcome(text))
+
+
+@given(st.text(max_size=6), st.text(max_size=3))
+def test_operators_of_python_see_a_changed_string_as_it_is_now(text, other):
+    string = changed(text)
+    assert (string + other, other + string, string * 2, f"{string:>4}") == (text + other, other + text, text * 2, f"{text:>4}")
+    assert (string == other, other == string, string != other, string < other, other < string) == (
+        text == other,
+        other == text,
+        text != other,
+        text < other,
+        other < text,
+    )
+    assert (other in string, len(string), {text: 1}.get(string), repr(string)) == (other in text, len(text), 1, repr(text))
+
+
+@pytest.mark.parametrize("protocol", [2, 5])
+def test_a_string_that_can_be_changed_is_copied_with_its_characters(protocol):
+    for string in (FreshString("abc"), changed("abc")):
+        for copied in (pickle.loads(pickle.dumps(string, protocol)), copy.copy(string), copy.deepcopy(string)):
+            assert copied == "abc"
+            copied.writable()[0] = "x"
+            assert (copied, string) == ("xbc", "abc")

@@ -187,7 +187,7 @@ run(main)
         """(def-asynchronous-process-module belt ((held :initform 3 :reader held)))
            (defmethod synchronization-fluent ((self belt) input) (make-fluent :value t))
            (defmethod on-input ((self belt) input)
-             (sleep 1) (finish-process-module self :designator input :result (note (+ (held self) (desig-prop-value input :count)))))
+             (sleep 1) (note (+ (held self) (desig-prop-value input :count))) (finish-process-module self :designator input))
            (top-level (with-process-modules-running (belt) (pm-execute 'belt (a motion (type carrying) (count 2)))))""",
         """
         class Belt(AsynchronousModule):

@@ -191,6 +191,10 @@ class Looks:
                 look(self.path)
                 return self.entry.is_file()
 
+            def is_symlink(self):
+                look(self.path)
+                return self.entry.is_symlink()
+
         def listed(path="."):
             if not os.fspath(path).startswith(self.below):
                 return scandir(path)

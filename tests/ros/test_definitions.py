@@ -1,9 +1,11 @@
 """The language of .msg, .srv and .action files, the definitions that come with cramhy, and those of a user's own packages."""
 
 import hashlib
+import os
 from pathlib import Path
 
 import pytest
+import recorded_md5sums
 
 from cramhy_runtime.ground.packages import find_package, registered
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -94,10 +96,10 @@ class TestTheLanguage:
     @pytest.mark.parametrize(
         "parse, text, problem",
         [
-            (parse_service, "int64 a",
-             "here, line 1, column 1: Lines of three dashes separate request and response: there must be 1, not 0."),
-            (parse_service, "a\n---\n---\n",
-             "here, line 3, column 1: Lines of three dashes separate request and response: there must be 1, not 2."),
+            (parse_service, "int64 b\n---\nint64 c\n---\nint64\n",
+             'here, line 5, column 1: "int64" is neither a field (TYPE NAME) nor a constant (TYPE NAME=VALUE).'),
+            (parse_action, "int64 a\n",
+             "here, line 2, column 1: Lines of three dashes separate goal, result and feedback: there must be 2, not 0."),
             (parse_action, "int64 a\n---\n",
              "here, line 3, column 1: Lines of three dashes separate goal, result and feedback: there must be 2, not 1."),
             (parse_action, "---\n---\nint32\n",
@@ -108,6 +110,36 @@ class TestTheLanguage:
         with pytest.raises(DefinitionError) as error:
             parse(text.replace("a\n---\n---", "int64 a\n---\n---"), "p", "here")
         assert error.value.problem == problem
+
+    def test_what_ros_accepts_is_accepted_and_has_its_sums(self, workspace):
+        workspace("p/msg/Thing.msg", "string name\n")
+        for number, (text, _) in enumerate(recorded_md5sums.MESSAGES):
+            workspace(f"p/msg/M{number}.msg", "").write_bytes(text.encode())
+        for number, (text, _) in enumerate(recorded_md5sums.SERVICES):
+            workspace(f"p/srv/S{number}.srv", text)
+        messages.load_package("p")
+        for number, (text, md5) in enumerate(recorded_md5sums.MESSAGES):
+            assert type_texts.md5_of(messages.message_class(f"p/M{number}")) == md5, text
+        for number, (text, md5) in enumerate(recorded_md5sums.SERVICES):
+            assert type_texts.md5_of(messages.service_type(f"p/S{number}")) == md5, text
+
+    @pytest.mark.parametrize(
+        "line, value",
+        [
+            ("string A=", ""),
+            ("string A = # no comment", "# no comment"),
+            ("string A='#'", "'#'"),
+            ("uint8 A=010", 10),
+            ("byte A=-1", -1),
+            ("byte A=255", 255),
+            ("bool A=2", True),
+            ("bool A=0.0", None),
+            ("bool A=FALSE", None),
+            ("\ufeffint8 A=1", 1),
+        ],
+    )
+    def test_values_of_constants(self, line, value):
+        assert parse_message(line, "p").constants == {"A": value}
 
     def test_names_that_messages_have_themselves_are_no_trouble(self):
         assert {name for name in dir(messages.RosMessage) if not name.startswith("_")} <= definition_text.RESERVED
@@ -223,6 +255,43 @@ class TestOnesOwn:
         assert condition.hint.endswith("Did you mean own_msgs-msg or nav_msgs-msg?")
         fails(systems.load_system, "own_msgs-srv")
 
+    def test_a_missing_package_is_told_with_the_files_that_are_wanted_of_it(self, workspace, lisp, fails, tmp_path):
+        workspace("user/user.asd", '(defsystem user :depends-on (no_such_msgs-msg) :components ((:file "f") (:file "gone")))')
+        workspace("user/f.lisp", """
+            (advertise "/a" "no_such_msgs/Command") (make-message "no_such_msgs/Command" :width 3)
+            (no_such_msgs-msg:width msg) (no_such_msgs-msg::<Grip> x) (make-msg "no_such_msgs/GripActionGoal")
+            (call-service "/x" 'no_such_msgs-srv:Open) (xno_such_msgs-msg:y z) "other_msgs/X"
+            """)  # fmt: skip
+        condition = fails(systems.load_system, "user")
+        assert condition.report() == 'Component "no_such_msgs-msg" not found, required by #<SYSTEM "user">'
+        assert condition.hint == (
+            f"No package no_such_msgs with files msg/*.msg is below ROS_PACKAGE_PATH ({tmp_path}), the current folder and src of the workspace.\n"
+            "Wanted of it: msg/Command.msg (f.lisp:2), action/Grip.action (f.lisp:3).\n"
+            "Lisp names of it: width (f.lisp:3), <grip> (f.lisp:3), open (f.lisp:4)."
+        )
+
+    @pytest.mark.parametrize(
+        "form, wanted",
+        [
+            ('(roslisp:make-msg "no_such_msgs/Box")', "a msg/Box.msg"),
+            ('(roslisp:advertise "x" "no_such_msgs/CookAction")', "a action/Cook.action"),
+            ('(roslisp:call-service "x" "no_such_msgs/Fetch")', "a srv/Fetch.srv"),
+            ("no_such_msgs-srv:fetch", "files srv/*.srv"),
+            ("(defpackage using-none (:use :no_such_msgs-msg))", "files msg/*.msg"),
+        ],
+    )
+    def test_a_missing_package_is_told_with_the_places_of_the_search(self, workspace, lisp, fails, monkeypatch, form, wanted):
+        from cramhy_runtime.languages.commonlisp.tools.advice import explanation
+
+        monkeypatch.setenv("ROS_PACKAGE_PATH", f"/not/there{os.pathsep}{os.getcwd()}")
+        lisp('(roslisp:start-ros-node "n")')
+        told = explanation(fails(lisp, form))
+        there = f"/not/there, which is not a folder, {os.getcwd()}"
+        expected = (
+            f"No package no_such_msgs with {wanted} is below ROS_PACKAGE_PATH ({there}), the current folder and src of the workspace."
+        )
+        assert expected.replace(" a action", " an action") in told
+
     @pytest.mark.parametrize(
         "text, line, problem, hint",
         [
@@ -231,7 +300,9 @@ class TestOnesOwn:
             ("flaot32 x", "line 1, column 1", "There is no type flaot32.", "Did you mean float32?"),
             ("  geometry_msgs/Piont x", "line 1, column 3", "There is no type geometry_msgs/Piont.", "Did you mean Point?"),
             ("no_such_msgs/X x", "line 1, column 1", "There is no type no_such_msgs/X.",
-             "Is the package of that message on ROS_PACKAGE_PATH, or in the workspace's src?"),
+             "No package no_such_msgs with a msg/X.msg is below ROS_PACKAGE_PATH ({path}), the current folder and src of the workspace."),
+            ("geometry_msgs/Zzzzz x", "line 1, column 1", "There is no type geometry_msgs/Zzzzz.",
+             "The package geometry_msgs has no msg/Zzzzz.msg in {ours}."),
             ("int32 a\nPlace b\nint32 3", "line 3, column 7", '"3" is not a name for a field.',
              "A name begins with a letter; letters, digits and underscores follow."),
             ("Circle[] inside", "line 1, column 1", "A message cannot contain itself: Circle -> Thing -> Circle.",
@@ -244,7 +315,7 @@ class TestOnesOwn:
         workspace("own_msgs/msg/Circle.msg", "Thing other\n" if "Circle" in text else "")
         condition = fails(messages.message_class, "own_msgs/Place")
         assert condition.report() == f"{path}, {line}: {problem}"
-        assert condition.hint == hint
+        assert condition.hint == hint.format(path=os.environ["ROS_PACKAGE_PATH"], ours=definition_files.OURS / "geometry_msgs")
         fails(lisp, "(own_msgs-msg:name 3)")
         assert lisp("(make-instance 'turtlesim-msg:color)").startswith("[TURTLESIM-MSG:COLOR")
         path.write_text("Place where\n")

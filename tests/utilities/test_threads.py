@@ -16,9 +16,9 @@ def without_address(text):
 
 def test_a_thread_runs_in_the_kernels_time_and_gives_its_values_to_who_joins_it(lisp):
     lisp(THREAD)
-    assert without_address(lisp("*thread*")) == '#<THREAD "worker" RUNNING>'
+    assert without_address(lisp("*thread*")) == '#<SB-THREAD:THREAD "worker" RUNNING>'
     assert lisp("(cut:join-thread *thread*)") == "3 :DONE" and kernel.now() == 3
-    assert without_address(lisp("*thread*")) == '#<THREAD "worker" FINISHED values: 3, :DONE>'
+    assert without_address(lisp("*thread*")) == '#<SB-THREAD:THREAD "worker" FINISHED values: 3, :DONE>'
     assert lisp("(list (cut:thread-name *thread*) (cut:thread-alive-p *thread*))") == '("worker" NIL)'
 
 

@@ -39,6 +39,10 @@ def session(options, closings, opened=True):
         cleanup_limit=options.cleanup_limit,
     )
     gc.enable()
+    if options.features:
+        from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import add_features
+
+        add_features([name for names in options.features for name in names])
     if opened:
         from . import live_page
         from .servers import NotPossible, open_session
@@ -52,6 +56,8 @@ def session(options, closings, opened=True):
         if options.command == "repl" and options.view is None:
             live_page.open_with_turtle()
     closings.callback(kernel.stop)
+    for system in options.prefer_path:
+        made.prefer(system)
     for system in options.load:
         made.load(system)
     if options.package:

@@ -19,6 +19,16 @@ def _seconds(text):
 _seconds.__name__ = "number of seconds"  # what argparse calls it in its complaint
 
 
+def _features(text):
+    names = [name.strip().lstrip(":").upper() for name in text.split(",")]
+    if not all(names) or any(character in name for name in names for character in " ()'\";|"):
+        raise ValueError
+    return names
+
+
+_features.__name__ = "list of features"  # what argparse calls it in its complaint
+
+
 DEFAULT_TIMES = {"repl": "wall", "run": "virtual", "eval": "virtual", "test": "virtual"}
 """The commands with a session, and the time in which it lives when nothing else is said (see ``session/time_setting.py``)."""
 
@@ -48,6 +58,21 @@ def _session_options(command):
     )
     options.add_argument(
         "--load", action="append", default=[], metavar="SYSTEM", help="a system or file to load first; may be repeated (none)"
+    )
+    options.add_argument(
+        "--features",
+        action="append",
+        default=[],
+        type=_features,
+        metavar="NAMES",
+        help="features for #+ and #-, with commas between: sbcl lets a program take its code for SBCL; may be repeated (none)",
+    )
+    options.add_argument(
+        "--prefer-path",
+        action="append",
+        default=[],
+        metavar="SYSTEM",
+        help="take this system from ROS_PACKAGE_PATH though cramhy contains one of that name; may be repeated (cramhy's own)",
     )
     options.add_argument("--package", default=None, metavar="PACKAGE", help="the package to begin in (CL-USER)")
     options.add_argument("--no-turtlesim", action="store_true", help="leave the simulator out (it starts with the first node)")

@@ -86,14 +86,12 @@ def folder_of(package):
 
 def packages():
     """The folders of all packages by name."""
-    from cramhy_runtime.ros import search_folders
-    from cramhy_runtime.ros import definition_files
+    from cramhy_runtime.ros import definition_files, search_folders
 
-    found = {package: folder_of(package) for package in definition_files.known_packages()}
-    for folder in search_folders.search_folders():
-        for candidate in [folder, *(Path(entry.path) for entry in search_folders.entries(folder))]:
-            if os.path.isfile(candidate / "package.xml"):  # Path.is_file would not bear a folder that is not ours to read
-                found.setdefault(candidate.name, candidate)
+    with search_folders.crawling_once():
+        found = {package: folder_of(package) for package in definition_files.known_packages()}
+        for name, folder in definition_files.packages():
+            found.setdefault(name, folder)
     return {name: folder for name, folder in sorted(found.items()) if folder is not None}
 
 

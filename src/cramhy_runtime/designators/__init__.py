@@ -14,11 +14,11 @@
 The page docs/reasoning-in-python.md teaches it.
 
 Where the parts are: ``classes`` the kinds and their properties · ``protocol`` generic functions for all · ``equating`` chains of
-designators for one thing · ``resolution``, ``locations`` from description to thing, ``clause_index`` its clauses by property ·
-``hints`` why it failed · ``predicates`` for Prolog · ``defaults`` the first facts, generators and validators · ``plain_printing`` ·
-``symbols`` the Lisp packages. For Python: ``python_kinds`` making and reading them, ``python_resolution``, ``python_grounding``, and
-for type checkers ``signatures``. The notation ``(a motion ...)`` for Lisp is in
-``languages/commonlisp/faces/designators/package.py`` and its neighbours. Reference: designators.md.
+designators for one thing · ``resolution``, ``locations`` from description to thing, ``shared_calls`` by one task for all,
+``clause_index`` its clauses by property · ``hints``, ``failure_causes`` why it failed · ``predicates`` for Prolog · ``defaults`` the
+first facts, generators and validators · ``plain_printing`` · ``symbols`` the Lisp packages. For Python: ``python_kinds`` making and
+reading them, ``python_resolution``, ``python_grounding``, and for type checkers ``signatures``. The notation ``(a motion ...)`` for Lisp
+is in ``languages/commonlisp/faces/designators/package.py`` and its neighbours. Reference: designators.md.
 """
 
 from cramhy_runtime import cpl as _cpl  # noqa: F401  the floor below comes first

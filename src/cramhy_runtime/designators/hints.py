@@ -26,6 +26,7 @@ from .classes import (
     ObjectDesignator,
     type_keyword,
 )
+from .failure_causes import because
 from .symbols import sym
 
 _SOLUTION = Symbol("?SOLUTION")
@@ -42,7 +43,7 @@ def hint(designator):
     if not isinstance(designator, (MotionDesignator, ActionDesignator)):
         return None
     with reasoning():  # an error may be looked at when its kernel has stopped
-        return _why_not_grounded(designator)
+        return because(designator, _why_not_grounded(designator))
 
 
 def _why_not_grounded(designator):

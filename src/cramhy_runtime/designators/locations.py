@@ -18,12 +18,13 @@ from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, 
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.packages import is_symbol, keyword
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.prolog.engine.database import extended
 from ..prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var
-from ..utilities.lazy_lists import from_iterator, lazy_cdr, tail
+from ..utilities.lazy_lists import beginning, from_iterator, lazy_cdr, tail
 from .classes import LocationDesignator
+from .failure_causes import because, note_causes
 from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
 
@@ -147,7 +148,7 @@ def enable_location_validation_function(function_name):
 def location_solutions(designator):
     """The lazy list of valid candidates for ``designator``, or nil. The first is searched for now."""
     search = Search(designator)
-    solutions = search.rest()
+    solutions = beginning(search.rest)
     if solutions is None:
         designator.__dict__["search"] = search
     return solutions
@@ -155,7 +156,8 @@ def location_solutions(designator):
 
 def why_no_place(designator):
     """A function that makes a text: why the last search for ``designator`` found no place."""
-    return designator.__dict__.pop("search").account
+    search = designator.__dict__.pop("search")
+    return lambda: because(designator, search.account())
 
 
 class Search:
@@ -252,7 +254,8 @@ def _reason(validator, verdict):
 
 
 def _shown(thing):
-    return " ".join(prin1_to_string(thing).split()).lower() if is_symbol(thing) else " ".join(prin1_to_string(thing).split())
+    text = " ".join(attempt_to_print(prin1_to_string, thing).split())
+    return text.lower() if is_symbol(thing) else text
 
 
 def _about(what):
@@ -318,7 +321,15 @@ _RESTARTS = [
 
 def location_prolog_generator(designator):
     """All ``?solution`` of ``(location-grounding designator ?solution)``."""
-    return from_iterator(value for (value,) in ask(LOCATION_GROUNDING, designator, Var()))
+    return from_iterator(_places_by_prolog(designator))
+
+
+def _places_by_prolog(designator):
+    causes = {}
+    for (value,) in ask(LOCATION_GROUNDING, designator, Var(), causes=causes):
+        yield value
+    if causes and isinstance(designator, LocationDesignator):
+        note_causes(designator, causes)
 
 
 def location_prolog_validator(designator, solution):

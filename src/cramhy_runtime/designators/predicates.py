@@ -84,6 +84,8 @@ def _properties(m, designator, pair, *also):
     pair = deref(pair)
     if isinstance(pair, Cons):
         key = deref(pair.car)
+        if key.__class__ is Var:
+            key = key.name  # of one that is written in the query; those of clauses have no name that anybody could declare
         if isinstance(key, Symbol) and key.__class__ is not Keyword:
             check_key(key)
     for entry in _pairs(designator):

@@ -12,15 +12,12 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from cramhy_runtime.ground import equality
-from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
-from cramhy_runtime.ground.printing import princ_to_string
-from ..utilities.lazy_lists import lazy_car, lazy_cdr, tail
-from cramhy_runtime.utilities.wait_queue import Line
+from ..utilities.lazy_lists import beginning, lazy_car, lazy_cdr, tail
 from ..utilities.patterns import is_var
 from cramhy_runtime.prolog.engine.database import find_predicate
 from cramhy_runtime.prolog.engine.machine import SOLVED, Machine
@@ -37,12 +34,16 @@ from .classes import (
     new,
 )
 from .equating import youngest
+from .failure_causes import note_causes
 from .locations import location_solutions, why_no_place
+from .shared_calls import await_resolver, serve, share_call
 from .protocol import designator_solutions_equal, equate, next_solution, reference
 from .symbols import sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from cramhy_runtime.ground.signatures import GenericOf
 
 DEFAULT_ROLE = special(sym("DESIG::*DEFAULT-ROLE*"))
@@ -96,7 +97,7 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
         return found
     me = kernel.current()
     while designator.resolver is not None:
-        _wait_for_resolver(designator, me)
+        await_resolver(designator, me)
     designator.resolver = me
     try:
         result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
@@ -106,50 +107,19 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
         return result
     finally:
         designator.resolver = None
-        line = _lines.pop(designator, None) if _lines else None
-        if line is not None:
-            line.serve_all()
+        serve(designator)
 
 
-_lines = {}
-"""Designator → the line of the tasks that wait while another one resolves it."""
-_wanted = {}
-"""Task → the designator for which it waits."""
+@reference.enclose
+def _shared(effective: Callable[..., Any]) -> Callable[..., Any]:
+    """A method of a user is called once for all tasks that need the designator meanwhile, too: they get its values."""
 
+    def call(designator: object, *role: object) -> Any:
+        if not isinstance(designator, Designator):
+            return effective(designator, *role)
+        return share_call(designator, role[0] if role else DEFAULT_ROLE.value, lambda: effective(designator, *role))
 
-def _wait_for_resolver(designator, me):
-    """Wait until no task resolves ``designator``. If its resolver waits for ``me``, that would be for ever, and it is an error."""
-    ring = [designator]
-    while True:
-        resolver = ring[-1].resolver
-        if resolver is me:
-            return _endless(ring)
-        following = _wanted.get(resolver)
-        if following is None:
-            break
-        ring.append(following)
-    line = _lines.get(designator)
-    if line is None:
-        line = _lines[designator] = Line()
-    _wanted[me] = designator
-    other = designator.resolver
-    try:
-        line.stand(lambda: f"the designator that {other.name} resolves")
-    finally:
-        del _wanted[me]
-
-
-def _endless(ring):
-    """Signal that resolving the first of ``ring`` waits for the task that needs it."""
-    if len(ring) > 1:
-        others = ", ".join(" ".join(princ_to_string(other).split()) for other in ring[1:])
-        hint = f"The task that resolves it waits for {others}, which this task resolves: each waits for the other, for ever."
-    else:
-        hint = (
-            "A clause, generator or validator asks for the designator that it is to resolve: look at its properties with "
-            "desig-prop instead."
-        )
-    return error(SimpleError("Recursive lock attempt: designator ~a is needed to resolve itself.", ring[0]), hint=hint)
+    return call
 
 
 class Groundings(Machine):
@@ -178,7 +148,10 @@ def _resolve_by_prolog(designator, role=None):
     solutions = designator.solutions
     if solutions is UNBOUND:
         predicate = MOTION_GROUNDING if isinstance(designator, MotionDesignator) else ACTION_GROUNDING
-        solutions = designator.solutions = Groundings(predicate, designator).rest()
+        proof = Groundings(predicate, designator)
+        solutions = designator.solutions = beginning(proof.rest)
+        if solutions is None and proof.warned is not None:
+            note_causes(designator, proof.warned.causes)
     value = solutions.car if solutions is not None else None
     if value is None:
         kind = "motion" if isinstance(designator, MotionDesignator) else "action"

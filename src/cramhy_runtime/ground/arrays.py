@@ -3,12 +3,14 @@
 A simple general vector is a Python ``list`` and a string a ``str`` or `LispString`; that covers nearly all vectors of plans.
 The rest of ANSI chapter 15 needs three classes: `TypedVector`, a list that knows its element type (bit vectors are these);
 `LispArray`, a storage in row-major order seen through dimensions; and `Vector`, a one-dimensional one that may have a fill
-pointer and may grow. A displaced array shares the storage of its target.
+pointer and may grow. A displaced array shares the storage of its target, and follows it when the target gets another one
+(`take_storage`).
 """
 
 from __future__ import annotations
 
 import math
+from weakref import ref
 
 from .condition_types import TypeError_, formatted
 from .conditions import error
@@ -49,10 +51,12 @@ class LispArray:
     """An array of any rank.
 
     ``storage`` holds the elements in row-major order from ``offset`` on; ``displaced_to`` is the array whose storage it is, if
-    it is another's. ``element_type`` is an upgraded type specifier (``True`` for T).
+    it is another's. ``element_type`` is an upgraded type specifier (``True`` for T). ``followers`` are weak references to the
+    arrays that are displaced to this one, and ``lost`` is the type that this one had before the array below it became too small;
+    they are unset in most arrays.
     """
 
-    __slots__ = ("dimensions", "storage", "offset", "element_type", "adjustable", "displaced_to", "__weakref__")
+    __slots__ = ("dimensions", "storage", "offset", "element_type", "adjustable", "displaced_to", "followers", "lost", "__weakref__")
 
     def __init__(self, dimensions, storage, element_type=True, adjustable=False, displaced_to=None, offset=0):
         self.dimensions = tuple(dimensions)
@@ -61,6 +65,8 @@ class LispArray:
         self.adjustable = adjustable
         self.displaced_to = displaced_to
         self.offset = offset
+        if isinstance(displaced_to, LispArray):
+            displaced_to.followers = [*living_followers(displaced_to), ref(self)]
 
     @property
     def total_size(self):
@@ -116,6 +122,44 @@ class BitVector(Vector):
     """A vector of bits that is not simple."""
 
     __slots__ = ()
+
+
+def living_followers(array):
+    """The weak references to the arrays displaced to ``array`` that are still alive."""
+    return [follower for follower in getattr(array, "followers", ()) if follower() is not None]
+
+
+def take_storage(array, new):
+    """Make ``array`` look like ``new``, and let the arrays that are displaced to it see that, and those displaced to these.
+
+    One that ``array`` has become too small for loses its elements: its dimensions are zeros from then on, as in SBCL.
+    """
+    before = array.offset
+    array.dimensions, array.storage, array.offset = new.dimensions, new.storage, new.offset
+    if new.displaced_to is not array.displaced_to:
+        if isinstance(array.displaced_to, LispArray):
+            array.displaced_to.followers = [other for other in living_followers(array.displaced_to) if other() is not array]
+        array.displaced_to = new.displaced_to
+        if isinstance(array.displaced_to, LispArray):
+            array.displaced_to.followers = [*living_followers(array.displaced_to), ref(array)]
+    followers_moved(array, before)
+
+
+def followers_moved(array, before):
+    """Let the arrays displaced to ``array``, whose elements began at ``before`` of its storage, see the storage that it has now."""
+    for follower in [found for found in map(_alive, getattr(array, "followers", ())) if found is not None]:
+        start = follower.offset - before
+        if start + follower.total_size > array.total_size:
+            follower.lost = array_type(follower)
+            follower.dimensions = (0,) * len(follower.dimensions)
+            if getattr(follower, "fill_pointer", None) is not None:
+                follower.fill_pointer = 0
+        was, follower.storage, follower.offset = follower.offset, array.storage, array.offset + start
+        followers_moved(follower, was)
+
+
+def _alive(reference):
+    return reference()
 
 
 def bit_vector(bits):
@@ -180,6 +224,22 @@ class InvalidArrayIndex(TypeError_):
         return formatted(
             "Invalid index ~S for ~@[axis ~S of ~]~S, should be a non-negative integer below ~S.",
             (self.datum, self.axis, array_type(self.array), self.bound),
+        )
+
+
+class InvalidArray(TypeError_):
+    """An array displaced to one that has become too small for it."""
+
+    lisp_name = "SB-INT::INVALID-ARRAY-ERROR"
+
+    def __init__(self, array=None, **slots):
+        super().__init__(array, getattr(array, "lost", None), **slots)
+
+    def report(self):
+        return formatted(
+            "Displaced array originally of type ~S has been invalidated due its displaced-to array ~S having become too small to hold "
+            "it: the displaced array's dimensions have all been set to zero to trap accesses to it.",
+            (self.expected_type, self.datum.displaced_to),
         )
 
 

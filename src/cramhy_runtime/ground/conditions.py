@@ -430,15 +430,15 @@ def package_error(package, text):
     return error(types.PackageError(package, text))
 
 
-def package_does_not_exist(name):
-    """Signal that ``name`` designates no package (or is a deleted one); the restarts give a package."""
+def package_does_not_exist(name, hint=None):
+    """Signal that ``name`` designates no package (or is a deleted one); the restarts give a package. hint: what to try, or ``None``."""
     current = CURRENT.value
     restarts = [
         (sym("CONTINUE"), lambda: current, lambda: f"Use the current package, {current.name}."),
         (sym("RETRY"), lambda: find_package_or_error(name), "Retry finding the package."),
         (sym("USE-VALUE"), find_package_or_error, "Specify a different package", ask_value),
     ]
-    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(name)))
+    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(name), hint=hint))
 
 
 def program_error(control, *arguments):

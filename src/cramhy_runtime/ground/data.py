@@ -373,10 +373,77 @@ DoubleFloat.__pos__ = lambda self: self
 DoubleFloat.__abs__ = lambda self: DoubleFloat(float.__abs__(self))
 
 
-class LispString:
-    """A string that can be changed in place: made by ``make-string``, ``copy-seq`` of itself, or with a fill pointer.
+class FreshString(str):
+    """A simple string that was made at run time, as ``format``, ``subseq`` or ``make-string`` make it: the program may store into it.
 
-    Literals and the results of most functions are plain ``str``, which is what Python callers see.
+    Until somebody does, it is a ``str`` like any other, for Python too. With the first store it becomes a `ChangedString`.
+    """
+
+    __slots__ = ("_chars",)
+
+    def writable(self) -> list[str]:
+        """The list of the characters, to be changed in place. It keeps its length."""
+        self._chars = list(self)
+        self.__class__ = ChangedString
+        return self._chars
+
+    def __reduce__(self):
+        return FreshString, (str(self),)
+
+
+class ChangedString(FreshString):
+    """A `FreshString` into which something was stored.
+
+    Its characters are in a list. What C code of Python sees in the object (``"".join``, regular expressions) is the text of before: whoever
+    hands it there asks for ``str()`` first. Methods and operators of ``str`` know the characters of now.
+    """
+
+    __slots__ = ()
+
+    def writable(self):
+        return self._chars
+
+    def __str__(self):
+        return "".join(self._chars)
+
+    def __len__(self):
+        return len(self._chars)
+
+    def __getitem__(self, index):
+        return self._chars[index] if index.__class__ is int else str(self)[index]
+
+    def __iter__(self):
+        return iter(self._chars)
+
+    def __radd__(self, other):
+        return other + str(self) if isinstance(other, str) else NotImplemented
+
+    def __fspath__(self):
+        return str(self)
+
+
+def _of_now(name):
+    operation = getattr(str, name)
+
+    def method(self, *arguments, **keywords):
+        arguments = [str(each) if each.__class__ is ChangedString else each for each in arguments]
+        return operation(str(self), *arguments, **keywords)
+
+    method.__name__ = name
+    return method
+
+
+for _name in dir(str):
+    if callable(getattr(str, _name)) and _name not in ChangedString.__dict__ and _name not in dir(object):
+        setattr(ChangedString, _name, _of_now(_name))
+for _name in ("__eq__", "__ne__", "__lt__", "__le__", "__gt__", "__ge__", "__hash__", "__repr__", "__format__"):
+    setattr(ChangedString, _name, _of_now(_name))
+
+
+class LispString:
+    """A string with a fill pointer, or one that is adjustable: its length may change, so it is no ``str``.
+
+    Literals are plain ``str``, what functions make is a `FreshString`.
     """
 
     __slots__ = ("chars", "fill_pointer", "adjustable")
@@ -385,6 +452,10 @@ class LispString:
         self.chars = list(chars)
         self.fill_pointer = fill_pointer
         self.adjustable = adjustable
+
+    def writable(self):
+        """The list of the characters, also of those beyond the fill pointer."""
+        return self.chars
 
     def __str__(self):
         return "".join(self.chars if self.fill_pointer is None else self.chars[: self.fill_pointer])
@@ -409,3 +480,9 @@ class LispString:
 
     def __contains__(self, text):
         return str(text) in str(self)
+
+
+WRITABLE_STRINGS = frozenset((FreshString, ChangedString, LispString))
+"""The classes of strings that have ``writable``."""
+TEXTS = frozenset((str, FreshString))
+"""The classes of strings whose characters Python's own functions see as they are."""

@@ -15,7 +15,7 @@ from math import copysign
 
 from .arrays import LispArray, is_bit_vector
 from cramhy_runtime.kernel.active import checkpoint
-from .data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, is_ratio, list_parts
+from .data import WRITABLE_STRINGS, Character, Cons, DoubleFloat, FreshString, Keyword, LispString, Symbol, is_ratio, list_parts
 
 from .ports import PORTS
 
@@ -27,7 +27,7 @@ def eq(x, y):
     return eql(x, y)
 
 
-_EQUAL_TO_THEMSELVES = frozenset((Symbol, Keyword, Character, Cons, str))
+_EQUAL_TO_THEMSELVES = frozenset((Symbol, Keyword, Character, Cons, str, *WRITABLE_STRINGS))
 """Classes whose objects are ``eql`` to themselves only, for a quick answer."""
 
 
@@ -169,6 +169,8 @@ def equal_key(x):
     cls = x.__class__
     if cls is str:
         return x
+    if cls is FreshString:
+        return str(x)
     if cls in _OWN_KEY:
         return x
     if isinstance(x, (str, LispString)):

@@ -191,7 +191,7 @@ def setf_function(symbol):
     return function
 
 
-def invalid_name(name):
+def invalid_function_name(name):
     """The error that ``name`` names no function."""
     return SimpleTypeError("Invalid function name: ~S", name, datum=name, expected_type="(SATISFIES SB-INT:LEGAL-FUNCTION-NAME-P)")
 
@@ -199,5 +199,5 @@ def invalid_name(name):
 def function_named(name):
     """``fdefinition``: the global function of a symbol or of ``(setf symbol)``; other names are errors."""
     if not isinstance(name, Cons) and not is_symbol(name):
-        return error(invalid_name(name))
+        return error(invalid_function_name(name))
     return setf_function(name.cdr.car) if isinstance(name, Cons) else fdefinition(name)

@@ -15,9 +15,11 @@ from __future__ import annotations
 import weakref
 from binascii import crc32
 
+from cramhy_runtime.kernel.images import per_image
+
 from .arrays import is_bit_vector
 from .conditions import error, type_error
-from .data import UNSUPPLIED, Character, Cons, Keyword, LispString, MultipleValues, Symbol
+from .data import UNSUPPLIED, Character, Cons, Keyword, LispString, MultipleValues, Symbol, one, truth
 from .equality import KEYS, eq, eql, equal, equalp, equalp_key, is_number
 from .functions import function_of
 from .packages import sym
@@ -37,8 +39,8 @@ _BY_VALUE = ("VALUE", "KEY-AND-VALUE", "KEY-OR-VALUE")
 class HashTable:
     """A hash table; for Python it is a mapping: ``table[key]``, ``key in table``, ``len(table)``, ``for key in table``.
 
-    test: "EQ", "EQL", "EQUAL" or "EQUALP". weakness: ``None`` or a keyword name such as "KEY". size: what the program asked
-    for; the table grows as it likes.
+    test: "EQ", "EQL", "EQUAL" or "EQUALP", or a `UserTest`. weakness: ``None`` or a keyword name such as "KEY". size: what the program
+    asked for; the table grows as it likes.
     """
 
     lisp_name = "HASH-TABLE"
@@ -47,7 +49,8 @@ class HashTable:
     def __init__(self, test="EQL", weakness=None, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=False):
         self.test = test
         self.weakness = weakness
-        self.hash_key = KEYS[test] if weakness is None else _weak_key(KEYS[test])
+        hash_key = KEYS[test] if test.__class__ is str else test.key
+        self.hash_key = hash_key if weakness is None else _weak_key(hash_key)
         self.entries = {}
         self.size, self.rehash_size, self.rehash_threshold = size, rehash_size, rehash_threshold
         self.synchronized = synchronized
@@ -167,14 +170,62 @@ def need_table(thing):
     return thing
 
 
-def make_hash_table(*, test=UNSUPPLIED, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=None, weakness=None):
-    """``make-hash-table``: a new table. ``test`` is one of eq, eql (the default), equal, equalp, as symbol or function."""
+class UserTest:
+    """A test of hash tables that a program has defined: ``name``, its function ``same``, and ``number``, which gives equal numbers for
+    keys that are the same."""
+
+    __slots__ = ("name", "same", "number")
+
+    def __init__(self, name, same, number):
+        self.name, self.same, self.number = name, same, number
+
+    def __repr__(self):
+        return str(getattr(self.name, "name", self.name))
+
+    def key(self, thing):
+        """The key of ``thing`` in the dictionary behind a table."""
+        return _UserKey(thing, self)
+
+
+class _UserKey:
+    """A key that is the same as another one when the program's function says so."""
+
+    __slots__ = ("thing", "test", "number")
+
+    def __init__(self, thing, test):
+        self.thing, self.test = thing, test
+        number = one(test.number(thing))
+        self.number = number if number.__class__ is int and number >= 0 else type_error(number, "UNSIGNED-BYTE")
+
+    def __hash__(self):
+        return hash(self.number)
+
+    def __eq__(self, other):
+        return truth(one(self.test.same(self.thing, other.thing)))
+
+
+_user_tests: dict = per_image({})
+"""Symbol → `UserTest`."""
+
+
+def define_test(name, same, number):
+    """Let the symbol ``name`` be a test of tables: ``same`` compares two keys, ``number`` gives equal numbers for same keys."""
+    _user_tests[name] = UserTest(name, same, number)
+
+
+def make_hash_table(
+    *, test=UNSUPPLIED, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=None, weakness=None, hash_function=None
+):
+    """``make-hash-table``: a new table. ``test`` is one of eq, eql (the default), equal, equalp, as symbol or function, or a test of
+    the user's (``sb-ext:define-hash-table-test``). With ``hash_function`` any function may be the test."""
     if size.__class__ is not int or size < 0:
         type_error(size, "UNSIGNED-BYTE", "\nwhen binding SB-IMPL::SIZE")
+    if hash_function is not None and test is UNSUPPLIED:
+        test = sym("EQL")
     if weakness is not None and not (isinstance(weakness, Keyword) and weakness.name in {*_BY_KEY, *_BY_VALUE}):
         type_error(weakness, "(MEMBER :KEY-OR-VALUE :KEY-AND-VALUE :VALUE :KEY NIL)", "\nwhen binding SB-IMPL::WEAKNESS")
     return HashTable(
-        _test_name(test),
+        _test_name(test) if hash_function is None else UserTest(test, function_of(test), function_of(hash_function)),
         weakness and weakness.name,
         size,
         rehash_size,
@@ -188,7 +239,9 @@ def _test_name(test):
         return "EQL"
     if isinstance(test, Symbol) and test.name in KEYS:
         return test.name
-    name = _TESTS.get(test) if callable(test) and not isinstance(test, Symbol) else None
+    name = _TESTS.get(test) if callable(test) and not isinstance(test, Symbol) else _user_tests.get(test) if _user_tests else None
+    if name is None and callable(test):
+        name = next((made for made in _user_tests.values() if made.same is test or function_of(made.name) is test), None)
     if name is None:
         if not isinstance(test, Symbol) and test is not None and not callable(test):
             type_error(test, "(OR FUNCTION SYMBOL)", "\nwhen binding SB-IMPL::TEST")
@@ -260,7 +313,8 @@ def hash_table_count(table):
 
 def hash_table_test(table):
     """``hash-table-test``: the symbol that names the test."""
-    return sym(need_table(table).test)
+    test = need_table(table).test
+    return sym(test) if test.__class__ is str else test.name
 
 
 def hash_table_size(table):
@@ -291,10 +345,14 @@ def hash_table_synchronized_p(table):
 SETTERS = {"GETHASH": set_gethash}
 
 
-def sxhash(x, depth=4):
+def sxhash(x):
     """``sxhash``: a non-negative integer that is the same for ``equal`` objects, and the same in every run."""
+    return _hash(x, 4)
+
+
+def _hash(x, depth):
     if isinstance(x, Cons):
-        return (sxhash(x.car, depth - 1) * 31 + sxhash(x.cdr, depth - 1) * 17 + 1) % _HASHES if depth else 1
+        return (_hash(x.car, depth - 1) * 31 + _hash(x.cdr, depth - 1) * 17 + 1) % _HASHES if depth else 1
     if x.__class__ is int:
         return abs(x) % _HASHES
     if is_number(x):

@@ -176,7 +176,7 @@ def register(package):
 
 def ensure_package(name, *nicknames, use=()):
     """The package ``name``, registered with its nicknames if it does not exist yet: what a room's ``symbols.py`` calls."""
-    return find_package(name) or ours(name, lambda: Package(name, nicknames, use))
+    return _packages.get(name) or find_package(name) or ours(name, lambda: Package(name, nicknames, use))
 
 
 def ours(name, make):

@@ -9,18 +9,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from cramhy_runtime.kernel.typing_names import Any
 
+from .classes import class_name
+from .condition_types import SeriousCondition
+from .conditions import handler_case
 from .plain_answers import printer_for, printers, printers_found
 from .ports import PORTS
 
 __all__ = [
+    "attempt_to_print",
     "define_printer",
     "format_to_string",
+    "guarded",
     "output_object",
     "prin1_to_string",
     "princ_to_string",
     "print_slots",
     "print_unreadable",
     "printer_for",
+    "unprintable",
     "write",
 ]
 
@@ -38,6 +44,25 @@ def princ_to_string(thing: Any) -> str:
 def format_to_string(control: Any, *arguments: Any) -> str:
     """The text of a format control (a string or a function) with ``arguments``."""
     return PORTS.printer.formatted(control, *arguments)
+
+
+def attempt_to_print(text_of: Callable[[Any], str], thing: Any) -> str:
+    """``text_of(thing)``; if that fails, ``#<error printing a CLASS: why>``. For texts about an error, which must not become another error.
+
+    The handlers around the caller are not asked about the failure of the printer.
+    """
+    return guarded(lambda: text_of(thing), lambda problem: unprintable(thing, problem))
+
+
+def unprintable(thing: Any, problem: Any) -> str:
+    """What stands for ``thing``, whose printer failed with the condition ``problem``."""
+    why = guarded(lambda: princ_to_string(problem), lambda _: "")
+    return f"#<error printing a {class_name(type(thing)).name}{': ' + ' '.join(why.split()) if why else ''}>"
+
+
+def guarded(thunk: Callable[[], Any], otherwise: Callable[[Any], Any]) -> Any:
+    """The value of ``thunk()``; if it signals a serious condition, ``otherwise(condition)``."""
+    return handler_case([(SeriousCondition, otherwise)], thunk)
 
 
 def define_printer(cls: type, function: Callable[[Any, Any], Any]) -> None:

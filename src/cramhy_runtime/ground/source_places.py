@@ -11,6 +11,7 @@ import sys
 from itertools import islice
 
 from .data import list_from
+from .printing import guarded
 
 _LIBRARIES = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "libraries")
 
@@ -105,6 +106,8 @@ class Circumstances:
 
     ``@circumstance(tell)`` marks a function of the runtime: errors below it are shown with the line ``tell(its variables)``, if any,
     and with the place that it was called from. That costs nothing until there is an error, since the function is found on the stack.
+    A line that cannot be told, since something in it cannot be printed, is left out: the error of the printer must not take the place of
+    the one that is reported.
 
     The variables are read from the frame, because a debugger asks before anything is unwound, and nets are computed at every assignment.
     Measured: a stack of contexts for each task makes an assignment to a fluent with ten nets 1.4 to 2 times as long, and a single stack
@@ -148,7 +151,7 @@ class Circumstances:
         frames = _passed(exception) if exception is not None else self.running(sys._getframe(1))
         for index, (frame, _) in enumerate(frames):
             tell = self._tellers.get(frame.f_code)
-            line = tell and tell(frame.f_locals)
+            line = tell and guarded(lambda: tell(frame.f_locals), lambda problem: None)
             if line and not _told(condition, line):
                 caller = next((frame_position(*outer) for outer in frames[index:] if is_user_file(outer[0].f_code.co_filename)), None)
                 if caller is not None and caller != getattr(condition, "position", None):

@@ -211,6 +211,11 @@ def yield_() -> None:
     (_active.value or _none()).yield_()
 
 
+def choice_point(why: Why) -> None:
+    """See `Kernel.choice_point`."""
+    (_active.value or _none()).choice_point(why)
+
+
 def settle() -> None:
     """See `Kernel.settle`."""
     (_active.value or _none()).settle()

@@ -257,6 +257,26 @@ class Kernel(Endings, Outside):
         if me.attention:
             me.deliver()
 
+    def choice_point(self, why: Why) -> None:
+        """Let a seed or a schedule decide whether a task that could run goes first. First come, first served: this one goes on.
+
+        It is for what a task does without waiting, though the order of the tasks that do it matters. WHY as in `park`.
+        """
+        if self._choose is None or not self._queue:
+            return
+        left = budget.left
+        me = self.current
+        if me.attention:
+            me.deliver()
+        need_headroom()
+        me.why, me.state, me.preempted = why, RUNNABLE, False
+        self._queue.appendleft(me)
+        self._streak = 0
+        self.rest(me)
+        budget.left = min(left, budget.left)
+        if me.attention:
+            me.deliver()
+
     def end_slice(self) -> None:
         """End the slice, at a checkpoint: others get a turn, and requests to end are delivered."""
         me = self.current

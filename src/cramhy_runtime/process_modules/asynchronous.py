@@ -13,6 +13,8 @@ from __future__ import annotations
 
 from collections import deque
 
+from cramhy_runtime import kernel
+
 from ..cpl.current import current_task
 from cramhy_runtime.cpl.fluents.operators import fl_funcall, fl_or, fl_pulsed
 from cramhy_runtime.cpl.fluents.fluents import Fluent
@@ -192,6 +194,7 @@ def _run(module, name=None):
 def _execute(module, input_, *, task=None):
     if module.status_fluent.stored is OFFLINE:
         await_online(module)
+    kernel.choice_point(lambda: f"its turn to ask process module {module.name.name}")
     with module.input_lock:
         module.await_while_online(fl_funcall(lambda input_: True if input_ is None else None, module.input))
         module.await_while_online(synchronization_fluent(module, input_))

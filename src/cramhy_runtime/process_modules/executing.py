@@ -7,6 +7,8 @@ does the same, and asks again after its wake-up. Source: process-modules.md sect
 
 from __future__ import annotations
 
+from cramhy_runtime import kernel
+
 from ..cpl.current import current_task
 from cramhy_runtime.cpl.failures.failure_types import SimplePlanFailure
 from cramhy_runtime.cpl.failures.handling import signal_failure
@@ -81,6 +83,7 @@ def _attempt(module, input_, caller):
     """Send the request and wait for it. Returns the finished `Request`."""
     if module.status_fluent.stored is OFFLINE:  # it has ended while the caller was suspended
         return error(not_running(module.name))
+    kernel.choice_point(lambda: f"its turn to ask process module {module.name.name}")
     before = module.request or (module.queue[0] if module.queue else None)
     request = Request(input_, caller)
     park = request.waiter.kernel.park

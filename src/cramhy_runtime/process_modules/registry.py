@@ -18,7 +18,7 @@ from cramhy_runtime.ground.conditions import SimpleError, error, from_python
 from cramhy_runtime.ground.data import Symbol, list_from
 from cramhy_runtime.ground.source_places import describe, locate
 from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, princ_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 from .symbols import sym
 
@@ -148,8 +148,8 @@ def ended_because(problem):
 
 
 def in_one_line(thing: object) -> str:
-    """``thing`` as ``princ`` prints it, on one line."""
-    return " ".join(princ_to_string(thing).split())
+    """``thing`` as ``princ`` prints it, on one line. What cannot be printed is said to be so: the text is for the report of an error."""
+    return " ".join(attempt_to_print(princ_to_string, thing).split())
 
 
 def _with_hint(problem, name):

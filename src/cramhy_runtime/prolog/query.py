@@ -23,7 +23,7 @@ from .builtins import builtins, control  # noqa: F401  the predicates that every
 from .compiler import compiler  # noqa: F401  the clauses that they find
 from .explanations import undefined  # noqa: F401  which warns of those that nobody has defined
 from .engine.database import find_predicate
-from cramhy_runtime.utilities.lazy_lists import tail
+from cramhy_runtime.utilities.lazy_lists import beginning, tail
 from .engine.joins import find_join
 from .engine.machine import SOLVED, Machine
 from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, var_value, variables_of
@@ -109,7 +109,7 @@ def prolog(query, binds=None):
     hooked = on_prepare_prolog_prove or on_finish_prolog_prove
     log = on_prepare_prolog_prove.first(query, binds) if hooked else None
     join = find_join(query) if binds is None and query is not None else None
-    solutions = Proof(query, binds).lazy_list() if join is None else join.lazy_list()
+    solutions = beginning(Proof(query, binds).lazy_list if join is None else join.lazy_list)
     if hooked:
         on_finish_prolog_prove(log, True if solutions is not None else None)
     return solutions
@@ -141,13 +141,15 @@ def holds(goal):
     return Proof(goal).next_solution()
 
 
-def ask(functor, *arguments):
+def ask(functor, *arguments, causes=None):
     """Iterate over the solutions of ``(functor . arguments)``.
 
     Arguments are Lisp data without variables, and `Var` objects. Each solution is a tuple with the values of the `Var` objects, in
-    order.
+    order. ``causes``: a dict that gets, as keys, texts about the Lisp functions that signalled an error.
     """
     m = Machine()
+    if causes is not None:
+        m.warned_of().causes = causes
     wanted = [argument for argument in arguments if argument.__class__ is Var]
     m.prove((find_predicate(functor, len(arguments)).call, SOLVED, *arguments))
     while m.next_solution():

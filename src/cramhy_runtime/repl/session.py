@@ -137,6 +137,11 @@ class Session:
         """``TUT> ``: the shortest name of the current package."""
         return f"{min(self.package.names, key=len)}> "
 
+    @staticmethod
+    def prefer(system: str) -> None:
+        """Take the system called ``system`` from ROS_PACKAGE_PATH though cramhy contains one; it is an error if it is not there."""
+        systems.prefer(system)
+
     def load(self, system: str) -> None:
         """Load a system by name, or a file by its path."""
         try:
@@ -152,7 +157,7 @@ class Session:
         from cramhy_runtime.languages.commonlisp.systems import loader
 
         if system.endswith((".lisp", ".hy")):
-            loader.load_file(system)
+            loader.load_file(system, as_source=True)
         elif system.endswith(".asd"):
             systems.load_asd(system)
             systems.load_system(Path(system).stem)

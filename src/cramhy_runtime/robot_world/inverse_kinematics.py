@@ -1,19 +1,19 @@
 """Joint positions that bring the tip of an arm to a pose: inverse kinematics by damped least squares.
 
-A `Reach` solves for one chain of joints, from one link to another. It begins at several postures, the wanted one first, the others drawn once
-with a fixed seed, so that the same question has the same answer each time; from each it walks down the error with steps that keep the limits.
-No closed form is needed, so it serves any arm; for the PR2's seven joints it finds nearly all that there is to find.
+A `Reach` solves for one chain of joints, from one link to another. It begins at several postures, the wanted one first, the others drawn
+once with a fixed seed, so that the same question has the same answer each time; from each it walks down the error with steps that keep the
+limits. No closed form is needed, so it serves any arm; for the PR2's seven joints it finds nearly all that there is to find.
 
 Source: S. R. Buss, Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinverse and Damped Least Squares methods (2009).
 """
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
-from .descriptions import Description
+from .descriptions import Description, Joint
 from .mujoco_parts import mujoco
 from .skeleton import Skeleton
 
@@ -29,8 +29,8 @@ _HOPELESS = (12, 0.3)  # after so many steps an error beyond this will not go aw
 class Reach:
     """Inverse kinematics of the chain from the link ``root`` to the link ``tip``.
 
-    description: the whole robot. joints: the names of the chain's joints, in the order of the answers. Errors: `DescriptionError`, when the one
-    link is not below the other.
+    description: the whole robot. joints: the names of the chain's joints, in the order of the answers. Errors: `DescriptionError`, when
+    the one link is not below the other.
     """
 
     def __init__(self, description: Description, root: str, tip: str) -> None:
@@ -43,6 +43,15 @@ class Reach:
         self._jacobian, self._error = np.zeros((6, len(self.joints))), np.zeros(6)
         self._inverse, self._turn = np.zeros(4), np.zeros(4)
         self._postures = self._drawn()
+        self._shoulder, self._length = self._measured(chain)
+
+    def _measured(self, chain: list[Joint]) -> tuple[np.ndarray, float]:
+        """Where the first joint that moves is, and how far from there the tip can be at most; infinite when a joint slides."""
+        first = next((number for number, joint in enumerate(chain) if joint.moves), len(chain))
+        if any(joint.kind == "prismatic" for joint in chain) or first == len(chain):
+            return np.zeros(3), inf
+        shoulder = self.skeleton.pose(np.zeros(len(self.joints)), chain[first].child)[0]
+        return shoulder, sum(float(np.linalg.norm(joint.frame.position)) for joint in chain[first + 1 :])
 
     def _drawn(self) -> list[np.ndarray]:
         lower, upper = self.skeleton.lower, self.skeleton.upper
@@ -55,9 +64,11 @@ class Reach:
     def solve(self, position: np.ndarray, rotation: np.ndarray, first: np.ndarray | None = None) -> np.ndarray | None:
         """Positions of the joints that bring the tip to a pose, or ``None``.
 
-        position: of the tip in the frame of the root, metres. rotation: quaternion (w, x, y, z). first: the posture to begin with, by default
-        all joints at 0.
+        position: of the tip in the frame of the root, metres. rotation: quaternion (w, x, y, z). first: the posture to begin with, by
+        default all joints at 0.
         """
+        if np.linalg.norm(position - self._shoulder) > self._length + PRECISION:
+            return None
         start = np.zeros(len(self.joints)) if first is None else np.asarray(first, float)
         for posture in (start, *self._postures):
             found = self._descend(position, rotation, np.clip(posture, self.skeleton.lower, self.skeleton.upper))

@@ -40,7 +40,8 @@ class Skeleton:
         self.upper = np.array([joint.upper for joint in moving])
 
     def positions(self, values: Mapping[str, float], start: np.ndarray | None = None) -> np.ndarray:
-        """The positions of all joints: those of ``values``, else as in ``start``, else 0. Errors: KeyError, for a joint that does not move."""
+        """The positions of all joints: those of ``values``, else as in ``start``, else 0. Errors: KeyError, for a joint that does not
+        move."""
         positions = np.zeros(len(self.joints)) if start is None else start.copy()
         for name, value in values.items():
             positions[self.joint_numbers[name]] = value

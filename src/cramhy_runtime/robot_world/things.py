@@ -1,7 +1,7 @@
 """The things of a world: items, which are rigid and fall, and machines, which have joints and stand where they are put.
 
-A thing knows what it is made of and where it is; what happens between things is the world's (``world.py``). A machine is a robot or furniture:
-both have a description. Items that a machine holds go with the link that holds them.
+A thing knows what it is made of and where it is; what happens between things is the world's (``world.py``). A machine is a robot or
+furniture: both have a description. Items that a machine holds go with the link that holds them.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ GREY: Colour = (0.5, 0.5, 0.5, 1.0)
 class Item:
     """A rigid object.
 
-    name: what the world knows it by. shapes: what it is made of, in its own frame. placement: where it is in the world. mass: kilograms; 0 is
-    for what never moves by itself. types: what it is, the most special first (``("bottle",)``).
+    name: what the world knows it by. shapes: what it is made of, in its own frame. placement: where it is in the world. mass: kilograms; 0
+    is for what never moves by itself. types: what it is, the most special first (``("bottle",)``).
     """
 
     name: Hashable
@@ -44,7 +44,8 @@ class Item:
 
 @dataclass
 class Grip:
-    """That a link holds an item: where the item is in the frame of the link. loose: it does not keep the item from moving with another link."""
+    """That a link holds an item: where the item is in the frame of the link. loose: it does not keep the item from moving with another
+    link."""
 
     link: str
     offset: Placement

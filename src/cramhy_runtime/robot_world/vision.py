@@ -1,8 +1,8 @@
 """What a camera sees: how much of an item is in its picture, and what stands before it.
 
-The picture is that of the original: 320 times 200 pixels, 50 degrees high, from 0.1 to 10 metres. Rays through its pixels say how many belong to
-the item alone, and how many of these it still has among all other things. A camera looks along z, with x to the right and y down, as ROS's
-optical frames do.
+The picture is that of the original: 320 times 200 pixels, 50 degrees high, from 0.1 to 10 metres. Rays through its pixels say how many
+belong to the item alone, and how many of these it still has among all other things. A camera looks along z, with x to the right and y
+down, as ROS's optical frames do.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A world of robots, furniture and objects, as CRAM's projection sees it: things stand where they are put, and what is let go falls.
 
-A robot teleports, its arms are where its joints say, and what it holds goes with it. Nothing takes time but `simulate`, in which free items fall
-until they lie. A world is copied in well under a millisecond, so a plan can try what it is going to do.
+A robot teleports, its arms are where its joints say, and what it holds goes with it. Nothing takes time but `simulate`, in which free
+items fall until they lie. A world is copied in well under a millisecond, so a plan can try what it is going to do.
 
 Law: after each function the things are consistent: what is held is where its link holds it. The same calls give the same world, to the bit.
 """

@@ -11,7 +11,7 @@ import os
 import re
 from pathlib import Path
 
-from .search_folders import SKIPPED, entries, is_folder, search_folders
+from .search_folders import crawl, entries, is_folder
 from . import definition_text
 from .definition_text import ACTION_PARTS, DefinitionError, action_messages
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
@@ -19,6 +19,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from .definition_text import Definition
+    from .search_folders import Folder
 
 
 OURS = Path(__file__).parent / "definitions"
@@ -28,8 +29,6 @@ _directories: list[Path] = []
 _TYPE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_-]*$")
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
-_DEPTH = 3
-"""How many folders deep the search for packages goes: ``src/a_stack/a_package``."""
 
 
 def add_package_directory(directory: str | Path) -> None:
@@ -60,6 +59,36 @@ def known_packages() -> list[str]:
     return sorted({*named, *(name for name, _ in _packages_on_path())})
 
 
+def file_of_type(name: str, kind: str = "msg") -> str:
+    """Where a package defines its type ``name``: ``msg/Pose.msg``, and ``action/Cook.action`` for a message of an action."""
+    parts = ("ActionGoal", "ActionResult", "ActionFeedback", "Action")
+    action = next((name.removesuffix(part) for part in parts if name.endswith(part) and name != part), None)
+    return f"action/{action}.action" if action and kind == "msg" else f"{kind}/{name}.{kind}"
+
+
+def why_missing(package: str, name: str | None = None, kind: str = "msg") -> str:
+    """A sentence that says where the type ``name`` of ``package`` was looked for, or any of ``kind`` if ``name`` is ``None``."""
+    wanted = file_of_type(name, kind) if name is not None else f"files {kind}/*.{kind}"
+    folder = package_folder(package) or next((folder for other, folder in packages() if other == package), None)
+    if folder is not None:
+        return f"The package {package} has no {wanted} in {folder}."
+    article = "" if name is None else "an " if wanted[0] == "a" else "a "
+    return f"No package {package} with {article}{wanted} is below {where_searched()}."
+
+
+def why_no_lisp_package(name: str) -> str | None:
+    """As `why_missing`, for a Lisp package called ``MY_MSGS-MSG`` or ``MY_MSGS-SRV``; ``None`` for another name."""
+    package, _, kind = name.lower().rpartition("-")
+    return why_missing(package, kind=kind) if kind in ("msg", "srv") and package else None
+
+
+def where_searched() -> str:
+    """The places of the search in words: ``ROS_PACKAGE_PATH (/a, /b), the current folder and src of the workspace``."""
+    told = [entry if os.path.isdir(entry) else f"{entry}, which is not a folder"
+            for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]  # fmt: skip
+    return f"ROS_PACKAGE_PATH ({', '.join(told) or 'which is not set'}), the current folder and src of the workspace"
+
+
 def definition_files(folder: Path, kind: str) -> dict[str, Path]:
     """The definition files of the package in ``folder``, by type name. ``kind``: ``"msg"``, ``"srv"`` or ``"action"``."""
     return {path.stem: path for path in sorted((folder / kind).glob("*." + kind))}
@@ -87,43 +116,25 @@ def _has_definitions(folder: Path) -> bool:
 
 def _packages_on_path() -> Iterator[tuple[str, Path]]:
     """Name and folder of each package with definitions, in the order of the search."""
-    for root in search_folders():
-        yield from _packages_below(root, _DEPTH)
-
-
-def _packages_below(folder, depth):
-    found = {entry.name: entry for entry in entries(folder) if not entry.name.startswith((".", "__"))}
-    manifest = found.get("package.xml")
-    if any(kind in found and is_folder(found[kind]) for kind in KINDS):
-        yield _name_of(Path(folder), manifest), Path(folder)
-    elif manifest is None and depth:
-        for name, entry in found.items():
-            if is_folder(entry) and name not in SKIPPED:
-                yield from _packages_below(entry.path, depth - 1)
+    for folder in crawl():
+        if any(kind in folder.entries and is_folder(folder.entries[kind]) for kind in KINDS):
+            yield package_name(folder), Path(folder.path)
 
 
 def packages() -> Iterator[tuple[str, Path]]:
-    """Yield name and folder of each package with a ``package.xml`` in the folders of the search, with definitions or without."""
-    for root in search_folders():
-        yield from _manifests_below(root, _DEPTH)
+    """Yield name and folder of each package with a manifest in the folders of the search, with definitions or without."""
+    for folder in crawl():
+        if folder.manifest is not None:
+            yield package_name(folder), Path(folder.path)
 
 
-def _manifests_below(folder, depth):
-    found = {entry.name: entry for entry in entries(folder) if not entry.name.startswith((".", "__"))}
-    if "package.xml" in found:
-        yield _name_of(Path(folder), found["package.xml"]), Path(folder)
-    elif depth:
-        for name, entry in found.items():
-            if is_folder(entry) and name not in SKIPPED:
-                yield from _manifests_below(entry.path, depth - 1)
-
-
-def _name_of(folder, manifest):
+def package_name(folder: Folder) -> str:
+    """The name of the package in ``folder``, as its manifest says; the folder's own name if it has no manifest that can be read."""
     try:
-        found = _PACKAGE_NAME.search(Path(manifest.path).read_text(encoding="utf-8", errors="replace")) if manifest is not None else None
-    except OSError:  # the manifest is somebody else's, and the folder's name is what is left
+        found = folder.manifest and _PACKAGE_NAME.search(Path(folder.manifest.path).read_text(encoding="utf-8", errors="replace"))
+    except OSError:  # the manifest is somebody else's
         found = None
-    return found[1] if found else folder.name
+    return found[1] if found else os.path.basename(folder.path)
 
 
 # ------------------------------------------------------------------------------------------------------- a whole package
@@ -191,7 +202,7 @@ def _check_types(package: str, folder: Path, found: PackageDefinitions) -> None:
                     other = package_folder(home)
                     names[home] = message_names(other) if other is not None else ()
                 if name not in names[home]:
-                    definition_text.unknown_type(field, package, definition.where, names[home])
+                    definition_text.unknown_type(field, package, definition.where, names[home], why_missing(home, name))
     for name in found.messages:
         _check_circles(package, found.messages, [name])
 

@@ -1,7 +1,8 @@
 """The language of ``.msg``, ``.srv`` and ``.action`` files: lines ``TYPE NAME``, constants ``TYPE NAME=VALUE``, comments, ``---``.
 
 Any other line raises a `DefinitionError`, which names file, line and column and tells the right form. ``definition_files.py``
-finds the files. Source: wiki.ros.org/msg, /srv, and /actionlib for the messages of an action. `Header` alone means
+finds the files. What ROS's genmsg accepts is accepted, but for arrays of no elements (``T[0]``) and constants whose names no language
+accepts. Source: genmsg 0.6; wiki.ros.org/msg, /srv, and /actionlib for the messages of an action. `Header` alone means
 ``std_msgs/Header``.
 """
 
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 import keyword
 import re
+from collections import namedtuple
 
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
@@ -40,6 +42,8 @@ RESERVED = {"attributes", "constants", "copy", "definition", "field_names", "fie
 
 _LINE = re.compile(r"(?P<type>[^\s=]+)(?:\s+(?P<name>[^=]*?))?\s*(?P<constant>=\s*(?P<value>.*))?$")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
+_TRUTHS = {"true": True, "false": False}
+_CONSTANT_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*$")
 _TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)?)(?P<array>\[(?P<length>[0-9]*)\])?$")
 
 
@@ -111,13 +115,13 @@ def parse_message(text: str, package: str, where: str = "message definition", fi
     file in errors. ``first``: the number of the first line, in errors.
     """
     definition, kept = Definition(where), []
-    for number, line in enumerate(text.splitlines(), first):
+    for number, line in enumerate(text.removeprefix("\ufeff").split("\n"), first):
         bare = line.split("#", 1)[0].rstrip()
         if not bare.strip():
             continue
         column = len(bare) - len(bare.lstrip()) + 1
         match = _LINE.match(bare.lstrip())
-        if match is None or not match["name"] or match["constant"] and not match["value"]:
+        if match is None or not match["name"] or match["constant"] and not match["value"] and match["type"] != "string":
             _fail(
                 where,
                 number,
@@ -127,7 +131,7 @@ def parse_message(text: str, package: str, where: str = "message definition", fi
             )
         type_name, name = match["type"], match["name"].strip()
         name_column = column + match.start("name")
-        if not _NAME.match(name):
+        if not (_CONSTANT_NAME if match["constant"] else _NAME).match(name):
             _fail(
                 where,
                 number,
@@ -161,13 +165,29 @@ def parse_message(text: str, package: str, where: str = "message definition", fi
 
 
 def parse_service(text: str, package: str, where: str = "service definition") -> tuple[Definition, ...]:
-    """Read a service definition, as `parse_message`; returns the `Definition` objects of the request and of the response."""
-    return _parts(text, package, where, ("request", "response"))
+    """Read a service definition, as `parse_message`; returns the `Definition` objects of the request and of the response.
+
+    As for ROS, all is of the request if there is no line of dashes, and further ones after the first do not count.
+    """
+    request, *others = _split(text)
+    response = _Part("".join(part.text for part in others), others[0].first if others else 1)
+    return tuple(parse_message(part.text, package, where, part.first) for part in (request, response))
 
 
 def parse_action(text: str, package: str, where: str = "action definition") -> tuple[Definition, ...]:
     """Read an action definition, as `parse_message`; returns the `Definition` objects of goal, result and feedback."""
-    return _parts(text, package, where, ("goal", "result", "feedback"))
+    parts, names = _split(text), ("goal", "result", "feedback")
+    if len(parts) != len(names):
+        line = parts[len(names)].first if len(parts) > len(names) else text.count("\n") + 1
+        _fail(
+            where,
+            line,
+            1,
+            f"Lines of three dashes separate {', '.join(names[:-1])} and {names[-1]}: there must be {len(names) - 1}, "
+            f"not {len(parts) - 1}.",
+            f"Write --- on a line of its own after the fields of the {names[0]}, also when a part is empty.",
+        )
+    return tuple(parse_message(part.text, package, where, part.first) for part in parts)
 
 
 ACTION_PARTS = ("Goal", "Result", "Feedback")
@@ -183,22 +203,17 @@ def action_messages(name: str) -> dict[str, str]:
     }
 
 
-def _parts(text: str, package: str, where: str, names: tuple[str, ...]) -> tuple[Definition, ...]:
+_Part = namedtuple("_Part", "text first")
+"""A part of a definition: its text, and the number of its first line in the file."""
+
+
+def _split(text: str) -> list[_Part]:
+    """The parts of TEXT between lines of dashes."""
     parts, first = [], 1
     for part in re.split(r"^[ \t]*---[^\n]*$", text, flags=re.MULTILINE):
-        parts.append((part, first))
+        parts.append(_Part(part, first))
         first += part.count("\n")
-    if len(parts) != len(names):
-        line = parts[len(names)][1] if len(parts) > len(names) else first
-        _fail(
-            where,
-            line,
-            1,
-            f"Lines of three dashes separate {', '.join(names[:-1])} and {names[-1]}: there must be {len(names) - 1}, "
-            f"not {len(parts) - 1}.",
-            f"Write --- on a line of its own after the fields of the {names[0]}, also when a part is empty.",
-        )
-    return tuple(parse_message(part, package, where, first) for part, first in parts)
+    return parts
 
 
 def _fail(where: str, line: int, column: int, problem: str, hint: str | None = None) -> NoReturn:
@@ -227,31 +242,38 @@ def _type(type_name: str, package: str, where: str, number: int, column: int) ->
 def _constant(type_name: str, value: str, where: str, number: int, column: int) -> str | int | float | bool | None:
     if type_name == "string":
         return value
-    if type_name == "bool":
-        if value.lower() not in ("0", "1", "true", "false"):
-            _fail(where, number, column, f"{value} is not a bool.", "Write True or False.")
-        return True if value.lower() in ("1", "true") else None
     try:
-        constant = int(value, 0) if type_name in INTEGERS else float(value)
+        if type_name == "bool":
+            truth = _TRUTHS[value.lower()] if value.lower() in _TRUTHS else float(value) != 0
+            return True if truth else None
+        constant = _integer(value) if type_name in INTEGERS else float(value)
     except ValueError:
-        _fail(where, number, column, f"{value} is not a {type_name}.")
+        _fail(where, number, column, f"{value} is not a {type_name}.", "Write True or False." if type_name == "bool" else None)
     if type_name in INTEGERS:
         bits, signed = INTEGERS[type_name]
         least, most = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if signed else (0, (1 << bits) - 1)
+        if type_name == "byte":  # for rosmsg it is an int8, for roslisp an uint8
+            least = -128
         if not least <= constant <= most:
             _fail(where, number, column, f"{value} is not a {type_name}.", f"Its range is {least} to {most}.")
     return constant
 
 
-def unknown_type(field: Field, package: str, where: str, candidates: Iterable[str]) -> NoReturn:
+def _integer(text: str) -> int:
+    """The integer that TEXT is: in decimal, with leading zeros or without, or as Python writes other bases."""
+    try:
+        return int(text)
+    except ValueError:
+        return int(text, 0)
+
+
+def unknown_type(field: Field, package: str, where: str, candidates: Iterable[str], looked: str) -> NoReturn:
     """Raise a `DefinitionError`: the type of ``field`` in the file ``where`` of ``package`` does not exist.
 
-    ``candidates``: the names of types that exist, for the hint.
+    ``candidates``: the names of types that exist, for the hint. ``looked``: the hint if none of them is near: where it was looked for.
     """
     name = field.base.rpartition("/")[2]
     written = name if name in OTHER_NAMES or field.base.startswith(package + "/") else field.base
     near = [OTHER_NAMES[name]] if name in OTHER_NAMES else near_names(name, [*PRIMITIVES, *candidates], 2)
-    hint = "Is the package of that message on ROS_PACKAGE_PATH, or in the workspace's src?"
-    if near:
-        hint = f"Did you mean {' or '.join(near)}?"
+    hint = f"Did you mean {' or '.join(near)}?" if near else looked
     _fail(where, *field.place, f"There is no type {written}.", hint)

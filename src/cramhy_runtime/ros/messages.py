@@ -401,7 +401,7 @@ def _folded_or_error(text: str) -> MessageType:
             )
         )
     if load_package(package.lower()) is None:
-        return _unknown(f"Can't find package {package.upper()}-MSG", _packages_hint(package))
+        return _unknown(f"Can't find package {package.upper()}-MSG", _packages_hint(package, text.partition("/")[2]))
     return _folded(_messages, message_class_exact, text) or _unknown(f"Can't find class for {text}", _types_hint("rosmsg", _messages, text))
 
 
@@ -409,12 +409,12 @@ def _unknown(text: str, hint: str | None) -> NoReturn:
     conditions.error(SimpleError("~a", text), hint=hint)
 
 
-def _packages_hint(package: str) -> str:
-    """The hint for a ``package`` that is not a ROS package with definitions."""
+def _packages_hint(package: str, name: str, kind: str = "msg") -> str:
+    """The hint for a ``package`` that is not a ROS package with definitions; ``name``: the type that is wanted of it."""
     near = near_names(package.lower(), definition_files.known_packages(), 1)
     if near:
         return f"Did you mean {near[0]}?"
-    return f"No package {package} with messages or services is on ROS_PACKAGE_PATH, in the workspace's src or in the current folder."
+    return definition_files.why_missing(package, name, kind)
 
 
 def topic_class(designator: TypeName) -> MessageType:
@@ -434,7 +434,7 @@ def topic_class(designator: TypeName) -> MessageType:
     if not slash or "/" in name:
         return conditions.error(SimpleError("~a", f'Too few or too many slashes in "{text}"'))
     if load_package(package) is None:
-        return conditions.package_does_not_exist(f"{package.upper()}-MSG")
+        return conditions.package_does_not_exist(f"{package.upper()}-MSG", _packages_hint(package, name))
     found = message_class_exact(text)
     if found is None:
         other = _folded(_messages, message_class_exact, text)
@@ -470,7 +470,8 @@ def service_type(designator: ServiceName) -> ServiceType:
         if "/" not in text:
             return conditions.type_error(None, "STRING")
         if load_package(text.partition("/")[0].lower()) is None:
-            return _unknown("Service-package not found. Maybe it is not loaded?", _packages_hint(text.partition("/")[0]))
+            package, _, name = text.partition("/")
+            return _unknown("Service-package not found. Maybe it is not loaded?", _packages_hint(package, name, "srv"))
         found = _folded(_services, service_type_exact, text)
         name = text.partition("/")[2].upper()
         designator = found or intern(name, lisp_package(text.partition("/")[0].lower(), "SRV"))

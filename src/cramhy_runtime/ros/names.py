@@ -1,8 +1,8 @@
 """Names: the meaning of ``foo``, ``/foo`` and ``~foo`` to a node, and how its command line changes it.
 
 A *global* name begins with ``/``. A *private* name begins with ``~`` and is below the node's own name. Every other name is
-relative to the namespace. As in roslisp, this module does not validate or clean names; `check_graph_name` validates as roscpp
-nodes such as turtlesim do. Source: roslisp.md 3, wiki.ros.org/Names.
+relative to the namespace. As in roslisp, finding out what a name means does not validate or clean it. `check_graph_name` validates the
+names of topics, services and parameters, as roscpp does. Source: roslisp.md 3, wiki.ros.org/Names.
 """
 
 from __future__ import annotations
@@ -102,6 +102,15 @@ def check_graph_name(name: str) -> str | None:
                 "are a-z, A-Z, 0-9, / and _."
             )
     return None
+
+
+def allowed_name(name: str) -> str:
+    """A name like ``name`` that `check_graph_name` has nothing against: other characters are underscores, a first digit gets a letter."""
+    first = name[:1]
+    name = first + "".join(character if character in _NAME_CHARACTERS else "_" for character in name[1:])
+    if first in _LETTERS or first in "/~":
+        return name
+    return f"n{name}" if first in string.digits + "_" else f"n_{name[1:]}"
 
 
 def split_arguments(arguments: str | Iterable[object] | None) -> list[str]:

@@ -115,16 +115,23 @@ def tail(generator, drain=None):
     if environment is None:
         return LazyTail(generator, drain)
 
-    def in_environment():
-        with binding(_environment, environment):
-            with binding(*(item for symbol, thunk in environment for item in (symbol, one(thunk())))):
-                return generator()
+    return LazyTail(lambda: _in_environment(environment, generator))
 
-    return LazyTail(in_environment)
+
+def beginning(generator):
+    """``generator()``, which computes the first element of a lazy list, in the lazy-list environment: it sees what later ones see."""
+    environment = _environment.value
+    return generator() if environment is None else _in_environment(environment, generator)
+
+
+def _in_environment(environment, generator):
+    with binding(_environment, environment):
+        with binding(*(item for symbol, thunk in environment for item in (symbol, one(thunk())))):
+            return generator()
 
 
 def with_lazy_list_dynamic_environment(definitions, thunk):
-    """Call ``thunk``; lazy lists created inside compute each element with ``definitions`` bound anew.
+    """Call ``thunk``; lazy lists created inside compute each element, the first one too, with ``definitions`` bound anew.
 
     ``definitions`` is a list of (symbol, thunk giving its value). Source: prolog.md section 4.
     """
@@ -201,7 +208,7 @@ def lazy_list(initial, body, restarts=False):
             parameters = leaving.parameters
             kernel.checkpoint()
 
-    return step(tuple(initial))
+    return beginning(lambda: step(tuple(initial)))
 
 
 # ---------------------------------------------------------------------------------------------------------------- functions
@@ -273,7 +280,7 @@ def lazy_mapcar(fun, list_1, *more_lists):
             return None
         return Cons(one(function(*(ll.car for ll in lists))), tail(lambda: step([lazy_cdr(ll) for ll in lists])))
 
-    return step([list_1, *more_lists])
+    return beginning(lambda: step([list_1, *more_lists]))
 
 
 def lazy_mapcan(fun, list_1, *more_lists):
@@ -293,7 +300,7 @@ def lazy_mapcan(fun, list_1, *more_lists):
             lists = [lazy_cdr(ll) for ll in lists]
         return None
 
-    return step([list_1, *more_lists])
+    return beginning(lambda: step([list_1, *more_lists]))
 
 
 def _followed_by(part, generate_rest):
@@ -322,7 +329,7 @@ def lazy_filter(pred, ll):
             cell = lazy_cdr(cell)
         return None
 
-    return step(ll)
+    return beginning(lambda: step(ll))
 
 
 def lazy_fold(fun, sequence, *, initial_value=UNSUPPLIED):

@@ -197,8 +197,13 @@ _make_hash_table = lispify(make_hash_table)
 def with_hash_table_locked(table, body):
     """Values of ``body()``, during which no other task gets at ``table``: the work of the macro of that name."""
     need(table, SynchronizedHashTable, "(SATISFIES SB-EXT:HASH-TABLE-SYNCHRONIZED-P)")
+    with lock_of_table(table):
+        return body()
+
+
+def lock_of_table(table):
+    """The `Lock` of a hash table, which its holder may take again."""
     lock = _locks.get(table)
     if lock is None:
         lock = _locks[table] = Lock("of a hash table", recursive=True)
-    with lock:
-        return body()
+    return lock

@@ -12,10 +12,11 @@ Source: cpl.md 13.3.
 from __future__ import annotations
 
 from cramhy_runtime import kernel
+from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import Error, error, type_error
 from cramhy_runtime.ground.data import NO_VALUES, Symbol, all_values, list_from, truth
 from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.packages import ensure_package, keyword
 from cramhy_runtime.ground.printing import define_printer, print_unreadable
 from cramhy_runtime.ground.printing import prin1_to_string
 
@@ -24,21 +25,28 @@ from .wait_queue import need, time_limit
 ERROR, TIMEOUT = keyword("ERROR"), keyword("TIMEOUT")
 
 
-class JoinThreadError(Error):
-    """A thread was joined that did not end in time, or not by returning."""
+class ThreadError(Error):
+    """Something cannot be done with ``thread``; ``problem`` says why. The classes are SBCL's, on which CRAM-UTILITIES stands."""
 
-    lisp_name = "CRAM-UTILITIES::JOIN-THREAD-ERROR"
-    initargs = {"THREAD": "thread", "PROBLEM": "problem"}
+    lisp_name = "SB-THREAD::THREAD-ERROR"
+    initargs = {"THREAD": "thread"}
     thread = problem = None
 
     def report(self):
-        return self.problem
+        return self.problem or super().report()
+
+
+class JoinThreadError(ThreadError):
+    """A thread was joined that did not end in time, or not by returning."""
+
+    lisp_name = "SB-THREAD::JOIN-THREAD-ERROR"
+    initargs = {"PROBLEM": "problem"}
 
 
 class Thread:
     """What Lisp sees of a task of the kernel: ``values`` when its function has returned, ``failure`` when it left otherwise."""
 
-    lisp_name = "CRAM-UTILITIES::THREAD"
+    lisp_name = "SB-THREAD::THREAD"
 
     def __init__(self, task):
         self.task = task
@@ -63,10 +71,11 @@ class Thread:
 
 
 def _thread(thing):
-    return need(thing, Thread, "CRAM-UTILITIES::THREAD")
+    return need(thing, Thread, "SB-THREAD:THREAD")
 
 
-def _thread_of(task):
+def thread_of(task):
+    """The `Thread` of a task of the kernel."""
     thread = getattr(task.local, "thread", None)
     return Thread(task) if thread is None else thread
 
@@ -91,7 +100,7 @@ def spawn_thread(name, fn, *arguments):
 
 
 def _begin(function, arguments):
-    _thread_of(kernel.current()).run(function, arguments)
+    thread_of(kernel.current()).run(function, arguments)
 
 
 def spawn_threads(n, prefix, fn):
@@ -127,21 +136,27 @@ def join_thread(thread, *, timeout=None, on_timeout=TIMEOUT, on_failure=ERROR):
     """
     task, until = _thread(thread).task, time_limit(timeout)
     if task is kernel.current():
-        _fail(thread, f"In thread {prin1_to_string(thread)}, attempt to join the current thread.")
+        fail(thread, f"In thread {shown_in_messages(thread)}, attempt to join the current thread.")
     task.join(lambda: f"the end of the thread {thread.name}", until)
     if not task.dead:
         if on_timeout is ERROR:
-            _fail(thread, f"Joining thread timed out: thread {prin1_to_string(thread)} did not exit in time.")
+            fail(thread, f"Joining thread timed out: thread {shown_in_messages(thread)} did not exit in time.")
         return on_timeout
     if thread.state == "FINISHED":
         return thread.values
     if on_failure is ERROR:
         reason = "" if thread.failure is None or isinstance(thread.failure, kernel.Cancelled) else f"\nIts error: {thread.failure}"
-        _fail(thread, f"Joining thread failed: thread {prin1_to_string(thread)} did not return normally.{reason}")
+        fail(thread, f"Joining thread failed: thread {shown_in_messages(thread)} did not return normally.{reason}")
     return on_failure
 
 
-def _fail(thread, problem):
+def shown_in_messages(thread):
+    """``thread`` as SBCL shows it in its messages: without the package of its class."""
+    return shown_with(thread, ensure_package("SB-THREAD"))
+
+
+def fail(thread, problem):
+    """The error that joining ``thread`` failed."""
     failure = JoinThreadError(thread=thread, problem=problem)
     failure.__cause__ = thread.failure
     error(failure)
@@ -157,12 +172,12 @@ def thread_name(thread):
 
 def current_thread():
     """``cut:current-thread``: the thread that runs; each task of a plan is one, too."""
-    return _thread_of(kernel.current())
+    return thread_of(kernel.current())
 
 
 def all_threads():
     """``cut:all-threads``: all that live, tasks of plans and of the runtime included, the oldest first."""
-    return list_from([_thread_of(task) for task in kernel.active().tasks])
+    return list_from([thread_of(task) for task in kernel.active().tasks])
 
 
 def thread_local_binding_p(symbol, thread=None):
@@ -173,11 +188,12 @@ def thread_local_binding_p(symbol, thread=None):
 
 
 def _print(thread, stream):
-    text = f"THREAD {prin1_to_string(thread.name)} {thread.state}"
+    name = "" if thread.name is None else f"{prin1_to_string(thread.name)} "
+    text = f"{name}{thread.state}"
     if thread.state == "FINISHED":
         values = ", ".join(map(prin1_to_string, all_values(thread.values)))
         text += f" values: {values}" if truth(values) else ""
-    print_unreadable(thread, stream, text, identity=True)
+    print_unreadable(thread, stream, text, type_=True, identity=True)
 
 
 define_printer(Thread, _print)

@@ -173,7 +173,32 @@ def test_lazy_lists(lisp, form, result):
     assert lisp(form) == result
 
 
-def test_a_lazy_list_can_keep_special_bindings(lisp):
-    assert lisp("""(defvar *level* 0)
-                   (let ((l (with-lazy-list-dynamic-environment ((*level* 1)) (lazy-list ((n 0)) (cont *level* (1+ n))))))
-                     (list (lazy-elt l 0) (lazy-elt l 1)))""") in ("(0 1)", "(1 1)")
+@pytest.mark.parametrize(
+    ("form", "result"),
+    [
+        ("(lazy-list ((n 0)) (cont *level* (1+ n)))", "(1 1)"),
+        ("(lazy-mapcar (lambda (n) (declare (ignore n)) *level*) '(1 2))", "(1 1)"),
+        ("(lazy-mapcan (lambda (n) (list n *level*)) '(1 2))", "(1 1)"),
+        ("(lazy-mapcan (lambda (n) (lazy-list () (if (< n 3) (finish *level*)))) '(1 2))", "(1 1)"),
+        ("(lazy-filter (lambda (n) (= n *level*)) '(0 1 0 1))", "(1 1)"),
+        ("(lazy-list ((n 0)) (cont (lazy-car (lazy-list () (finish *level*))) (1+ n)))", "(1 1)"),
+        ("(prolog '(and (member ?x (0 0)) (lisp-fun level ?x ?level)))", "(1 1)"),
+    ],
+)
+def test_a_lazy_list_can_keep_special_bindings_the_first_element_too(lisp, form, result):
+    lisp("(defvar *level* 0) (defun level (x) (declare (ignore x)) *level*)")
+    assert (
+        lisp(f"""(let ((l (with-lazy-list-dynamic-environment ((*level* 1)) {form})))
+                      (flet ((level-of (x) (if (listp x) (cdr (assoc '?level x)) x)))
+                        (list (level-of (lazy-elt l 0)) (level-of (lazy-elt l 1)))))""")
+        == result
+    )
+
+
+def test_the_forms_of_the_environment_are_evaluated_for_each_element(lisp):
+    assert (
+        lisp("""(defvar *level* 0)
+                   (let* ((n 0) (l (with-lazy-list-dynamic-environment ((*level* (incf n))) (lazy-list () (cont *level*)))))
+                     (list n (force-ll (lazy-take 3 l)) n *level*))""")
+        == "(1 (1 2 3) 3 0)"
+    )

@@ -33,7 +33,7 @@ import pytest
         ('(make-msg "turtlesin/Pose")', "Did you mean turtlesim?"),
         (
             '(make-msg "nowhere/Pose")',
-            "No package nowhere with messages or services is on ROS_PACKAGE_PATH, in the workspace's src or in the current folder.",
+            "No package nowhere with a msg/Pose.msg is below ROS_PACKAGE_PATH (which is not set), the current folder and src of the workspace.",
         ),
         ('(make-msg "turtlesim/Posee")', "Did you mean turtlesim/Pose?"),
         ('(call-service "/spawn" "turtlesin/Spawn" :x 1)', "Did you mean turtlesim?"),

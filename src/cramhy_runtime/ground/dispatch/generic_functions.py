@@ -18,10 +18,11 @@ from __future__ import annotations
 import weakref
 
 from ..classes import find_class_or_error, when_classes_change
-from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, type_error, wrong_argument_count
+from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, wrong_argument_count
 from ..condition_types import shown_with
 from ..data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
+from ..functions import invalid_function_name
 from .generic_errors import incongruent, no_applicable_method_error
 from ..keyword_calls import lispify
 from .method_combination import STANDARD, Combination, find_combination
@@ -75,6 +76,13 @@ class GenericFunction(FunctionObject):
     advice: str | None = None
     """What the error that no method is applicable tells the user to do."""
     direct = direct_methods = None
+    enclosure = None
+
+    def enclose(self, enclosure):
+        """Let ``enclosure(effective function)`` make the calls in which a method of a user takes part. Returns the argument."""
+        self.enclosure = enclosure
+        self.forget()
+        return enclosure
 
     def call_directly(self, function):
         """Let ``function`` make all calls, without any dispatch, as long as the methods are those that there are now.
@@ -208,6 +216,8 @@ class GenericFunction(FunctionObject):
         if not methods and not self.combination.accepts_none:
             return None
         effective = self.combination.effective(self, methods, tuple(argument.__class__ for argument in arguments))
+        if self.enclosure is not None and any(method not in self.own_methods for method in methods):
+            effective = self.enclosure(effective)
         if self.shape.has_keys and methods:
             return self._checking_keys(effective, methods)
         return effective
@@ -336,6 +346,11 @@ def no_applicable_method_default(function, arguments):
     )
 
 
+def no_method_for(name, *arguments):
+    """Signal that the function ``name`` of COMMON-LISP, generic in SBCL and built in here, has no method for ``arguments``."""
+    return no_applicable_method_error(GenericFunction(sym(name)), arguments)
+
+
 # ---------------------------------------------------------------------------------------------------------------- definition
 
 
@@ -344,7 +359,7 @@ def function_cell(name):
     if isinstance(name, Cons) and name.car is sym("SETF") and isinstance(name.cdr, Cons):
         return name.cdr.car, True
     if not is_symbol(name):
-        type_error(name, "(OR SYMBOL (CONS (EQL SETF)))")
+        error(invalid_function_name(name))
     return name, False
 
 
@@ -370,7 +385,7 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
         opening = getattr(old, "opening", None)
         if opening is None and not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
             _refuse_ordinary(symbol)
-        if not setf:
+        if not setf and opening is None:
             PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", symbol)
         function = GenericFunction(name, lambda_list) if opening is None else opening.open()
         if setf:
@@ -391,8 +406,12 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
     return function
 
 
+class FunctionInTheWay(SimpleProgramError):
+    """A generic function is defined where there is an ordinary one."""
+
+
 def _refuse_ordinary(symbol):
-    condition = SimpleProgramError("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
+    condition = FunctionInTheWay("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
     if symbol.package is not None and symbol.package.name == "COMMON-LISP":
         return error(condition)
     return restart_case([(sym("CONTINUE"), lambda: None, "Replace the function binding.")], lambda: error(condition))

@@ -1,4 +1,8 @@
-"""Packages beyond ANSI that programs name: SB-EXT and SB-MOP of SBCL. Only what plan code uses is here. Source: SBCL's manual."""
+"""Packages beyond ANSI that programs name: those of SBCL. Source: SBCL's manual.
+
+What the runtime itself needs of SB-EXT and SB-MOP is made at the start. The rest is in the folder ``sbcl``, which is imported when a
+program first names something of it: such a package is a `LatePackage`.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,7 @@ from .files import files
 from .pathnames import pathnames
 from .numbers import random_state
 from .objects import protocol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.packages import Package, ensure_package, our_own, sym
 from .packages import package_functions
 
 INFINITIES = {
@@ -21,6 +25,32 @@ INFINITIES = {
     for kind, value in (("short", infinity), ("single", infinity), ("double", DoubleFloat(infinity)), ("long", DoubleFloat(infinity)))
 }
 """Constants of SB-EXT: what the printer writes for numbers without end must be read back."""
+
+
+LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL")
+"""The packages of which a part comes late."""
+
+
+class LatePackage(Package):
+    """A package that is completed when somebody asks for a name that it does not have yet, or for all of them."""
+
+    is_complete = False
+
+    def lookup(self, name):
+        found = super().lookup(name)
+        if found[1] is None and not self.is_complete:
+            self.complete()
+            found = super().lookup(name)
+        return found
+
+    def complete(self):
+        """Make sure that all external symbols are there."""
+        if not self.is_complete:
+            self.is_complete = True
+            from .sbcl import packages
+
+            with our_own:
+                packages.complete(self.name)
 
 
 def define_faces():
@@ -42,3 +72,6 @@ def define_faces():
     for name in INFINITIES:
         sym(f"SB-EXT::{name.upper()}").constant = True
     define_face("SB-MOP", functions={protocol: protocol.MOP_NAMES})
+    for name in LATE:
+        package = ensure_package(name)
+        package.built_in, package.__class__ = True, LatePackage

@@ -23,6 +23,7 @@ from cramhy_runtime.ground.conditions import (
 )
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, lisp_list, truth
 from cramhy_runtime.ground.dynamic import special, unbind
+from cramhy_runtime.ground.source_places import exception_position
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
 from ..engine.failing_calls import note_place
@@ -66,6 +67,7 @@ def call_lisp(function, arguments, kind, written, m=None):
     """
     if BREAK_ON_LISP_ERRORS.value is not None and truth(BREAK_ON_LISP_ERRORS.value):
         return True, _apply(function, arguments)
+    inside = None
     case = enter_case(_ERRORS)
     try:
         try:
@@ -76,11 +78,12 @@ def call_lisp(function, arguments, kind, written, m=None):
             unbind()
     except HandlerExit as left:
         problem = caught(left, case)
+        inside = exception_position(left)
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
     warning = SimpleWarning(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
     if m is not None:
-        note_place(warning, m, kind, written, arguments, problem)
+        note_place(warning, m, kind, written, arguments, problem, inside)
     warn(warning)
     return False, problem
 

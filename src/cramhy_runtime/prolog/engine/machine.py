@@ -47,6 +47,13 @@ class _Kept:
         return self.entry
 
 
+class Warned(set[object]):
+    """The warnings that a proof gave. ``causes`` are texts about the Lisp functions that signalled an error in it, which failed a goal."""
+
+    def __init__(self) -> None:
+        self.causes: dict[str, bool] = {}  # its keys
+
+
 class Machine:
     """A proof. ``names`` maps symbols to the variables that they stand for in Lisp data."""
 
@@ -77,7 +84,7 @@ class Machine:
     def warned_of(self):
         """A set of the warnings given in this proof and those inside of it, so that none is repeated."""
         if self.warned is None:
-            self.warned = set()
+            self.warned = Warned()
         return self.warned
 
     def unify(self, *sides):

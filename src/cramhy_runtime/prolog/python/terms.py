@@ -23,7 +23,7 @@ from contextlib import contextmanager
 from types import BuiltinFunctionType, FunctionType, MethodType
 from cramhy_runtime.kernel.typing_names import Any, NoReturn, annotations_of
 
-from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol, list_from
+from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.python_names import attribute_symbols
 from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, find_package, near_names, package_names, printed
 from cramhy_runtime.ground.dynamic import binding
@@ -344,7 +344,7 @@ def to_python(thing: Any, empty: Any = None) -> Any:
         if thing.name[:1] == "?":
             return V.of(thing)
         return getattr(thing.function, "called_from_lisp", thing)
-    if kind is LispString:
+    if kind in WRITABLE_STRINGS:
         return str(thing)
     if kind is Character:
         return thing.char

@@ -12,6 +12,7 @@ from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError
 from cramhy_runtime.ground.printing import format_to_string
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.ground.printing import princ_to_string
+from ..names import allowed_name, check_graph_name
 from . import logging
 from .master import master_uri
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
@@ -67,6 +68,20 @@ def ros_error(control: str, *arguments: object, hint: str | Callable[[], str] | 
     """
     logging.log_text(logging.ERROR, None, format_to_string(control, *arguments))
     conditions.error(SimpleError(control, *arguments), hint=hint)
+
+
+def legal(name: str, kind: str) -> str:
+    """``name`` if ROS's rules allow it for a topic, service or parameter (``kind``), else it is an error with roscpp's text.
+
+    The name is as the program gave it, since the node's own name, which goes before private ones, is another matter. An empty name is an
+    error of its own, where it is resolved. Source: turtlesim.md 6, wiki.ros.org/Names.
+    """
+    complaint = check_graph_name(name)
+    if complaint is not None:
+        ros_error(
+            "~a", complaint, hint=f'"{name}" cannot be the name of a {kind}, since ROS does not allow it. Try "{allowed_name(name)}".'
+        )
+    return name
 
 
 def close_names(name: str, names: Iterable[str], otherwise: str) -> str:

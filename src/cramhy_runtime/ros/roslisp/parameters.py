@@ -8,7 +8,7 @@ from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, list_from
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from .. import graph
 from . import master, node
-from .errors import close_names, ros_error, rpc_error
+from .errors import close_names, legal, ros_error, rpc_error
 from .parameter_values import decode, encode
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ def _full_name(key: object) -> str:
     if not isinstance(key, (str, LispString)):
         return conditions.type_error(key, "STRING", "\nwhen binding ROSLISP::KEY")
     _require_master()
-    return node.fully_qualified_name(str(key))
+    return node.fully_qualified_name(legal(str(key), "parameter"))
 
 
 def _require_master() -> None:

@@ -23,7 +23,7 @@ from ..message_building import get_field, instance
 from ..messages import RosMessage
 from ..services import Service, exchange
 from . import logging, node
-from .errors import ServiceCallError, ServiceError, ros_error, rpc_error
+from .errors import ServiceCallError, ServiceError, legal, ros_error, rpc_error
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ def make_service_client(service_name: Text, service_type: Text) -> ServiceClient
                     expected_type="STRING",
                 )
             )
-    return ServiceClient(str(service_name), messages.service_type(service_type))
+    return ServiceClient(legal(str(service_name), "service"), messages.service_type(service_type))
 
 
 def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessage | None:
@@ -207,7 +207,7 @@ def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessag
             )
         )
     else:
-        name, service_type, arguments = str(service), messages.service_type(rest_args[0]), rest_args[1:]
+        name, service_type, arguments = legal(str(service), "service"), messages.service_type(rest_args[0]), rest_args[1:]
     request = _request(service_type, arguments)
     found = lookup(here, here.resolve(name))
     return None if found is None else call(found, request)
@@ -225,7 +225,7 @@ def wait_for_service(service: ServiceClient | Text, timeout: float | None = None
     if isinstance(service, ServiceClient):
         name = service.name
     elif isinstance(service, (str, LispString)):
-        name = str(service)
+        name = legal(str(service), "service")
     else:
         return no_applicable_method("ROSLISP:WAIT-FOR-SERVICE", 2, service, advice=NAMED_BY_STRINGS)
     if not name.startswith(("/", "~")):
@@ -251,7 +251,7 @@ def register_service_fn(service_name: Text, function: Handler | Symbol, service_
     kind = messages.service_type(service_type)
     if not isinstance(service_name, (str, LispString)):
         return conditions.type_error(service_name, "STRING", "\nwhen binding ROSLISP::SERVICE-NAME")
-    name = here.resolve(str(service_name))
+    name = here.resolve(legal(str(service_name), "service"))
     existing = here.services.get(name)
     if existing is not None:
         return ros_error("Cannot create service ~a as it already exists with info ~a", name, existing)
@@ -281,6 +281,7 @@ class PersistentService:
     def __init__(self, service_name: Text, service_type: ServiceName):
         if not isinstance(service_name, (str, LispString)):
             conditions.type_error(service_name, "STRING", "\nwhen binding ROSLISP::SERVICE-NAME")
+        legal(str(service_name), "service")
         self.service_name, self.service_type = service_name, service_type
         self.type = messages.service_type(service_type)
         self.connection: Service | None = None

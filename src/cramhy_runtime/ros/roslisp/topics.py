@@ -19,7 +19,7 @@ from ..messages import RosMessage, topic_class
 from ..topics import Publication
 from ..type_texts import same_on_the_wire
 from . import logging, node
-from .errors import close_names, ros_error
+from .errors import close_names, legal, ros_error
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ class Subscriber:
 def _topic_name(topic: object, parameter: str = "TOPIC") -> str:
     if not isinstance(topic, (str, LispString)):
         return conditions.type_error(topic, "STRING", f"\nwhen binding ROSLISP::{parameter}")
-    return str(topic)
+    return legal(str(topic), "topic")
 
 
 def advertise(topic: Text, topic_type: TypeName, *, latch: bool | None = None) -> Publication | None:
@@ -201,7 +201,7 @@ def publish(pub: Publication | Text, message: RosMessage) -> int:
             )
             return no_primary_method("ROSLISP:PUBLISH", 3, pub, message, advice=advice)
         here = node.require_node()
-        name = here.resolve(str(pub))
+        name = here.resolve(legal(str(pub), "topic"))
         publication = here.publications.get(name)
         if publication is None:
             return ros_error(

@@ -14,12 +14,12 @@ from itertools import product
 
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, LispString
-from .arrays import array_element_type, dimensions_of
+from .arrays import array_element_type, dimensions_of, without_fill_pointer
 from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
 from .lists import items_of
-from .sequence_types import INDEX_TYPE, char_of, elements
-from cramhy_runtime.ground.arrays import CHARACTER, LispArray, TypedVector, Vector
+from .sequence_types import INDEX_TYPE, char_of, elements, text
+from cramhy_runtime.ground.arrays import CHARACTER, LispArray, TypedVector, Vector, take_storage
 
 LISP_NAMES = "make-array vector adjust-array"
 
@@ -86,6 +86,8 @@ def make_array(
     if len(dimensions) != 1:
         return LispArray(dimensions, items, element_type, adjustable)
     if element_type is CHARACTER:
+        if fill_pointer is None and not adjustable:
+            return text(items)
         return LispString([char_of(item) for item in items], fill_pointer, adjustable)
     if fill_pointer is not None or adjustable:
         return Vector(items, fill_pointer, element_type, adjustable)
@@ -157,7 +159,7 @@ def _displaced(dimensions, size, element_type, adjustable, fill_pointer, target,
 
 def _displaced_string(dimensions, size, adjustable, fill_pointer, target, offset):
     # Strings keep their characters in Python's way, so a displaced string is a copy; SBCL shares.
-    chars = list(target) if isinstance(target, str) else target.chars
+    chars = target.chars if isinstance(target, LispString) else list(target)
     if offset + size > len(chars):
         error("The :DISPLACED-TO array is too small.")
     part = chars[offset : offset + size]
@@ -185,12 +187,16 @@ def adjust_array(
     if len(old_dimensions) != len(dimensions):
         error("Expected ~D new dimension~:P for array, but received ~D.", len(old_dimensions), len(dimensions))
     kind = array_element_type(array)
+    if element_type is not UNSUPPLIED and upgraded_element_type(element_type) != kind and not isinstance(kind, Cons):
+        error("The new element type, ~S, is incompatible with old type, ~S.", element_type, kind)
     size = math.prod(dimensions)
     if displaced_to is not None:
         pointer = None if fill_pointer is UNSUPPLIED else _fill_pointer(fill_pointer, size)
         return _became(array, _displaced(dimensions, size, kind, True, pointer, displaced_to, displaced_index_offset))
     pointer = getattr(array, "fill_pointer", None)
     if fill_pointer is not UNSUPPLIED and fill_pointer is not None:
+        if pointer is None:
+            return without_fill_pointer(array)
         pointer = _fill_pointer(fill_pointer, size)
     elif pointer is not None and pointer > size:
         error("can't adjust vector ~S to a size (~S) smaller than its current fill pointer (~S)", array, size, pointer)
@@ -198,7 +204,9 @@ def adjust_array(
     if initial_contents is UNSUPPLIED:
         _keep_old(array, old_dimensions, dimensions, items)
     if isinstance(array, (str, LispString)):
-        return _became(array, LispString([item.char for item in items], pointer, getattr(array, "adjustable", False)))
+        if isinstance(array, str):
+            return text(items)
+        return _became(array, LispString([item.char for item in items], pointer, array.adjustable))
     if isinstance(array, list):
         return TypedVector(items, kind) if isinstance(array, TypedVector) else items
     if len(dimensions) == 1:
@@ -219,7 +227,7 @@ def _keep_old(array, old_dimensions, dimensions, items):
 def elements_of_storage(array):
     """All elements of an array in row-major order, those beyond a fill pointer included."""
     if isinstance(array, (str, LispString)):
-        return [Character(char) for char in (array if isinstance(array, str) else array.chars)]
+        return [Character(char) for char in (array.chars if isinstance(array, LispString) else array)]
     if isinstance(array, LispArray):
         return array.storage[array.offset : array.offset + array.total_size]
     return array
@@ -239,8 +247,7 @@ def _became(array, new):
         return array
     if isinstance(array, LispArray) and array.__class__ is new.__class__:
         if isinstance(array, Vector) or array.adjustable:
-            array.dimensions, array.storage, array.offset = new.dimensions, new.storage, new.offset
-            array.displaced_to = new.displaced_to
+            take_storage(array, new)
             if isinstance(array, Vector):
                 array.fill_pointer = new.fill_pointer
             return array

@@ -14,10 +14,10 @@ import math
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, LispString, MultipleValues, list_from
+from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, LispString, MultipleValues, list_from
 from .element_types import check_element, upgraded_element_type
 from .sequence_types import char_of, constant_changed
-from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
+from cramhy_runtime.ground.arrays import InvalidArray, InvalidArrayIndex, followers_moved, wrong_rank
 from cramhy_runtime.ground.arrays import (
     BIT,
     LispArray,
@@ -85,7 +85,7 @@ def dimensions_of(array, context="\nwhen binding ARRAY"):
 def _place(array, subscripts):
     """(storage, index) of the element of ``array`` at ``subscripts``."""
     if not isinstance(array, LispArray):
-        storage = array if isinstance(array, (list, str)) else array.chars if isinstance(array, LispString) else not_an_array(array)
+        storage = array.chars if array.__class__ is LispString else array if isinstance(array, (list, str)) else not_an_array(array)
         if len(subscripts) != 1:
             wrong_rank(subscripts, 1)
         return storage, _check(subscripts[0], len(storage), array)
@@ -94,7 +94,7 @@ def _place(array, subscripts):
 
 def _check(index, bound, array, axis=None):
     if index.__class__ is not int or not 0 <= index < bound:
-        error(InvalidArrayIndex(index, array, axis, bound))
+        error(InvalidArray(array) if hasattr(array, "lost") else InvalidArrayIndex(index, array, axis, bound))
     return index
 
 
@@ -116,10 +116,11 @@ def _read(array, storage, index):
 def _write(array, storage, index, value):
     if storage.__class__ is list and not isinstance(array, (LispString, LispArray)):
         storage[index] = value
-    elif isinstance(array, LispString):
-        storage[index] = char_of(value)
-    elif isinstance(array, str):
-        constant_changed(array)
+    elif isinstance(array, (str, LispString)):
+        char = char_of(value)
+        if array.__class__ not in WRITABLE_STRINGS:
+            constant_changed(array)
+        array.writable()[index] = char
     else:
         storage[index] = check_element(value, array.element_type)
     return value
@@ -283,16 +284,21 @@ def adjustable_array_p(array):
 # ------------------------------------------------------------------------------------------------------------ fill pointers
 
 
+def without_fill_pointer(vector):
+    """Signal that ``vector`` has no fill pointer."""
+    return error(
+        SimpleTypeError(
+            "~S is not an array with a fill pointer.",
+            vector,
+            datum=vector,
+            expected_type="(AND VECTOR (SATISFIES ARRAY-HAS-FILL-POINTER-P))",
+        )
+    )
+
+
 def _filled(vector):
     if getattr(vector, "fill_pointer", None) is None:
-        error(
-            SimpleTypeError(
-                "~S is not an array with a fill pointer.",
-                vector,
-                datum=vector,
-                expected_type="(AND VECTOR (SATISFIES ARRAY-HAS-FILL-POINTER-P))",
-            )
-        )
+        without_fill_pointer(vector)
     return vector
 
 
@@ -355,7 +361,9 @@ def vector_push_extend(element, vector, min_extension=None):
     else:
         check_element(element, vector.element_type)
         if vector.displaced_to is not None:  # it gets a storage of its own; the target stays as it is
+            before = vector.offset
             vector.storage, vector.offset, vector.displaced_to = vector.active(), 0, None
+            followers_moved(vector, before)
         vector.storage += [element] + [0] * (more - 1)
         vector.dimensions = (size + more,)
     vector.fill_pointer = index + 1

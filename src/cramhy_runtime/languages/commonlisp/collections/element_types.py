@@ -41,7 +41,7 @@ def upgraded_element_type(specifier):
             limits = _integer_limits(name, parameters)
             return _for_integers(*limits) if limits else True
         return True
-    if isinstance(specifier, Symbol):
+    if isinstance(specifier, (Symbol, type)):
         expansion = PORTS.types.expand(specifier)
         if expansion is not specifier:
             return upgraded_element_type(expansion)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, Cons, MultipleValues, Symbol, list_from
+from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, MultipleValues, Symbol, list_from
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import equal_to, key_of, match_of, predicate_of, test_of
@@ -249,16 +249,26 @@ def subst_if_not(new, predicate, tree, *, key=None):
 
 
 def _nsubstituted(match, new, tree):
-    if match(tree):
+    return _rewritten(lambda subtree: new if match(subtree) else UNSUPPLIED, tree)
+
+
+def _rewritten(replacement, tree):
+    """``tree``, changed: each subtree gives way to its ``replacement`` unless that is `UNSUPPLIED`; asked in SBCL's order."""
+    new = replacement(tree)
+    if new is not UNSUPPLIED:
         return new
-    cell = tree
+    last, cell = None, tree
     while isinstance(cell, Cons):
         checkpoint()
-        cell.car = _nsubstituted(match, new, cell.car)
-        if match(cell.cdr):
-            cell.cdr = new
+        new = replacement(cell)
+        if new is not UNSUPPLIED:
             break
-        cell = cell.cdr
+        cell.car = _rewritten(replacement, cell.car)
+        last, cell = cell, cell.cdr
+    else:
+        new = UNSUPPLIED if last is None else replacement(cell)
+    if new is not UNSUPPLIED and last is not None:
+        last.cdr = new
     return tree
 
 
@@ -279,18 +289,12 @@ def nsubst_if_not(new, predicate, tree, *, key=None):
 
 def sublis(alist, tree, *, key=None, test=None, test_not=None):
     """``sublis``: ``tree`` with the cdr of a pair of ``alist`` for each subtree that is the pair's car."""
-    pairs = [pair for pair in items_of(alist, "\nwhen binding SB-IMPL::ALIST") if pair is not None]
-    for pair in pairs:
-        if not isinstance(pair, Cons):
-            not_a_list(pair)
-    compare = test_of(test, test_not, _BOTH) or (lambda item, old: eql(old, item) is not None)
-    key = key_of(key)
+    replacement = _replacement(alist, key, test, test_not)
 
     def rewrite(subtree):
-        item = subtree if key is None else key(subtree)
-        for pair in pairs:
-            if compare(item, pair.car):  # in this order, as in SBCL
-                return pair.cdr
+        new = replacement(subtree)
+        if new is not UNSUPPLIED:
+            return new
         if not isinstance(subtree, Cons):
             return subtree
         car, cdr = rewrite(subtree.car), rewrite(subtree.cdr)
@@ -299,7 +303,28 @@ def sublis(alist, tree, *, key=None, test=None, test_not=None):
     return rewrite(tree)
 
 
-nsublis = sublis
+def _replacement(alist, key, test, test_not):
+    """A function of a subtree: what ``alist`` has for it, or `UNSUPPLIED`."""
+    pairs = [pair for pair in items_of(alist, "\nwhen binding SB-IMPL::ALIST") if pair is not None]
+    for pair in pairs:
+        if not isinstance(pair, Cons):
+            not_a_list(pair)
+    compare = test_of(test, test_not, _BOTH) or (lambda item, old: eql(old, item) is not None)
+    key = key_of(key)
+
+    def replacement(subtree):
+        item = subtree if key is None else key(subtree)
+        for pair in pairs:
+            if compare(item, pair.car):  # in this order, as in SBCL
+                return pair.cdr
+        return UNSUPPLIED
+
+    return replacement
+
+
+def nsublis(alist, tree, *, key=None, test=None, test_not=None):
+    """``nsublis``: as `sublis`, in place."""
+    return _rewritten(_replacement(alist, key, test, test_not), tree)
 
 
 def tree_equal(first, second, *, test=None, test_not=None):

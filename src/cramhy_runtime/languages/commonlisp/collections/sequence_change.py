@@ -20,14 +20,18 @@ substitute substitute-if substitute-if-not nsubstitute nsubstitute-if nsubstitut
 """
 
 
-def _chosen(match, sequence, from_end, start, end, count):
-    """(elements, set of the indices of those that match), at most ``count`` of them, from the end if asked."""
+def _chosen(match, sequence, from_end, start, end, count, substituting=False):
+    """(elements, set of the indices of those that match), at most ``count`` of them, from the end if asked.
+
+    Without ``count`` only the substituting functions ask the last element first, as in SBCL.
+    """
     most = limit(count)
     items, start, end = span(sequence, start, end)
-    if most is None:
-        return items, {index for index in range(start, end) if match(items[index])}
-    chosen = set()
     backwards = from_end is not None and from_end is not False
+    if most is None:
+        order = range(end - 1, start - 1, -1) if backwards and substituting else range(start, end)
+        return items, {index for index in order if match(items[index])}
+    chosen = set()
     for index in range(end - 1, start - 1, -1) if backwards else range(start, end):
         if len(chosen) >= most:
             break
@@ -155,12 +159,12 @@ def delete_duplicates(sequence, *, from_end=None, test=None, test_not=None, star
 
 
 def _substituted(new, match, sequence, from_end, start, end, count):
-    items, chosen = _chosen(match, sequence, from_end, start, end, count)
+    items, chosen = _chosen(match, sequence, from_end, start, end, count, substituting=True)
     return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(items)])
 
 
 def _nsubstituted(new, match, sequence, from_end, start, end, count):
-    items, chosen = _chosen(match, sequence, from_end, start, end, count)
+    items, chosen = _chosen(match, sequence, from_end, start, end, count, substituting=True)
     if sequence.__class__ is str:
         return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(items)])
     store_all(sequence, 0, [new if index in chosen else item for index, item in enumerate(items)])

@@ -5,7 +5,7 @@ With several sequences the shortest decides where to stop. Source: ANSI 17.3; te
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, MultipleValues
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues
 from cramhy_runtime.ground.functions import function_of, holds, key_of, primary
 from .lists import cells
 from .sequence_types import elements, part, sequence_type, store_all
@@ -44,7 +44,10 @@ def map_(result_type, function, sequence, *sequences):
 def map_into(target, function, *sequences):
     """``map-into``: store what ``function`` gives for the elements into ``target``; a fill pointer is set to the end."""
     function = primary(function_of(function, "\nwhen binding FUNCTION"))
-    whole = target.dimensions[0] if isinstance(target, Vector) else len(elements(target))
+    if isinstance(target, Vector):
+        whole = target.dimensions[0]
+    else:
+        whole = len(target.chars) if isinstance(target, LispString) else len(elements(target))
     sources = [elements(sequence) for sequence in sequences]
     count = min([whole, *map(len, sources)])
     results = [function(*(source[index] for source in sources)) for index in range(count)]
@@ -59,14 +62,12 @@ def reduce(function, sequence, *, key=None, from_end=None, start=0, end=None, in
     function = function_of(function, "\nwhen binding FUNCTION")
     items = part(sequence, start, end)
     key = key_of(key)
-    if key is not None:
-        items = [key(item) for item in items]
     if from_end is not None and from_end is not False:
         items = items[::-1]
         combine = _swapped(function)
     else:
         combine = function
-    remaining = iter(items)
+    remaining = iter(items) if key is None else map(key, items)
     if initial_value is UNSUPPLIED:
         if not items:
             return function()

@@ -8,7 +8,7 @@ Source: ANSI 17.2.1 and 17.3; texts are SBCL's.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character, Cons
+from cramhy_runtime.ground.data import TEXTS, Character, Cons
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import key_of, match_of, predicate_of, test_of
 from .lists import cells
@@ -72,7 +72,7 @@ def find_if_not(predicate, sequence, *, from_end=None, start=0, end=None, key=No
 
 def position(item, sequence, *, from_end=None, test=None, test_not=None, start=0, end=None, key=None):
     """``position``: the index of the first element that matches ``item``, or nil."""
-    if sequence.__class__ is str and item.__class__ is Character and key is None and test is None and test_not is None:
+    if sequence.__class__ in TEXTS and item.__class__ is Character and key is None and test is None and test_not is None:
         start, end = bounds(start, end, len(sequence))
         index = (sequence.find if from_end is None else sequence.rfind)(item.char, start, end)
         return None if index < 0 else index
@@ -131,10 +131,14 @@ def search(pattern, sequence, *, from_end=None, test=None, test_not=None, key=No
     items, start, end = span(sequence, start2, end2)
     wanted, items, compare = _keyed(wanted[first:last], key), _keyed(items, key), _comparison(test, test_not)
     places = range(start, end - len(wanted) + 1)
-    for place in reversed(places) if from_end is not None and from_end is not False else places:
+    backwards, found = from_end is not None and from_end is not False, None
+    keep_on = backwards and (test is not None or test_not is not None)  # SBCL asks forwards, too, and takes the last: a test may notice
+    for place in reversed(places) if backwards and not keep_on else places:
         if all(compare(one, items[place + offset]) for offset, one in enumerate(wanted)):
-            return place
-    return None
+            found = place
+            if not keep_on:
+                break
+    return found
 
 
 def mismatch(first, second, *, from_end=None, test=None, test_not=None, key=None, start1=0, end1=None, start2=0, end2=None):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError, TypeError_, formatted
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, Cons, LispString, Symbol, list_from
+from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from .element_types import check_element, upgraded_element_type
@@ -78,7 +78,7 @@ def elements(sequence, context=""):
         return sequence
     if sequence is None or sequence is False:
         return []
-    if sequence.__class__ is str or sequence.__class__ is LispString:
+    if isinstance(sequence, (str, LispString)):
         return characters(str(sequence))
     if isinstance(sequence, Vector):
         return sequence.active()
@@ -94,7 +94,7 @@ def not_a_sequence(thing, context=""):
 
 def is_string(thing):
     """Whether ``thing`` is a Lisp string."""
-    return thing.__class__ is str or thing.__class__ is LispString or isinstance(thing, str)
+    return isinstance(thing, (str, LispString))
 
 
 def char_of(element, element_type="CHARACTER"):
@@ -105,11 +105,11 @@ def char_of(element, element_type="CHARACTER"):
 
 
 def text(items):
-    """The Python string of a Python list of characters."""
+    """A string of the characters ``items``, a Python list."""
     try:
-        return "".join([item.char for item in items])
+        return FreshString("".join([item.char for item in items]))
     except AttributeError:
-        return "".join([char_of(item) for item in items])
+        return FreshString("".join([char_of(item) for item in items]))
 
 
 def same_kind(sequence, items):
@@ -192,8 +192,9 @@ def store_all(sequence, start, items):
         for item in items:
             cell.car = item
             cell = cell.cdr
-    elif sequence.__class__ is LispString:
-        sequence.chars[start : start + len(items)] = [char_of(item) for item in items]
+    elif sequence.__class__ in WRITABLE_STRINGS:
+        new = [char_of(item) for item in items]
+        sequence.writable()[start : start + len(items)] = new
     elif sequence.__class__ is list:
         sequence[start : start + len(items)] = items
     elif isinstance(sequence, TypedVector):
@@ -278,7 +279,7 @@ def _read_type(specifier, original):
         kind, star = name.name, sym("*")
         given = [None if parameter is star else parameter for parameter in parameters] + [None, None]
         if kind in _LISTS:
-            return SequenceType(original, None, 0 if kind == "NULL" else None, kind == "CONS")
+            return SequenceType(original, None, _length_of_list(specifier), kind == "CONS")
         if kind in _STRINGS:
             return SequenceType(original, CHARACTER, given[0])
         if kind in _BITS:
@@ -292,9 +293,20 @@ def _read_type(specifier, original):
             return SequenceType(original, element_type, _one_dimension(given[1]))
         if kind in ("AND", "OR"):
             found = [_read_type(parameter, original) for parameter in parameters]
+            if kind == "OR" and len({None if one is None else one.element_type is None for one in found}) > 1:
+                return None  # lists and vectors: it does not say which to make
             return next((one for one in found if one is not None), None)
     expansion = PORTS.types.expand(specifier)
     return None if expansion is specifier else _read_type(expansion, expansion)
+
+
+def _length_of_list(specifier):
+    """How long the lists of the type are, if it says so: ``null`` and ``(cons a (cons b null))`` do."""
+    length = 0
+    while isinstance(specifier, Cons) and specifier.car is sym("CONS"):
+        parts = items_of(specifier)
+        length, specifier = length + 1, parts[2] if len(parts) == 3 else None
+    return length if specifier is sym("NULL") else None
 
 
 def _one_dimension(dimensions):

@@ -10,24 +10,13 @@ ANSI chapter 17; texts are SBCL's.
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, LispString, list_from
+from cramhy_runtime.ground.data import STRETCH, TEXTS, UNSUPPLIED, Character, Cons, FreshString, LispString, list_from
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.packages import sym
 from .element_types import check_element
 from .element_types import initial_element as default_element
 from .lists import cells, items_of, not_a_list
-from .sequence_types import (
-    INDEX_TYPE,
-    IndexTooLarge,
-    bounds,
-    characters,
-    elements,
-    not_a_sequence,
-    part,
-    same_kind,
-    sequence_type,
-    store_all,
-)
+from .sequence_types import INDEX_TYPE, IndexTooLarge, bounds, elements, not_a_sequence, part, same_kind, sequence_type, store_all
 from cramhy_runtime.ground.arrays import LispArray, TypedVector, Vector
 
 LISP_NAMES = "length elt subseq copy-seq reverse nreverse concatenate make-sequence fill replace"
@@ -66,7 +55,7 @@ def elt(sequence, index):
     if index >= size:
         error(IndexTooLarge(index, sequence, size))
     if isinstance(sequence, (str, LispString)):
-        return characters(sequence[index] if isinstance(sequence, str) else sequence.chars[index])[0]
+        return Character(sequence[index])
     return sequence[index]
 
 
@@ -87,7 +76,7 @@ def subseq(sequence, start, end=None):
     if isinstance(sequence, (str, LispString)):
         string = str(sequence)
         start, end = bounds(start, end, len(string))
-        return string[start:end]
+        return FreshString(string[start:end])
     items = part(sequence, start, end)
     return same_kind(sequence, items)
 
@@ -99,9 +88,9 @@ def set_subseq(value, sequence, start, end=None):
 
 
 def copy_seq(sequence):
-    """``copy-seq``: a new sequence with the same elements. The copy of a string can be changed in place."""
+    """``copy-seq``: a new sequence with the same elements."""
     if isinstance(sequence, (str, LispString)):
-        return LispString(str(sequence))
+        return FreshString(str(sequence))
     return same_kind(sequence, elements(sequence))
 
 
@@ -113,7 +102,7 @@ def reverse(sequence):
             result = Cons(cell.car, result)
         return result
     if isinstance(sequence, (str, LispString)):
-        return str(sequence)[::-1]
+        return FreshString(str(sequence)[::-1])
     return same_kind(sequence, elements(sequence)[::-1])
 
 
@@ -126,7 +115,7 @@ def nreverse(sequence):
             cell.cdr, result, cell = result, cell, cell.cdr
         return result
     if sequence.__class__ is str:
-        return sequence[::-1]
+        return FreshString(sequence[::-1])
     store_all(sequence, 0, elements(sequence)[::-1])
     return sequence
 
@@ -134,8 +123,8 @@ def nreverse(sequence):
 def concatenate(result_type, *sequences):
     """``concatenate``: a new sequence of type ``result_type`` with the elements of all arguments."""
     wanted = sequence_type(result_type)
-    if result_type is sym("STRING") and all(sequence.__class__ is str for sequence in sequences):
-        return "".join(sequences)
+    if result_type is sym("STRING") and all([sequence.__class__ in TEXTS for sequence in sequences]):
+        return FreshString("".join(sequences))
     items = []
     for sequence in sequences:
         items += elements(sequence)
@@ -153,8 +142,7 @@ def make_sequence(result_type, size, *, initial_element=UNSUPPLIED):
     if initial_element is UNSUPPLIED:
         initial_element = default_element(wanted.element_type)
     check_element(initial_element, wanted.element_type, "")
-    made = wanted.make([initial_element] * size)
-    return LispString(made) if made.__class__ is str else made
+    return wanted.make([initial_element] * size)
 
 
 def fill(sequence, item, *, start=0, end=None):

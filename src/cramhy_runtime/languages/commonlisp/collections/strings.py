@@ -1,17 +1,17 @@
 """Strings: comparison, case, trimming, characters by index.
 
-A string is a Python ``str``; `LispString` stands for one that can be changed in place (``make-string``, ``copy-seq``, fill
-pointers). Where a function takes a string it also takes a symbol or a character, whose name or self is meant.
+A string is a Python ``str``: a plain one where it is a literal, a `FreshString` where a function has made it, into which a program
+may store. `LispString` stands for one whose length may change (fill pointers). Where a function takes a string it also takes a
+symbol or a character, whose name or self is meant.
 
-Law: results are plain ``str``, except those of ``make-string`` and of functions named destructive, which return their
-argument. Source: ANSI chapter 16; texts are SBCL's.
+Law: results are fresh, except those of functions named destructive, which return their argument. Source: ANSI chapter 16; texts are SBCL's.
 """
 
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, LispString
+from cramhy_runtime.ground.data import UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, LispString
 from cramhy_runtime.ground.equality import folded
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from .arrays import InvalidArrayIndex
@@ -42,7 +42,7 @@ def string(designator):
     if isinstance(designator, (str, LispString)):
         return designator
     if designator.__class__ is Character:
-        return designator.char
+        return FreshString(designator.char)
     if is_symbol(designator):
         return symbol_name(designator)
     return error(
@@ -52,7 +52,7 @@ def string(designator):
 
 def _text(designator, context=None):
     # The Python string of a string designator.
-    if designator.__class__ is str:
+    if designator.__class__ is str or designator.__class__ is FreshString:
         return designator
     if context is not None and not isinstance(designator, (str, LispString, Character)) and not is_symbol(designator):
         return type_error(designator, "(OR STRING SYMBOL CHARACTER)", context)
@@ -64,21 +64,22 @@ def make_string(size, *, initial_element=UNSUPPLIED, element_type=None):
     if size.__class__ is not int or size < 0:
         type_error(size, INDEX_TYPE, "\nwhen binding COUNT")
     if initial_element is UNSUPPLIED:
-        return LispString("\0" * size)
+        return FreshString("\0" * size)
     if initial_element.__class__ is not Character:
         type_error(initial_element, "CHARACTER")
-    return LispString(initial_element.char * size)
+    return FreshString(initial_element.char * size)
 
 
 # ---------------------------------------------------------------------------------------------------------- single characters
 
 
-def _chars(string_, index):
+def _at(string_, index):
+    # What holds character number ``index``, which is looked at: the string itself, or all characters of one with a fill pointer.
     if not isinstance(string_, (str, LispString)):
         type_error(string_, "STRING", "\nwhen binding STRING")
     if index.__class__ is not int or index < 0:
         type_error(index, INDEX_TYPE, "\nwhen binding SB-INT:INDEX")
-    chars = string_ if isinstance(string_, str) else string_.chars
+    chars = string_.chars if string_.__class__ is LispString else string_
     if index >= len(chars):
         error(InvalidArrayIndex(index, string_, None, len(chars)))
     return chars
@@ -86,17 +87,17 @@ def _chars(string_, index):
 
 def char(string, index):
     """``char``: character number ``index``."""
-    return Character(_chars(string, index)[index])
+    return Character(_at(string, index)[index])
 
 
 def set_char(value, string, index):
     """``(setf char)``: only of a string that can be changed; a constant string is an error that tells the way out."""
-    chars = _chars(string, index)
+    _at(string, index)
     if value.__class__ is not Character:
         type_error(value, "CHARACTER", "\nwhen binding SB-IMPL::NEW-EL")
-    if isinstance(chars, str):
+    if string.__class__ not in WRITABLE_STRINGS:
         constant_changed(string)
-    chars[index] = value.char
+    string.writable()[index] = value.char
     return value
 
 
@@ -200,26 +201,26 @@ def _changed(text, start, end, change):
 
 def string_upcase(string, *, start=0, end=None):
     """``string-upcase``: the string in uppercase."""
-    return _changed(_text(string), start, end, _upper)
+    return FreshString(_changed(_text(string), start, end, _upper))
 
 
 def string_downcase(string, *, start=0, end=None):
     """``string-downcase``: the string in lowercase."""
-    return _changed(_text(string), start, end, _lower)
+    return FreshString(_changed(_text(string), start, end, _lower))
 
 
 def string_capitalize(string, *, start=0, end=None):
     """``string-capitalize``: every word with a capital and the rest in lowercase; words are letters and digits."""
-    return _changed(_text(string, ""), start, end, _capital)
+    return FreshString(_changed(_text(string, ""), start, end, _capital))
 
 
 def _in_place(string_, start, end, change):
     if not isinstance(string_, (str, LispString)):
         type_error(string_, "STRING", "\nwhen binding STRING")
     changed = _changed(str(string_), start, end, change)
-    if isinstance(string_, str):
-        return changed
-    string_.chars[: len(changed)] = changed
+    if string_.__class__ not in WRITABLE_STRINGS:
+        return FreshString(changed)
+    string_.writable()[: len(changed)] = changed
     return string_
 
 
@@ -251,19 +252,19 @@ def _bag(characters):
 def string_trim(characters, string):
     """``string-trim``: the string without the given characters at both ends."""
     bag, text = _bag(characters), _text(string, "")
-    return text.strip(bag) if bag else text
+    return FreshString(text.strip(bag) if bag else text)
 
 
 def string_left_trim(characters, string):
     """``string-left-trim``: the string without the given characters at its beginning."""
     bag, text = _bag(characters), _text(string, "")
-    return text.lstrip(bag) if bag else text
+    return FreshString(text.lstrip(bag) if bag else text)
 
 
 def string_right_trim(characters, string):
     """``string-right-trim``: the string without the given characters at its end."""
     bag, text = _bag(characters), _text(string, "")
-    return text.rstrip(bag) if bag else text
+    return FreshString(text.rstrip(bag) if bag else text)
 
 
 SETTERS = {"CHAR": set_char, "SCHAR": set_schar}

@@ -10,7 +10,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import CompileError, SimpleProgramError, error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
 from .compilation_unit import expanding
-from ..syntax.lambda_lists import parse
+from ..syntax.lambda_lists import parse, variables_of
 from ..syntax.macros import ensure_loaded, macroexpand_1
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.dispatch.methods import Shape
@@ -261,6 +261,8 @@ class Analyzer(Scrutiny):
         inner = Env(env, scope)
         specifiers, documentation, forms = self.declarations(body, env, documentation=True)
         specials = self.specials(specifiers)
+        if parsed.has_defaults() and any(symbol.special or symbol in specials for symbol in variables_of(lambda_list)):
+            parsed = parsed.in_order()  # a default form sees the special parameters before it
         own = []
         types = declared_types(specifiers)
         checks = []
@@ -273,7 +275,7 @@ class Analyzer(Scrutiny):
             if symbol in inner.variables:
                 return self.fail("The variable ~S occurs more than once in the lambda list.", symbol)
             special = self.binds_special(symbol, specials)
-            # a special parameter is bound when all parameters have their values; the defaults of later ones see the argument
+            # a special parameter is bound when all parameters have their values
             variable = inner.variables[symbol] = Variable(symbol, scope)
             if symbol in types:
                 variable.type = types[symbol]
@@ -296,7 +298,7 @@ class Analyzer(Scrutiny):
             variable = parameter(symbol)
             parameters.keys.append((variable, node, parameter(supplied) if supplied is not None else None, key))
         bindings = [(symbol, LocalVariable(variable)) for symbol, variable in dynamic]
-        for symbol in [*(symbol for symbol, _ in dynamic), *specials]:
+        for symbol in [*(symbol for symbol, _ in dynamic), *(() if parsed.aux else specials)]:  # the LET* of &AUX declares them again
             inner.variables[symbol] = SpecialVariable(symbol)
         around = self.muffled, self.notinline
         self.declare(specifiers, own, inner)

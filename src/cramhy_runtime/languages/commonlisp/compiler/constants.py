@@ -97,8 +97,8 @@ class Constants:
             if cell is None:
                 return expression(word("Llist"), *items)
             return expression(word("Ldotted"), *items, self.builder(cell))
-        if kind is str:
-            return obj
+        if isinstance(obj, str):
+            return str(obj)
         if kind is int:
             return obj
         if kind is float:

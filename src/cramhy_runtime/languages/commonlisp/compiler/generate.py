@@ -290,7 +290,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
                 text = expression(word("if"), expression(word("and"), is_integer, small), name, text)
             tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
             parts.append(part)
-        filled = expression(word("%"), found[0], core.Tuple(parts))
+        filled = expression(word("Lfresh"), expression(word("%"), found[0], core.Tuple(parts)))
         if not tests:
             return filled
         general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)

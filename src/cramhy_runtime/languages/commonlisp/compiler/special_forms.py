@@ -313,6 +313,9 @@ def _symbol_macrolet(analyzer, form, env):
             analyzer.fail("A symbol macro is (name expansion), not ~S.", item)
         symbol, expansion = _binding(analyzer, item)
         inner.variables[symbol] = SymbolMacro(expansion)
+    for symbol in analyzer.specials(analyzer.declarations(parts[1:], env)[0]):
+        if symbol in inner.variables:
+            analyzer.fail("The symbol macro ~S cannot be declared SPECIAL.", symbol)
     return _locally(analyzer, Cons(sym("LOCALLY"), list_from(parts[1:])), inner)
 
 

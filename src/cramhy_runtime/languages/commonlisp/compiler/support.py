@@ -31,6 +31,7 @@ from cramhy_runtime.ground.conditions import (
     unknown_key,
 )
 from cramhy_runtime.ground.data import (
+    FreshString,
     Character,
     Cons,
     DoubleFloat,
@@ -286,6 +287,7 @@ NAMESPACE = {
     "LCons": Cons,
     "Lnew_object": object.__new__,
     "Lstr": str,
+    "Lfresh": FreshString,
     "LtextA": princ_atom,
     "LtextS": prin1_atom,
     "LtextD": decimal,

@@ -12,6 +12,7 @@ from ..reader.reader import read_from_string
 from .symbols import place_of, symbol_function
 from . import setf_places as places
 from .evaluator import PACKAGE, evaluate
+from cramhy_runtime.ground.restarts import Restart
 from cramhy_runtime.ground.functions import functionp
 
 LISP_NAMES = """eval compiled-function-p fdefinition get-setf-expansion
@@ -22,7 +23,13 @@ arithmetic-error-operation arithmetic-error-operands print-not-readable-object s
 
 
 compiled_function_p = functionp
-eval_ = evaluate
+
+
+def eval_(form):
+    """``eval``: all values of ``form`` in the null lexical environment."""
+    return evaluate(form)
+
+
 get_setf_expansion = places.get_setf_expansion
 
 
@@ -50,7 +57,8 @@ use_value, store_value = conditions.use_value, conditions.store_value
 
 
 def restart_name(restart):
-    return restart.name
+    """``restart-name``"""
+    return restart.name if isinstance(restart, Restart) else type_error(restart, "RESTART")
 
 
 def make_condition(kind, *arguments):
@@ -71,9 +79,12 @@ simple_condition_format_control = _reader("format_control", "SimpleCondition")
 type_error_datum = _reader("datum", "TypeError_")
 
 
+_expected_type = _reader("expected_type", "TypeError_")
+
+
 def type_error_expected_type(condition):
     """The type specifier. The runtime names types by their printed form, which is read here."""
-    expected = condition.expected_type
+    expected = _expected_type(condition)
     if not isinstance(expected, str):
         return expected
     with binding(PACKAGE, COMMON_LISP):
@@ -86,6 +97,10 @@ arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _r
 stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
 
 
+_format_arguments = _reader("format_arguments", "SimpleCondition")
+
+
 def simple_condition_format_arguments(condition):
-    arguments = condition.format_arguments
+    """``simple-condition-format-arguments``"""
+    arguments = _format_arguments(condition)
     return list_from(arguments) if isinstance(arguments, tuple) else arguments

@@ -157,6 +157,6 @@ def posix_getenv(name):
     return os.environ.get(str(name))
 
 
-def run_program(program, arguments=None, **options):
+def run_program(program, arguments=None, *, search=None, **options):
     """``sb-ext:run-program``: there is none."""
     return error("Cannot run ~S: cramhy runs no other programs from Lisp. From Python use subprocess.", program)

@@ -41,15 +41,18 @@ class Unit:
     """A text being compiled: its file name, its globals, its constants and the places of its forms.
 
     stored: whether the code must be able to run in another process; then constants are made by code.
+    as_source: whether ``eval-when`` at top level counts as in ``load`` of a source, where nothing is compiled for later; a part of a
+    system is compiled and loaded at once, so all situations count.
     """
 
-    def __init__(self, filename="<form>", positions=None, namespace=None, stored=False):
+    def __init__(self, filename="<form>", positions=None, namespace=None, stored=False, as_source=False):
         backend = compiler()
         self.filename = filename
         self.positions = positions if positions is not None else FormPlaces()
         self.namespace = namespace if namespace is not None else new_namespace(filename)
         self.stored = stored
-        self.situations = SITUATIONS if stored else EXECUTE
+        self.at_once = not stored
+        self.situations = EXECUTE if as_source or not stored else SITUATIONS
         self.constants = backend.Constants()
         self.names = {}
         self.alone, self.source = False, None
@@ -57,7 +60,7 @@ class Unit:
     def statements(self, form):
         """The statements (core forms) that one top-level form is compiled to. They leave its values in the global ``Lresult``."""
         backend = compiler()
-        analyzer = backend.Analyzer(self.filename, self.positions, at_once=self.situations is EXECUTE, macro_expander=macro_expander)
+        analyzer = backend.Analyzer(self.filename, self.positions, at_once=self.at_once, macro_expander=macro_expander)
         analyzer._at = self.positions.get(id(form))
         try:
             node = analyzer.toplevel(form, self.names)

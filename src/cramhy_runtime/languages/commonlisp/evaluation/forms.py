@@ -8,8 +8,10 @@ from cramhy_runtime.ground.packages import is_symbol, redefined, sym
 from ..compiler import compilation_unit
 from ..packages.package_errors import check_function_name
 from ..syntax import macros
+from ..collections.lists import items_of
 from .definitions import data
 from .evaluator import compile_lambda
+from .symbols import place_of
 from cramhy_runtime.ground.functions import function_of
 
 LISP_NAMES = "macro-function compiler-macro-function macroexpand macroexpand-1 special-operator-p constantp compile"
@@ -28,11 +30,13 @@ def macro_function(symbol, environment=None):
     if not is_symbol(symbol):
         return type_error(symbol, "SYMBOL", "\nwhen binding SYMBOL")
     macros.ensure_loaded()
-    return macros.macro_function(symbol, environment)
+    return macros.macro_function(symbol, macros.checked_environment(environment))
 
 
 def set_macro_function(function, symbol, environment=None):
     """``(setf macro-function)``: ``function`` takes a form and an environment."""
+    if not is_symbol(symbol):
+        return type_error(symbol, "SYMBOL", "\nwhen binding SYMBOL")
     expander = function_of(function)
     redefined(symbol)
     symbol.macro = lambda form, env: one(expander(form, env))
@@ -41,13 +45,13 @@ def set_macro_function(function, symbol, environment=None):
 
 def macroexpand(form, environment=None):
     """``macroexpand``: two values, the expansion and whether there was one."""
-    expansion, expanded = macros.macroexpand(form, environment)
+    expansion, expanded = macros.macroexpand(form, macros.checked_environment(environment))
     return MultipleValues((expansion, True if expanded else None))
 
 
 def macroexpand_1(form, environment=None):
     """``macroexpand-1``: two values, the form expanded once and whether it was a macro call."""
-    expansion, expanded = macros.macroexpand_1(form, environment)
+    expansion, expanded = macros.macroexpand_1(form, macros.checked_environment(environment))
     return MultipleValues((expansion, True if expanded else None))
 
 
@@ -82,13 +86,15 @@ def define_compiler_macro(name, function, documentation=None):
 
 def _setf_name_data(name):
     """The notes about the function of ``name``, a symbol or ``(setf symbol)``."""
-    if isinstance(name, Cons):
-        return data(name.cdr.car).setdefault("setf", {})
-    return data(name) if isinstance(name, Symbol) else type_error(name, "SYMBOL")
+    place = place_of(name)
+    if place is not None:
+        return data(place).setdefault("setf", {})
+    return data(name) if isinstance(name, Symbol) else {}
 
 
 def constantp(form, environment=None):
     """``constantp``: whether ``form`` always has the same value: also a call of a function of numbers or lists on constants, as in SBCL."""
+    macros.checked_environment(environment)
     if isinstance(form, Cons):
         return True if _constant_compound(form, environment) else None
     if isinstance(form, Symbol):
@@ -111,7 +117,9 @@ SYMBOLP CHAR-CODE CODE-CHAR CHAR= NUMERATOR DENOMINATOR FLOAT""".split()
 
 
 def _constant_compound(form, environment):
-    head, arguments = form.car, list(form.cdr or ())
+    if not is_symbol(form.car):
+        return False
+    head, arguments = form.car, items_of(form.cdr)
     if head is sym("QUOTE"):
         return len(arguments) == 1
     if environment is not None and isinstance(head, Symbol) and environment.function(head) is not None:
@@ -151,8 +159,8 @@ def compile_(name, definition=None):
 
 def defined_function(name):
     """The function called ``name``; an undefined one is an error."""
-    symbol = name.cdr.car if isinstance(name, Cons) else name
-    function = symbol.setf_function if isinstance(name, Cons) else symbol.macro or symbol.function
+    place = place_of(name)
+    function = place.setf_function if place is not None else getattr(name, "macro", None) or getattr(name, "function", None)
     if function is None or isinstance(function, UndefinedFunction):
         error(types.UndefinedFunction(name))
     return function

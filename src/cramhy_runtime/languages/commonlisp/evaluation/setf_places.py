@@ -18,7 +18,7 @@ from .definitions import data
 from .evaluator import macro_lambda
 from ..syntax.body_parts import body_parts
 from ..syntax.lambda_lists import destructure, gensym, parse, support
-from ..syntax.macros import macroexpand_1
+from ..syntax.macros import checked_environment, macroexpand_1
 from ..syntax.operator_macros import malformed
 
 LET_STAR, PROGN, SETQ = sym("LET*"), sym("PROGN"), sym("SETQ")
@@ -353,7 +353,7 @@ def define_expander(name, function, documentation=None):
 
 def get_setf_expansion(place, environment=None):
     """``get-setf-expansion``: the five values, as Lisp lists."""
-    temporaries, forms, stores, setter, getter = setf_expansion(place, environment)
+    temporaries, forms, stores, setter, getter = setf_expansion(place, checked_environment(environment))
     return MultipleValues((list_from(temporaries), list_from(forms), list_from(stores), setter, getter))
 
 

@@ -9,11 +9,12 @@ from ..collections.list_search import symbol_plist
 from ..collections.lists import copy_list
 from ..collections.sequence_types import is_string
 from ..compiler.support import fdefinition, value_of
-from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error, undefined_function
+from cramhy_runtime.ground.conditions import error, type_error, undefined_function
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UNBOUND, UndefinedFunction, lisp_list, truth
 from .definitions import traced_like
 from .evaluator import PACKAGE
 from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.functions import functionp, invalid_function_name
 from cramhy_runtime.ground.packages import find_package_or_error, is_symbol, keyword, sym
 from ..packages.package_errors import check_function_name, check_symbol
 
@@ -96,21 +97,22 @@ def symbol_function(symbol):
 
 
 def set_symbol_function(function, symbol):
-    check_symbol(symbol, "setting the symbol-function of ~S", symbol)
+    """``(setf symbol-function)``"""
+    check_symbol(_symbol(symbol), "setting the symbol-function of ~S", symbol)
     if isinstance(function, OperatorFunction):
         return error("~S is not acceptable to ~S.", function, lisp_list(SETF, sym("SYMBOL-FUNCTION")))
+    _need_function(function)
     symbol.function = traced_like(symbol.function, function)
     symbol.function_changed()
     return function
 
 
+def _need_function(thing):
+    return thing if functionp(thing) is not None else type_error(thing, "FUNCTION", "\nwhen binding SB-IMPL::NEW-VALUE")
+
+
 def boundp(symbol):
     return True if not isinstance(_symbol(symbol), Symbol) or symbol.value is not UNBOUND else None
-
-
-def invalid_name(name):
-    """The error that ``name`` names no function."""
-    return SimpleTypeError("Invalid function name: ~S", name, datum=name, expected_type="(SATISFIES SB-INT:LEGAL-FUNCTION-NAME-P)")
 
 
 def place_of(name):
@@ -119,7 +121,7 @@ def place_of(name):
         return None
     if isinstance(name, Cons) and name.car is SETF and isinstance(name.cdr, Cons) and name.cdr.cdr is None and is_symbol(name.cdr.car):
         return name.cdr.car
-    return error(invalid_name(name))
+    return error(invalid_function_name(name))
 
 
 def fboundp(name):
@@ -133,7 +135,10 @@ def fboundp(name):
 
 
 def makunbound(symbol):
-    check_symbol(symbol, "unbinding the symbol ~S", symbol)
+    """``makunbound``"""
+    check_symbol(_symbol(symbol), "unbinding the symbol ~S", symbol)
+    if isinstance(symbol, Keyword):
+        return error("Can't make ~S unbound.", symbol)
     symbol.value = UNBOUND
     return symbol
 
@@ -172,6 +177,9 @@ def gensym(prefix="G"):
 
 
 def gentemp(prefix="T", package=None):
+    """``gentemp``"""
+    if not is_string(prefix):
+        return type_error(prefix, "STRING", "\nwhen binding SB-IMPL::PREFIX")
     home = PACKAGE.value if package is None else find_package_or_error(package)
     while True:
         GENSYM_COUNTER.value += 1
@@ -196,6 +204,7 @@ def set_fdefinition(function, name):
     check_function_name(name, "setting fdefinition of ~S")
     if symbol is None:
         return set_symbol_function(function, name)
+    _need_function(function)
     symbol.setf_function = traced_like(symbol.setf_function, function)
     symbol.function_changed()
     return function

@@ -9,7 +9,7 @@ argument is next. What each directive does is in ``format_directives.py`` and th
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, Symbol, list_from, one, python_list
+from cramhy_runtime.ground.data import Cons, FreshString, LispString, MultipleValues, Symbol, list_from, one, python_list
 from ..printer.print_names import character_name
 from ..streams.streams import STANDARD_OUTPUT, OutputStream, StringOutputStream, output_stream
 from .format_parser import Directive, FormatError, parse
@@ -83,7 +83,7 @@ def format_on(stream, control, args, state=None):
             control = control.function
         if callable(control):
             return _call_formatter(stream, control, args, state)
-        if not isinstance(control, LispString):
+        if not isinstance(control, (str, LispString)):
             return type_error(control, "(OR STRING FUNCTION)")
         control = str(control)
     if state is None:
@@ -110,7 +110,7 @@ def format_(destination, control, *args):
     Arguments are Lisp objects. Errors: `FormatError`, when control and arguments do not fit.
     """
     if destination is None:
-        return format_to_string(control, *args)
+        return FreshString(format_to_string(control, *args))
     if destination is True:
         stream = STANDARD_OUTPUT.value
     elif isinstance(destination, OutputStream):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, boolean
 from cramhy_runtime.ground.packages import sym
-from .arithmetic import need_integer
+from .arithmetic import is_integer, need_integer
 
 LISP_NAMES = """ash logand logior logxor logeqv lognot lognand lognor logandc1 logandc2 logorc1 logorc2 logtest logbitp logcount
 integer-length byte byte-size byte-position ldb ldb-test dpb mask-field deposit-field boole"""
@@ -80,7 +80,7 @@ def integer_length(integer):
 
 
 def _natural(integer):
-    return integer if need_integer(integer) >= 0 else type_error(integer, sym("UNSIGNED-BYTE"))
+    return integer if is_integer(integer) and integer >= 0 else type_error(integer, "(MOD 4611686018427387841)")
 
 
 def byte(size, position):
@@ -88,7 +88,12 @@ def byte(size, position):
 
 
 def _spec(bytespec):
-    return bytespec if isinstance(bytespec, Cons) else type_error(bytespec, sym("CONS"))
+    if not isinstance(bytespec, Cons):
+        type_error(bytespec, sym("CONS"))
+    if bytespec.car.__class__ is not int or bytespec.cdr.__class__ is not int or bytespec.car < 0 or bytespec.cdr < 0:
+        _natural(bytespec.car)
+        _natural(bytespec.cdr)
+    return bytespec
 
 
 def byte_size(bytespec):

@@ -10,9 +10,9 @@ A symbol's class is one object from the first definition on, also when it is def
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import shown_with
-from cramhy_runtime.ground.conditions import Condition, Error, SimpleProgramError, error, type_error
+from cramhy_runtime.ground.conditions import Condition, Error, SimpleProgramError, TypeError_, error, type_error
 from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject
+from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, no_method_for
 from cramhy_runtime.ground.packages import ensure_package, find_package, is_symbol, sym
 from cramhy_runtime.ground.plain_answers import registered as _classes
 from .builtin_classes import CLASSES, STRUCTURES, BuiltInClass, lisp_mro, system_class
@@ -106,9 +106,21 @@ def _search(root, names, seen):
     return None
 
 
+class IllegalClassName(TypeError_):
+    """A class was looked for by what is not a symbol."""
+
+    lisp_name = "SB-PCL::ILLEGAL-CLASS-NAME-ERROR"
+
+    def __init__(self, datum=None, **slots):
+        super().__init__(datum, sym("SYMBOL"), **slots)
+
+    def report(self):
+        return f"{shown_with({}, self.datum)} is not a legal class name."
+
+
 def find_class(symbol, errorp=True, environment=None):
     """``cl:find-class``: the class that ``symbol`` names; else nil or, with ``errorp``, an error."""
-    found = symbol_class(symbol) if is_symbol(symbol) or symbol is False else type_error(symbol, sym("SYMBOL"))
+    found = symbol_class(symbol) if is_symbol(symbol) or symbol is False else error(IllegalClassName(symbol))
     if found is None and errorp is not None and errorp is not False:
         return class_not_found(symbol)
     return found
@@ -126,8 +138,13 @@ def find_class_or_error(designator):
 
 
 def set_find_class(new, symbol, errorp=True, environment=None):
+    """``(setf find-class)``"""
+    if not is_symbol(symbol):
+        return error(IllegalClassName(symbol))
     if new is None:
         forget_class(symbol)
+    elif not isinstance(new, type):
+        return type_error(new, sym("CLASS"))
     else:
         register_class(symbol, new)
     return new
@@ -165,6 +182,8 @@ def class_name(cls):
         return True
     if cls is type:
         return sym("CLASS")
+    if not isinstance(cls, type):
+        return no_method_for("CLASS-NAME", cls)
     for base in lisp_mro(cls):
         own = vars(base)
         if "lisp_symbol" in own:
@@ -254,6 +273,11 @@ def metaclass_of(cls):
 
 
 def set_class_name(new, cls):
+    """``(setf class-name)``"""
+    if not isinstance(cls, type):
+        return no_method_for("CLASS-NAME", cls)
+    if not is_symbol(new):
+        return type_error(new, sym("SYMBOL"))
     cls.lisp_symbol = new
     return new
 

@@ -12,15 +12,15 @@ from . import protocol_functions
 import copy
 
 from cramhy_runtime.ground.condition_types import Condition, Error, shown
-from cramhy_runtime.ground.conditions import SimpleError, error, program_error
-from cramhy_runtime.ground.data import UNBOUND, list_from, one, python_list
+from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
+from cramhy_runtime.ground.data import UNBOUND, Cons, list_from, one, python_list
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
 from .class_objects import StandardObject, effective_slots, find_slot
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
-from cramhy_runtime.ground.dispatch.generic_functions import ALLOW_OTHER_KEYS, other_keys_allowed, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import ALLOW_OTHER_KEYS, no_method_for, other_keys_allowed, when_methods_change
 
 
 class InitargError(Error):
@@ -243,12 +243,22 @@ def _plan_or_error(cls):
     return plan_for(cls)
 
 
+def _need_instance(name, instance, *arguments):
+    """Signal that the protocol function ``name`` has no method for ``instance``, where that is a number, a cons and the like."""
+    if not hasattr(instance, "__dict__") and not hasattr(type(instance), "lisp_structure"):
+        no_method_for(name, instance, *arguments)
+
+
 def default_initialize_instance(instance, *initargs):
+    _need_instance("INITIALIZE-INSTANCE", instance, *initargs)
     protocol_functions.shared_initialize(instance, True, *initargs)
     return instance
 
 
 def default_shared_initialize(instance, slot_names, *initargs):
+    _need_instance("SHARED-INITIALIZE", instance, slot_names, *initargs)
+    if slot_names is not None and slot_names is not True and not isinstance(slot_names, Cons):
+        type_error(slot_names, "LIST")
     wanted = True if slot_names is True else set(python_list(slot_names))
     plan = plan_for(type(instance))
     parameters = plan.parameters
@@ -260,6 +270,7 @@ def default_shared_initialize(instance, slot_names, *initargs):
 
 
 def default_reinitialize_instance(instance, *initargs):
+    _need_instance("REINITIALIZE-INSTANCE", instance, *initargs)
     plan = plan_for(type(instance))
     if plan.valid is not None:
         keys = {
@@ -273,6 +284,8 @@ def default_reinitialize_instance(instance, *initargs):
 
 
 def default_allocate_instance(cls, *initargs):
+    if not isinstance(cls, type):
+        return no_method_for("ALLOCATE-INSTANCE", cls, *initargs)
     return _plan_or_error(cls).allocate(initargs)
 
 
@@ -282,6 +295,7 @@ def default_allocate_instance(cls, *initargs):
 def default_change_class(instance, new_class, *initargs):
     """Make ``instance`` an instance of ``new_class``, keeping the slots that both have (ANSI 7.2)."""
     cls = find_class_or_error(new_class)
+    _need_instance("CHANGE-CLASS", instance, cls, *initargs)
     old = type(instance)
     previous = copy.copy(instance)
     values = {

@@ -9,15 +9,24 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import SimpleError, error, type_error
-from cramhy_runtime.ground.data import MultipleValues, lisp_list, list_from, python_list
-from cramhy_runtime.ground.packages import sym, symbol_name
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, MultipleValues, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.ground.functions import functionp
+from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from cramhy_runtime.ground.dispatch import generic_functions as generics
+from ..packages.package_errors import check_function_name
 from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_definition import define_class
 from .class_objects import direct_slots, effective_slots
 from .classes import class_name
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, find_method_or_none, generic, specializer_of
+from cramhy_runtime.ground.dispatch.generic_functions import (
+    GenericFunction,
+    Method,
+    find_method_or_none,
+    generic,
+    no_method_for,
+    specializer_of,
+)
 from . import protocol_functions  # noqa: F401  makes the functions that get their defaults here
 from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from cramhy_runtime.ground.dispatch.generic_errors import no_next_method_error
@@ -95,7 +104,7 @@ no_next_method = protocol_function(
 # ------------------------------------------------------------------------------------------------------- slots, making them again
 
 
-def slot_names(object_):
+def names_of_slots(object_):
     """The names of the slots of an instance of a class or structure."""
     structure = getattr(type(object_), "lisp_structure", None)
     if structure is not None:
@@ -109,16 +118,18 @@ make_load_form = protocol_function(
 
 
 def _cannot_be_dumped(obj):
+    if isinstance(obj, type) and is_symbol(class_name(obj)):
+        return lisp_list(sym("FIND-CLASS"), lisp_list(sym("QUOTE"), class_name(obj)))
     return error(SimpleError("don't know how to dump ~S (default ~S method called).", obj, sym("MAKE-LOAD-FORM")))
 
 
-def make_load_form_saving_slots(object, **keywords):
+def make_load_form_saving_slots(object, *, slot_names=UNSUPPLIED, environment=None):
     """Two values: the form that makes an object of the class of ``object``, and the one that sets its slots.
 
     slot_names: the slots to be set, by default all. The second form names the object itself, as a constant.
     """
     quote = sym("QUOTE")
-    wanted = python_list(keywords["slot_names"]) if keywords.get("slot_names") is not None else slot_names(object)
+    wanted = names_of_slots(object) if slot_names is UNSUPPLIED else python_list(slot_names)
     creation = lisp_list(sym("ALLOCATE-INSTANCE"), lisp_list(sym("FIND-CLASS"), lisp_list(quote, class_name(type(object)))))
     setters = [
         lisp_list(
@@ -143,6 +154,8 @@ def ensure_generic_function(
     name, *, lambda_list=None, method_combination=None, argument_precedence_order=None, documentation=None, **others
 ):
     """``cl:ensure-generic-function``"""
+    if not isinstance(name, (Symbol, Cons)):
+        check_function_name(name, "setting fdefinition of ~S")
     return generics.ensure_generic_function(
         name,
         lambda_list,
@@ -157,12 +170,16 @@ def _need_generic(obj):
 
 
 def remove_method(generic_function, method):
-    return generics.remove_method(_need_generic(generic_function), method)
+    """``cl:remove-method``"""
+    if not isinstance(generic_function, GenericFunction) or not isinstance(method, Method):
+        return no_method_for("REMOVE-METHOD", generic_function, method)
+    return generics.remove_method(generic_function, method)
 
 
 def find_method(generic_function, qualifiers, specializers, errorp=True):
     """``cl:find-method``"""
-    _need_generic(generic_function)
+    if not isinstance(generic_function, GenericFunction):
+        return no_method_for("FIND-METHOD", generic_function, qualifiers, specializers)
     wanted = [specializer_of(specializer) for specializer in python_list(specializers)]
     method = find_method_or_none(generic_function, python_list(qualifiers), wanted)
     if method is None and errorp is not None:
@@ -172,13 +189,18 @@ def find_method(generic_function, qualifiers, specializers, errorp=True):
 
 
 def compute_applicable_methods(generic_function, function_arguments):
-    return list_from(_need_generic(generic_function).applicable_methods(tuple(python_list(function_arguments))))
+    """``cl:compute-applicable-methods``"""
+    if not isinstance(generic_function, GenericFunction):
+        return no_method_for("COMPUTE-APPLICABLE-METHODS", generic_function, function_arguments)
+    return list_from(generic_function.applicable_methods(tuple(python_list(function_arguments))))
 
 
 def add_method(generic_function, method):
     """``cl:add-method``"""
+    if not isinstance(generic_function, GenericFunction) or not isinstance(method, Method):
+        return no_method_for("ADD-METHOD", generic_function, method)
     generics.add_method(
-        _need_generic(generic_function),
+        generic_function,
         method.qualifiers,
         method.specializers,
         method.function,
@@ -190,10 +212,16 @@ def add_method(generic_function, method):
 
 
 def method_qualifiers(method):
+    """``cl:method-qualifiers``"""
+    if not isinstance(method, Method):
+        return no_method_for("METHOD-QUALIFIERS", method)
     return list_from(method.qualifiers)
 
 
 def function_keywords(method):
+    """``cl:function-keywords``"""
+    if not isinstance(method, Method):
+        return no_method_for("FUNCTION-KEYWORDS", method)
     return MultipleValues((list_from(method.shape.keys), True if method.shape.allow_other_keys else None))
 
 
@@ -202,6 +230,9 @@ def invalid_method_error(method, control, *arguments):
 
 
 def method_combination_error(control, *arguments):
+    """``cl:method-combination-error``"""
+    if not isinstance(control, str) and functionp(control) is None:
+        return type_error(control, "(OR STRING FUNCTION)")
     return error(SimpleError(control, *arguments))
 
 

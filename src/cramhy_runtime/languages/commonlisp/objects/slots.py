@@ -36,7 +36,7 @@ def _attribute(obj, name):
     table = _attributes.get(obj.__class__)
     if table is None:
         table = _attributes[obj.__class__] = {}
-    found = table.get(name)
+    found = table.get(name) if isinstance(name, Symbol) else None
     if found is None:
         if not isinstance(name, Symbol):
             return type_error(name, sym("SYMBOL"), "\nwhen binding SB-PCL::SLOT-NAME")
@@ -60,7 +60,7 @@ def slot_value(object, slot_name):
     """``cl:slot-value``"""
     try:
         value = getattr(object, _attributes[object.__class__][slot_name])
-    except (KeyError, AttributeError):
+    except (KeyError, AttributeError, TypeError):
         return _slot_value(object, slot_name)
     return value if value is not UNBOUND else _slot_value(object, slot_name)
 
@@ -80,7 +80,7 @@ def set_slot_value(new, object, slot_name):
     """``(setf slot-value)``"""
     try:
         setattr(object, _attributes[object.__class__][slot_name], new)
-    except KeyError:
+    except (KeyError, TypeError):
         attribute = _attribute(object, slot_name)
         if attribute is None:
             missing_slot(object, slot_name, "SETF", f"set the slot's value to {shown(new)} (SETF of SLOT-VALUE)", new)

@@ -11,15 +11,15 @@ from __future__ import annotations
 
 from ..collections.arrays import aref, set_aref
 from ..collections.element_types import initial_element, upgraded_element_type
-from ..collections.sequence_types import elements, text, typed_vector
+from ..collections.strings import string
+from ..collections.sequence_types import elements, typed_vector
 from . import protocol_functions
-from cramhy_runtime.ground.arrays import CHARACTER
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
 from ..syntax.function_shapes import shape_of
 from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, redefined, string_designator, sym, symbol_name
+from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, redefined, sym, symbol_name
 from ..packages.package_errors import check_symbol
 from .builtin_classes import set_structure_object
 from .classes import StructureClass, register_class, registered_class
@@ -83,14 +83,29 @@ def structure_slot(name, *, initform=None, type=True, read_only=None):
     return StructureSlot(name, initform, type, read_only is not None)
 
 
+def _representation(kind):
+    """(``LIST`` or ``VECTOR`` or ``None``, upgraded element type) for the value of the option ``:type``."""
+    if kind is None:
+        return None, True
+    name, *rest = python_list(kind) if isinstance(kind, Cons) else [kind]
+    if name is sym("VECTOR") and isinstance(kind, Cons) and len(rest) < 2:
+        return "VECTOR", upgraded_element_type(rest[0]) if rest else True
+    if name is sym("VECTOR") and len(rest) > 1:
+        program_error("(VECTOR ELEMENT-TYPE) is the :TYPE of a structure, and ~S has more in it.", kind)
+    if name not in (sym("LIST"), sym("VECTOR")) or rest:
+        error(SimpleError("~S is a bad :TYPE for DEFSTRUCT.", kind))
+    return symbol_name(name), True
+
+
 class Structure:
     """A structure type: what ``defstruct`` said. ``cls`` is its class; ``None`` with ``:type``, then ``representation`` counts."""
 
     def __init__(self, name, slots, include, type_, named, offset):
         self.name, self.slots, self.include = name, slots, include
-        self.representation = symbol_name(type_.car if isinstance(type_, Cons) else type_) if type_ is not None else None
-        self.element_type = upgraded_element_type(type_.cdr.car) if isinstance(type_, Cons) and type_.cdr is not None else True
+        self.representation, self.element_type = _representation(type_)
         self.named, self.offset = named, offset
+        if include is not None and (include.representation, include.element_type) != (self.representation, self.element_type):
+            error(SimpleError(":TYPE option mismatch between structures ~S and ~S", name, include.name))
         if named and self.element_type is not True:
             error(SimpleError(":NAMED option is incompatible with element type ~S", self.element_type))
         self.cls = None
@@ -155,7 +170,7 @@ class Structure:
 
     def vector(self, items):
         """A vector of ``items`` that can be changed, of the element type of ``:type (vector element-type)``."""
-        return LispString(text(items)) if self.element_type is CHARACTER else typed_vector(items, self.element_type)
+        return typed_vector(items, self.element_type)
 
     def wrong_type(self, slot, value):
         return type_error(value, slot.type, f"\nwhen setting slot {symbol_name(slot.name)} of structure {symbol_name(self.name)}")
@@ -243,9 +258,11 @@ def define_structure(
     check_symbol(name, "defining ~S as a structure", name)
     parent = find_structure(include) if include is not None else None
     own = python_list(slots)
+    if predicate is not UNSUPPLIED and predicate is not None and type is not None and named is None:
+        error(SimpleError(":PREDICATE cannot be used with :TYPE unless :NAMED is also specified."))
     structure = Structure(name, _all_slots(name, parent, own, python_list(include_slots)), parent, type, named is not None, initial_offset)
     package = PACKAGE.value if isinstance(PACKAGE.value, Package) else name.package
-    prefix = f"{name.name}-" if conc_name is UNSUPPLIED else "" if conc_name is None else string_designator(conc_name)
+    prefix = f"{name.name}-" if conc_name is UNSUPPLIED else "" if conc_name is None else str(string(conc_name))
     accessors = [(slot, slot.name if conc_name is None else intern(prefix + symbol_name(slot.name), package)) for slot in structure.slots]
     constructors = [intern(f"MAKE-{name.name}", package)] if constructors is UNSUPPLIED else python_list(constructors)
     copier = intern(f"COPY-{name.name}", package) if copier is UNSUPPLIED else copier

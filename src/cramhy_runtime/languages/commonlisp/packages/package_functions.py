@@ -7,6 +7,7 @@ goes on. Where SBCL's restart TAKE-NEW leaves the old symbol visible (both are i
 from __future__ import annotations
 
 from cramhy_runtime.ground import packages
+from cramhy_runtime.ground.condition_types import Condition, PackageError
 from cramhy_runtime.ground.conditions import cerror, error, restart_case, type_error, with_simple_restart
 from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, list_from, python_list
 from cramhy_runtime.ground.packages import (
@@ -48,6 +49,10 @@ def package_of(designator):
 
 def _name(name):
     return str(name) if isinstance(name, (str, LispString)) else type_error(name, "STRING", "\nwhen binding SB-IMPL::NAME")
+
+
+def _named(designator):
+    return string_designator(designator) if is_string_designator(designator) else type_error(designator, "(OR STRING SYMBOL CHARACTER)")
 
 
 def _status(status):
@@ -209,7 +214,7 @@ def import_(symbols, package=None):
 def shadow(names, package=None):
     """``shadow``: make sure that names mean symbols present in the package."""
     home = package_of(package)
-    for name in map(string_designator, _items(names)):
+    for name in map(_named, _items(names)):
         if name not in home.shadowing:
             check_package(home, "shadowing symbol ~A", name)
         home.shadow(name)
@@ -331,7 +336,8 @@ def packagep(obj):
 
 def make_package(name, *, nicknames=None, use=None, internal_symbols=None, external_symbols=None):
     """``make-package``: a new package, which uses none unless ``use`` says so."""
-    name = string_designator(name)
+    name = _named(name)
+    packages.defined_by_program([name, *map(string_designator, _items(nicknames))])
     old = packages.find_package(name)
     if old is not None:
         with_simple_restart(
@@ -402,7 +408,9 @@ def rename_package(designator, name, nicknames=None):
 
 
 def package_error_package(condition):
-    return condition.package
+    """``package-error-package``"""
+    package = getattr(condition, "package", None) if isinstance(condition, Condition) else type_error(condition, "CONDITION")
+    return package if isinstance(condition, PackageError) else type_error(condition, "PACKAGE-ERROR")
 
 
 # ------------------------------------------------------------------------------------------------- locks and local nicknames

@@ -12,7 +12,7 @@ import pathlib
 from cramhy_runtime.kernel.images import per_image
 from ..collections.sequence_types import bounds
 from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, LispString, MultipleValues, python_list
+from cramhy_runtime.ground.data import UNSUPPLIED, FreshString, LispString, MultipleValues, python_list
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import keyword, sym
 from ..streams.streams import Stream
@@ -196,16 +196,16 @@ def pathname_version(designator):
 
 def namestring(designator):
     """``namestring``: the text that names the file. A pathname without one is a file-error."""
-    return text_of(pathname(designator))
+    return FreshString(text_of(pathname(designator)))
 
 
 def file_namestring(designator):
-    return file_text(pathname(designator))
+    return FreshString(file_text(pathname(designator)))
 
 
 def directory_namestring(designator):
     path = pathname(designator)
-    return logical_directory(path) if isinstance(path, LogicalPathname) else directory_text(path)
+    return FreshString(logical_directory(path) if isinstance(path, LogicalPathname) else directory_text(path))
 
 
 def host_namestring(designator):
@@ -222,18 +222,18 @@ def enough_namestring(designator, defaults=UNSUPPLIED):
     if given and given[0] is not RELATIVE and prefix and given[: len(prefix)] == prefix and device in (None, base.device):
         device, folder = None, (RELATIVE, *given[len(prefix) :])
     if isinstance(path, LogicalPathname):
-        return text_of(path.replace(directory=folder))
+        return FreshString(text_of(path.replace(directory=folder)))
     needs_type = path.type is not None and path.type is not UNSPECIFIC
     needs_name = needs_type or path.name is not None and path.name != base.name
     if needs_name and path.name is None:
         return error("~S cannot be represented relative to ~S.", path, base)
-    return directory_text(path.replace(device=device, directory=folder)) + (file_text(path) if needs_name else "")
+    return FreshString(directory_text(path.replace(device=device, directory=folder)) + (file_text(path) if needs_name else ""))
 
 
 def native_namestring(designator, *, as_file=None):
     """``sb-ext:native-namestring``: what the operating system calls the file."""
     text = native_text_of(pathname(designator))
-    return text.rstrip("/") or text if as_file is not None else text
+    return FreshString(text.rstrip("/") or text if as_file is not None else text)
 
 
 def parse_native_namestring(thing, host=None, defaults=None, *, start=0, end=None, junk_allowed=None, as_directory=None):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, lisp_list, list_from
 from cramhy_runtime.ground.packages import is_symbol, sym
-from .print_names import symbol_with_prefix
+from .print_names import symbol_with_prefix, token
 from .printer import define_printer, output_object, print_unreadable
 from ..objects.classes import class_name, has_own_name, metaclass_of
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
@@ -66,12 +66,12 @@ def print_method(method, stream):
 
 
 def _print_combination(combination, stream):
-    print_unreadable(combination, stream, f"METHOD-COMBINATION {name_text(combination.name)}", identity=True)
+    print_unreadable(combination, stream, f"{token('METHOD-COMBINATION')} {name_text(combination.name)}", identity=True)
 
 
 def _print_shown_as_generic(function, stream):
     count = "" if function.methods is None else f" ({function.methods})"
-    stream.write(f"#<STANDARD-GENERIC-FUNCTION {function.name}{count}>")
+    stream.write(f"#<{token('STANDARD-GENERIC-FUNCTION')} {function.name}{count}>")
 
 
 define_printer(type, print_class)

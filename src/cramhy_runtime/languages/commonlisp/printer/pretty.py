@@ -29,11 +29,13 @@ Lisp.
 
 from __future__ import annotations
 
+from numbers import Real
+
 from .components import COMPONENTS
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from ..streams.streams import BroadcastStream, output_stream
 from . import print_controls as controls
 from .pretty_stream import LineLimit, PrettyStream
@@ -229,7 +231,9 @@ def _pretty(stream):
 
 
 def _kind(designator):
-    return designator if designator.__class__ is str else symbol_name(designator).lower()
+    if designator.__class__ is str:
+        return designator
+    return symbol_name(designator).lower() if is_symbol(designator) else None
 
 
 def _checked(designator, *allowed):
@@ -256,6 +260,8 @@ def newline_if_pretty(out, kind):
 def pprint_indent(relative_to, n, stream=None):
     """``pprint-indent``: lines of the block start ``n`` columns right of its start ("block") or of here ("current")."""
     relative_to = _checked(relative_to, "block", "current")
+    if not isinstance(n, Real) or n is True:
+        return type_error(n, "REAL")
     stream = _pretty(stream)
     if stream is not None:
         stream.indent(relative_to, int(n))
@@ -266,6 +272,9 @@ def pprint_tab(kind, column, increment, stream=None):
     -relative.
     """
     kind = _checked(kind, "line", "section", "line-relative", "section-relative")
+    for number in (column, increment):
+        if number.__class__ is not int or number < 0:
+            return type_error(number, "UNSIGNED-BYTE")
     stream = _pretty(stream)
     if stream is not None:
         stream.tab(kind, column, increment)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.classes import when_classes_change
 from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, protocol_function, when_methods_change
 from ..objects import instances
+from ..streams.streams import output_stream
 from . import printer
 from .printer import standard_print_object
 
@@ -16,7 +17,7 @@ LISP_NAMES = "print-object"
 
 
 def _print_object(object_, stream):
-    standard_print_object(object_, stream)
+    standard_print_object(object_, output_stream(stream))
     return object_
 
 

@@ -230,6 +230,9 @@ def in_print_case(name):
             return name
         if case is UPCASE:
             return upcase(name)
+        return "".join(
+            upcase(character) if not index or not name[index - 1].isalnum() else character for index, character in enumerate(name)
+        )
     if case is UPCASE:
         return name
     if case is DOWNCASE:

@@ -20,7 +20,18 @@ from fractions import Fraction
 
 from cramhy_runtime.ground.arrays import LispArray
 from cramhy_runtime.ground.conditions import PrintNotReadable, error
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, DoubleFloat, Keyword, LispString, MultipleValues, Symbol
+from cramhy_runtime.ground.data import (
+    UNSUPPLIED,
+    WRITABLE_STRINGS,
+    Character,
+    Cons,
+    DoubleFloat,
+    FreshString,
+    Keyword,
+    LispString,
+    MultipleValues,
+    Symbol,
+)
 from ..streams.streams import BroadcastStream, Stream, StringOutputStream, output_stream
 from cramhy_runtime.ground.plain_answers import printers, printers_found
 from cramhy_runtime.ground.plain_answers import printer_for as nearest_printer
@@ -81,7 +92,7 @@ def _integer_atom(number, escape):
 
 _ATOMS = {
     str: lambda obj, escape: string_text(obj) if escape else obj,
-    LispString: lambda obj, escape: string_text(str(obj)) if escape else str(obj),
+    **dict.fromkeys(WRITABLE_STRINGS, lambda obj, escape: string_text(str(obj)) if escape else str(obj)),
     int: _integer_atom,
     bool: symbol_text,
     type(None): symbol_text,
@@ -352,6 +363,16 @@ def princ_to_string(obj):
     return _to_string(obj, False)
 
 
+def lisp_prin1_to_string(object):
+    """``prin1-to-string``: the text that ``prin1`` prints, a fresh string."""
+    return FreshString(_to_string(object, True))
+
+
+def lisp_princ_to_string(object):
+    """``princ-to-string``: the text that ``princ`` prints, a fresh string."""
+    return FreshString(_to_string(object, False))
+
+
 def _to_string(obj, escape):
     text_of = _ATOMS.get(obj.__class__)
     if text_of is not None and PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries:
@@ -435,8 +456,8 @@ def write_to_string(
     stream = StringOutputStream()
     with bound(*_bindings(given)):
         output_object(obj, stream)
-    return stream.text()
+    return FreshString(stream.text())
 
 
-LISP_NAMES = "prin1 princ print pprint prin1-to-string princ-to-string write-to-string"
-LISP_FUNCTIONS = {"write": lisp_write}
+LISP_NAMES = "prin1 princ print pprint write-to-string"
+LISP_FUNCTIONS = {"write": lisp_write, "prin1-to-string": lisp_prin1_to_string, "princ-to-string": lisp_princ_to_string}

@@ -14,7 +14,7 @@ from cramhy_runtime.ground.arrays import LispArray
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
 from cramhy_runtime.ground.data import Cons, LispString, Symbol
-from cramhy_runtime.ground.hash_tables import HashTable
+from cramhy_runtime.ground.hash_tables import HashTable, hash_table_test
 from ..numbers.complex_numbers import parts
 from cramhy_runtime.ground.packages import Package, all_packages, is_symbol, sym, symbol_name
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
@@ -23,7 +23,7 @@ from . import print_controls as controls
 from .pretty import NO_OBJECT, call_logical_block
 from .print_arrays import print_array
 from .print_controls import PRINT_ESCAPE, PRINT_PRETTY, bound, deeper, length_limit, too_deep
-from .print_names import integer_text, string_text, symbol_text
+from .print_names import in_print_case, integer_text, string_text, symbol_text, token
 from .printer import class_symbol, define_printer, escaping, output_object, print_unreadable
 
 
@@ -170,7 +170,7 @@ def _print_function(function, stream):
     proper = name is not None and (getattr(name, "function", None) is function or _setf_function(name) is function)
 
     def named():
-        stream.write("FUNCTION ")
+        stream.write(in_print_case("FUNCTION "))
         if name is None and (made := _local_name(function)):
             stream.write(made)
             return
@@ -244,7 +244,10 @@ def _print_hash_table(table, stream):
 
     def contents():
         stream.write(":TEST ")
-        output_object(sym(table.test), stream)
+        output_object(hash_table_test(table), stream)
+        if table.test.__class__ is not str:
+            stream.write(" :HASH-FUNCTION ")
+            output_object(table.test.number, stream)
         stream.write(f" :COUNT {len(table)}")
 
     print_unreadable(table, stream, type_=True, identity=True, body=contents)
@@ -276,8 +279,8 @@ def _print_comma(comma, stream):
 
 def print_package(package, stream):
     if package.name is None:
-        return print_unreadable(package, stream, "PACKAGE (deleted)", identity=True)
-    return print_unreadable(package, stream, "PACKAGE " + string_text(package.name))
+        return print_unreadable(package, stream, f"{token('PACKAGE')} (deleted)", identity=True)
+    return print_unreadable(package, stream, f"{token('PACKAGE')} {string_text(package.name)}")
 
 
 def _register():

@@ -18,7 +18,7 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.hash_tables import HashTable, make_hash_table, set_gethash
 from cramhy_runtime.ground.conditions import Condition, error, signal_exception, type_error
-from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol, list_from
+from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.data import values as as_values
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from cramhy_runtime.ground import python_names
@@ -33,7 +33,7 @@ _builtin = {name: getattr(builtins, name) for name in ("getattr", "hasattr", "li
 
 def plain(value):
     """``value`` as Python code wants it: a text as ``str``."""
-    if value.__class__ is LispString:
+    if value.__class__ in WRITABLE_STRINGS:
         return str(value)
     if value.__class__ is Character:
         return value.char

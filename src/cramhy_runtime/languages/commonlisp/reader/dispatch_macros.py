@@ -47,6 +47,17 @@ FEATURES = special(
     ),
 )
 
+IMPLIED_FEATURES = {"SBCL": ("SBCL", "SB-THREAD", "SB-UNICODE")}
+"""What a feature brings along: a program that asks for SBCL asks for what every SBCL of today has, too."""
+
+
+def add_features(names):
+    """Add features to ``*features*``: ``names`` are their names in upper case, such as "SBCL"."""
+    present = list(FEATURES.value or ())
+    wanted = [keyword(each) for name in names for each in IMPLIED_FEATURES.get(name, (name,))]
+    FEATURES.value = list_from([*(feature for feature in dict.fromkeys(wanted) if feature not in present), *present])
+
+
 _MAX_ARGUMENT = 1 << 24
 """No array rank, length or label is larger; a larger number is a mistake and would only eat memory."""
 

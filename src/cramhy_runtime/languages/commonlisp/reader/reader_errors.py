@@ -14,6 +14,7 @@ from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import find_package, find_package_or_error, near_names, package_names, sym
 from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.ros.definition_files import why_no_lisp_package
 from ..packages.package_errors import PackageLockedError, locked, violated
 
 
@@ -148,7 +149,9 @@ def no_package(reader, offset, package_name, name):
     """Signal that there is no package ``package_name``; the restarts decide which symbol is read."""
     near = near_names(package_name, package_names())
     hint = f"There is no package {package_name}."
-    hint += f" Did you mean {_either(near)}?" if near else " Is the system that defines it loaded?"
+    hint += (
+        f" Did you mean {_either(near)}?" if near else f" {why_no_lisp_package(package_name) or 'Is the system that defines it loaded?'}"
+    )
     current = sym("*PACKAGE*").value
 
     def again():

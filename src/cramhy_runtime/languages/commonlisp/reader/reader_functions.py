@@ -47,8 +47,11 @@ def _read(reader, eof_error_p, eof_value, recursive, preserve):
         found = reader.read(truth(eof_error_p), NOTHING)
         if found is NOTHING:
             return eof_value
-        if not preserve and not nested and reader.offset < len(reader.text) and reader.text[reader.offset] in READTABLE.value.whitespace:
-            reader.offset += 1
+        if not preserve and not nested:
+            if isinstance(reader, StreamReader) and reader.source.gives_single_characters and reader.offset == len(reader.text):
+                reader.grow()
+            if reader.offset < len(reader.text) and reader.text[reader.offset] in READTABLE.value.whitespace:
+                reader.offset += 1
         return found
     finally:
         if isinstance(reader, StreamReader) and not nested:
@@ -66,7 +69,8 @@ def read_delimited_list(char, stream=None, recursive_p=None):
         return type_error(char, "CHARACTER")
     reader = as_reader(stream)
     try:
-        return list_from(reader.objects_until(char.char))
+        found = reader.objects_until(char.char)
+        return list_from(found) if SUPPRESS.value is None else None
     finally:
         if isinstance(reader, StreamReader) and not reader.is_reading:
             reader.release()

@@ -6,7 +6,7 @@ are here. Source: ANSI 2.4.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import NO_VALUES
+from cramhy_runtime.ground.data import NO_VALUES, FreshString
 from . import dispatch_macros
 from .reader_errors import QuietEnd, QuietFailure
 from .readtables import READTABLE, STANDARD, DispatchTable
@@ -20,7 +20,7 @@ def read_comment(stream, character):
 
 
 def read_string(stream, character):
-    """``"``: a string up to the same character; ``\\`` takes the next character as it is."""
+    """``"``: a string up to the same character; ``\\`` takes the next character as it is. A program that reads may change it."""
     reader = as_reader(stream)
     quote = character.char
     start = index = reader.offset
@@ -35,7 +35,10 @@ def read_string(stream, character):
         elif end >= 0 and escape < 0:
             reader.offset = end + 1
             pieces.append(text[index:end])
-            return "".join(pieces)
+            if SUPPRESS.value is not None:
+                return None
+            text = "".join(pieces)
+            return FreshString(text) if reader.strict else text
         elif not reader.grow():
             reader.offset = len(text)
             reader.describe_frame('"', start - 1)

@@ -204,7 +204,7 @@ class Reader(InputStream):
                     continue
                 self.offset = end
                 word = match[1]
-                if word == "." and (SUPPRESS.value is None or len(frames) > base):
+                if word == "." and SUPPRESS.value is None:
                     self._dot(start, base)
                     continue
                 found = self._token(word, start, table)
@@ -253,12 +253,8 @@ class Reader(InputStream):
                     elif frame[2] is _DOT:
                         frame[2] = found
                     else:
-                        return fail(
-                            self,
-                            start if end > start else end,
-                            "More than one object follows . in list.",
-                            hint="After the dot and one object the list must end.",
-                        )
+                        hint = "After the dot and one object the list must end."
+                        return fail(self, start if end > start else end, "More than one object follows . in list.", hint=hint)
                     break
                 frames.pop()
                 found = self._prefixed(frame, found, at)
@@ -326,6 +322,9 @@ class Reader(InputStream):
 
     def _prefixed(self, frame, found, at):
         _, start, symbol, opener = frame
+        if SUPPRESS.value is not None:
+            self.backquotes += (symbol is Comma) - (symbol is QUASIQUOTE)
+            return None
         if symbol is Comma:
             self.backquotes += 1
             comma = Comma(opener, found)
@@ -580,7 +579,7 @@ class StreamReader(Reader):
         return self.source.more()
 
     def release(self):
-        self.source._text, self.source._position = self.text, self.offset
+        self.source.put_back(self.text, self.offset)
         for echo in self.echoes:
             echo.write(self.text[self.begun : self.offset])
 

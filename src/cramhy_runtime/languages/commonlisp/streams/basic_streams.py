@@ -93,6 +93,10 @@ class OutputStream(Stream):
     def flush(self):
         """Deliver what was written."""
 
+    def force(self):
+        """Begin to deliver what was written."""
+        self.flush()
+
 
 def complain_closed(stream):
     """The error that a stream was used after its end. SBCL's text."""
@@ -193,6 +197,7 @@ class InputStream(Stream):
     """A source of characters. Subclasses define ``more()``: the next piece of text, ``""`` at the end."""
 
     is_input = True
+    gives_single_characters = False  # what `more` gives
 
     def __init__(self, text=""):
         self._text = text
@@ -247,6 +252,10 @@ class InputStream(Stream):
             parts.append(self._text[self._position :])
             self._position = len(self._text)
         return "".join(parts), True
+
+    def put_back(self, text, position):
+        """A reader that took what had arrived and asked for `more`, which is ``text`` now, has read up to ``position``."""
+        self._text, self._position = text, position
 
     def listen(self):
         """Whether a character can be read without waiting."""

@@ -9,7 +9,17 @@ from __future__ import annotations
 
 from ..collections.sequence_types import bounds, elements, part
 from cramhy_runtime.ground.conditions import EndOfFile, error, type_error
-from cramhy_runtime.ground.data import Character, Cons, LispString, MultipleValues, Symbol, boolean, list_from
+from cramhy_runtime.ground.data import (
+    WRITABLE_STRINGS,
+    Character,
+    Cons,
+    FreshString,
+    LispString,
+    MultipleValues,
+    Symbol,
+    boolean,
+    list_from,
+)
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from . import streams
@@ -32,7 +42,7 @@ from .streams import (
 def _text(string):
     if string.__class__ is str:
         return string
-    if isinstance(string, LispString):
+    if isinstance(string, (str, LispString)):
         return str(string)
     text = _characters(string)
     return type_error(string, "STRING") if text is None else text
@@ -76,6 +86,9 @@ def write_char(character, stream=None):
 def write_sequence(sequence, stream, *, start=0, end=None):
     """``write-sequence``: the elements of ``sequence``, characters or bytes, to ``stream``. Returns ``sequence``."""
     stream = output_stream(stream)
+    if hasattr(stream, "write_elements"):  # of a user's class
+        stream.write_elements(sequence, start, end)
+        return sequence
     if isinstance(sequence, (str, LispString)):
         text = str(sequence)
         start, end = bounds(start, end, len(text))
@@ -103,12 +116,15 @@ def finish_output(stream=None):
     output_stream(stream).flush()
 
 
-force_output = finish_output
+def force_output(stream=None):
+    output_stream(stream).force()
 
 
 def clear_output(stream=None):
-    """``clear-output``: there is never anything to throw away."""
-    output_stream(stream)
+    """``clear-output``: there is never anything to throw away, but for streams of users' classes."""
+    stream = output_stream(stream)
+    if hasattr(stream, "clear_output"):
+        stream.clear_output()
 
 
 CHARACTER = sym("CHARACTER")
@@ -130,6 +146,9 @@ def read_char(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
 
 def read_char_no_hang(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
     stream = input_stream(stream)
+    if hasattr(stream, "read_char_no_hang"):  # of a user's class
+        character = stream.read_char_no_hang()
+        return None if character is None else Character(character) if character else _at_end(stream, eof_error_p, eof_value)
     if stream.is_interactive and not stream.listen():
         return None
     return read_char(stream, eof_error_p, eof_value)
@@ -166,7 +185,7 @@ def read_line(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
     if ended and not line:
         missing = _at_end(stream, eof_error_p, eof_value)
         return MultipleValues((missing, True))
-    return MultipleValues((line, boolean(ended)))
+    return MultipleValues((FreshString(line), boolean(ended)))
 
 
 def read_sequence(sequence, stream, *, start=0, end=None):
@@ -174,7 +193,14 @@ def read_sequence(sequence, stream, *, start=0, end=None):
     stream = input_stream(stream)
     length = len(elements(sequence))
     start, end = bounds(start, length if end is None else end, length)
-    is_string, cell = isinstance(sequence, LispString), sequence
+    if hasattr(stream, "read_elements"):  # of a user's class
+        return stream.read_elements(sequence, start, end)
+    return fill_sequence(sequence, stream, start, end)
+
+
+def fill_sequence(sequence, stream, start, end):
+    """Fill ``sequence`` from ``start`` to ``end`` with what is read, element by element; the index of the first that was not filled."""
+    is_string, cell = sequence.__class__ in WRITABLE_STRINGS, sequence
     for _ in range(start if isinstance(sequence, Cons) else 0):
         cell = cell.cdr
     next_element = stream.read_char if is_string or stream.element_type() is CHARACTER else stream.read_byte
@@ -183,7 +209,7 @@ def read_sequence(sequence, stream, *, start=0, end=None):
         if element == "" or element is None:
             return index
         if is_string:
-            sequence.chars[index] = element
+            sequence.writable()[index] = element
             continue
         element = Character(element) if element.__class__ is str else element
         if isinstance(sequence, Cons):
@@ -212,7 +238,7 @@ def make_string_output_stream(*, element_type=None):
 
 def get_output_stream_string(stream):
     """``get-output-stream-string``: what was written to ``stream`` since the last time this was asked."""
-    return stream.take() if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
+    return FreshString(stream.take()) if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
 
 
 def make_string_input_stream(string, start=0, end=None):

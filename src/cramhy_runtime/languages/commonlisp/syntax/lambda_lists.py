@@ -30,6 +30,35 @@ class LambdaList:
         self.has_keys = self.allow_other_keys = False
         self.aux: list = []  # (variable, form)
 
+    def has_defaults(self):
+        """Whether an optional or keyword parameter has a default form."""
+        return any(default is not None for _, default, _ in self.optional) or any(key[2] is not None for key in self.keys)
+
+    def in_order(self):
+        """An ordinary lambda list that binds the same variables by ``&aux``, so that each default form sees the variables before it."""
+        other = LambdaList()
+        other.rest, other.has_keys, other.allow_other_keys = self.rest, self.has_keys, self.allow_other_keys
+
+        def bound_later(symbol):
+            value = gensym(symbol_name(symbol))
+            other.aux.append((symbol, value))
+            return value
+
+        def default_later(symbol, default, supplied):
+            value, given = gensym(symbol_name(symbol)), gensym("GIVEN")
+            other.aux.append((symbol, lisp_list(sym("IF"), given, value, default)))
+            if supplied is not None:
+                other.aux.append((supplied, given))
+            return value, None, given
+
+        other.required = [bound_later(symbol) for symbol in self.required]
+        other.optional = [default_later(*parameter) for parameter in self.optional]
+        if self.rest is not None:
+            other.rest = bound_later(self.rest)
+        other.keys = [(key, *default_later(*parameter)) for key, *parameter in self.keys]
+        other.aux += self.aux
+        return other
+
 
 def _marker(item):
     return item.name if isinstance(item, Symbol) and item.name in KEYWORDS.values() else None

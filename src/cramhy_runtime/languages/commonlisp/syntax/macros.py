@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import importlib
 
-from cramhy_runtime.ground.conditions import CompileError, error
+from cramhy_runtime.ground.conditions import CompileError, error, type_error
 from cramhy_runtime.ground.data import Cons, Symbol, one
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, our_own, sym
@@ -39,6 +39,13 @@ def macro_function(symbol, environment=None):
         if local is not None:
             return getattr(local, "expander", None)
     return symbol.macro if isinstance(symbol, Symbol) else None
+
+
+def checked_environment(environment):
+    """``environment``, which is an argument of the user's: nil or what a macro got behind ``&environment``."""
+    if environment is None or hasattr(environment, "variable") and hasattr(environment, "function"):
+        return environment
+    return type_error(environment, "(OR SB-C::ABSTRACT-LEXENV NULL)")
 
 
 def macroexpand_1(form, environment=None):

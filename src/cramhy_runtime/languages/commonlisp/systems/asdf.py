@@ -30,15 +30,16 @@ def find_system(name, error_p=True):
     if isinstance(name, Component):
         return name
     known = component_name(name)
-    if not truth(error_p) and known not in systems.built_in and systems.find_asd(known) is None:
+    if not truth(error_p) and not systems.is_built_in(known) and systems.find_asd(known) is None:
         return systems.systems.get(known)
     return systems.find_system(known)
 
 
 def load_system(system, *, force=None, verbose=None, version=None, **others):
     """``asdf:load-system``: load it, and what it depends on, as far as that has changed. Returns T."""
-    found = system_of(system).name
-    systems.load_system(found, truth(force), version=version)
+    with search_folders.crawling_once():
+        found = system_of(system).name
+        systems.load_system(found, truth(force), version=version)
     return True
 
 

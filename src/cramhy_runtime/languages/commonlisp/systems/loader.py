@@ -112,11 +112,12 @@ def decoded(path, encoding=None):
         )
 
 
-def load_file(path, chain="", finished=None, show=None, encoding=None):
+def load_file(path, chain="", finished=None, show=None, encoding=None, as_source=False):
     """Load a ``.lisp`` or ``.hy`` file; ``*package*`` and ``*readtable*`` are the same afterwards as before.
 
     path: the file. chain: fingerprint of what was loaded before it and may define macros that it uses. finished: called with
     the package that is current at the end of the file. show: called with the values of each form. encoding: UTF-8 if not given.
+    as_source: whether it is ``load`` that loads it, and ``eval-when`` counts as in ``eval``; else it belongs to a compiled system.
     Returns the fingerprint of this file with its chain. A missing file is a file-error, a broken one an error with its place.
     """
     path = Path(path).absolute()
@@ -124,12 +125,12 @@ def load_file(path, chain="", finished=None, show=None, encoding=None):
     if path.suffix == ".hy" and _is_plain_hy(text):
         _run_hy(path)
         return chain
-    fingerprint = _fingerprint(path, text, chain)
+    fingerprint = _fingerprint(path, text, f"source {chain}" if as_source else chain)
     _loads.number += 1
     with binding(
         PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))
     ):
-        _load_or_compile(path, fingerprint, _Text(text, str(path)), show)
+        _load_or_compile(path, fingerprint, _Text(text, str(path)), show, as_source)
         if finished is not None:
             finished(PACKAGE.value)
     return fingerprint
@@ -177,7 +178,7 @@ class _KeptForm(NamedTuple):
     codes: list[CodeType]
 
 
-def _load_or_compile(path, fingerprint, text, show=None):
+def _load_or_compile(path, fingerprint, text, show=None, as_source=False):
     """Run the code that is kept for ``path`` as far as it is what the compiler would make; compile the rest of ``text``, and keep that."""
     _not_used.pop(str(path), None)
     kept = _kept(path, fingerprint) if show is None else None
@@ -191,7 +192,8 @@ def _load_or_compile(path, fingerprint, text, show=None):
         _not_used[str(path)] = Unusable("outdated", f"something that {text.filename} uses has changed since it was compiled")
     offset, line, column = forms[used].place if used else (0, text.line, text.column)
     with compilation_unit("file"):
-        rest = load_text(text.text[offset:], text.filename, stored=True, show=show, line=line, column=column)
+        place = {"line": line, "column": column}
+        rest = load_text(text.text[offset:], text.filename, stored=True, show=show, as_source=as_source, **place)
     if rest is not None:
         units = forms[used - 1].unit + 1 if used else 0
         rest = [form._replace(place=(offset + form.place[0], *form.place[1:]), unit=units) for form in rest]
@@ -212,15 +214,15 @@ def _run_kept(forms, filename):
     return len(forms)
 
 
-def load_text(text, filename, stored=False, show=None, line=1, column=1):
+def load_text(text, filename, stored=False, show=None, line=1, column=1, as_source=False):
     """Load the forms of ``text``; with ``stored`` return them as a list of `_KeptForm`, or ``None`` if they cannot be kept.
 
-    show: called with the values of each form. line, column: where in ``filename`` the text begins.
+    show: called with the values of each form. line, column: where in ``filename`` the text begins. as_source: as of `load_file`.
     """
     from ..reader.reader import Reader
 
     reader = Reader(text, filename=filename, line=line, column=column)
-    unit = Unit(filename, reader.positions, stored=stored)
+    unit = Unit(filename, reader.positions, stored=stored, as_source=as_source)
     if not os.path.isfile(filename):
         linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
     end, forms = object(), []
@@ -333,7 +335,7 @@ def _kept(path, fingerprint):
 def kept_codes(path):
     """The code objects that were kept when the file ``path`` was loaded last by itself, if it has not changed since; else ``None``."""
     path = Path(path).absolute()
-    kept = _kept(path, _fingerprint(path, decoded(path)))
+    kept = _kept(path, _fingerprint(path, decoded(path), "source ")) or _kept(path, _fingerprint(path, decoded(path)))
     return kept and [code for parts in kept for code in _KeptForm(*parts).codes]
 
 

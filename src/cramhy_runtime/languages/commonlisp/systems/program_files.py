@@ -76,7 +76,8 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
     if _is_compiled(found):
         _load_compiled(found)
     else:
-        load_file(found, show=show, encoding=None if external_format is None else format_named(external_format).codec)
+        codec = None if external_format is None else format_named(external_format).codec
+        load_file(found, show=show, encoding=codec, as_source=True)
         unusable = why_not_kept(found)
         if _flag(verbose, LOAD_VERBOSE) is not None and unusable is not None and unusable.kind in ("distrusted", "damaged"):
             say(f";; compiled again: {unusable}")

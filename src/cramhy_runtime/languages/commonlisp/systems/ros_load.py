@@ -12,6 +12,7 @@ from ..packages.face_definition import define_face
 from .program_files import load
 from cramhy_runtime.ground.packages import near_names, string_designator, sym
 from cramhy_runtime.ros import definition_files
+from cramhy_runtime.ros.search_folders import crawling_once
 from . import systems
 
 NOT_FOUND = "rospack find ~A returned 1 with stderr '[rospack] Error: package '~A' not found'"
@@ -24,10 +25,10 @@ def load_system(package, system=None, force=None):
     is found without it (roslisp.md section 12).
     """
     name = string_designator(package)
-    if system is not None:
-        check_package(name, string_designator(system).lower())
     wanted = string_designator(package if system is None else system).lower()
-    with binding(sym("ROS-LOAD-MANIFEST::*CURRENT-ROS-PACKAGE*"), name):
+    with crawling_once(), binding(sym("ROS-LOAD-MANIFEST::*CURRENT-ROS-PACKAGE*"), name):
+        if system is not None:
+            check_package(name, wanted)
         systems.load_system(wanted, truth(force))
     return True
 

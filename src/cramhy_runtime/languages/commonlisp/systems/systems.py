@@ -13,15 +13,20 @@ import os
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import CompileError, SimpleError, error
+from cramhy_runtime.ground.conditions import CompileError, SimpleError, error, handler_bind
+from cramhy_runtime.ground.dispatch.generic_functions import FunctionInTheWay
+from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from cramhy_runtime.ground.dynamic import binding
 from ..compiler.compilation_unit import compilation_unit
+from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
-from . import loader
-from cramhy_runtime.ros.search_folders import SKIPPED, entries, is_file, is_folder, search_folders
+from . import loader, missing_messages
+from cramhy_runtime.ros import search_folders
+from cramhy_runtime.ros.definition_files import package_name
+from cramhy_runtime.ros.search_folders import crawls, look_again, crawling_once
 from .system_definitions import Module, SourceFile, System, define_system, systems
 
 
@@ -38,11 +43,12 @@ _reading: list = per_image([])
 _loaded: dict = per_image({})
 _loading: list = per_image([])
 CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
+preferred: set = per_image(set())
+"""Names of systems that `prefer` takes from ROS_PACKAGE_PATH, though cramhy contains one of that name."""
 NOT_TO_BE_HAD = {
-    "cffi": "it calls functions of C, which cramhy cannot; import the Python module for that library instead",
-    "trivial-garbage": "it needs SBCL's garbage collector; Python's weakref and gc modules do its work",
-    "bordeaux-threads": "the tasks of CRAM run on cramhy's kernel; use par, pursue and fluents instead of threads",
-    "sb-posix": "it is part of SBCL; Python's os module does its work",
+    "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
+    "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
+    "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
 }
 """Systems that cannot be had here, and why."""
 
@@ -60,7 +66,29 @@ def provide_systems_on_demand(find, names):
 
 def is_provided(name):
     """Whether the system ``name`` is part of cramhy, or was just made by it."""
-    return name in built_in or any(find(name) for find, _ in _finders)
+    return name not in preferred and (name in built_in or any(find(name) for find, _ in _finders))
+
+
+def is_built_in(name):
+    """Whether the system ``name`` is part of cramhy, and nobody prefers another."""
+    return name in built_in and name not in preferred
+
+
+def prefer(name):
+    """Take the system ``name`` from ROS_PACKAGE_PATH from now on, even if cramhy contains one of that name; an error if it is not there.
+
+    The definitions of the system are made over those of cramhy's own, which stay where it defines nothing of that name.
+    """
+    name = string_designator(name).lower()
+    if _find_below(f"{name}.asd", True) is None:
+        where = ", ".join(map(str, search_folders.on_package_path())) or "it names no folder that can be read"
+        return error(
+            MissingComponent("There is no system ~S on ROS_PACKAGE_PATH that could be preferred", name),
+            hint=f"ROS_PACKAGE_PATH: {where}. The system is a file {name}.asd in one of these folders, or below.",
+        )
+    preferred.add(name)
+    systems.pop(name, None)
+    return None
 
 
 def central_registry():
@@ -84,6 +112,20 @@ LIBRARY_PACKAGES = {
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
     "IT.BESE.FIVEAM": "fiveam",
+    "BORDEAUX-THREADS": "bordeaux-threads",
+    "BT": "bordeaux-threads",
+    "BORDEAUX-THREADS-2": "bordeaux-threads",
+    "BT2": "bordeaux-threads",
+    "TRIVIAL-GARBAGE": "trivial-garbage",
+    "TG": "trivial-garbage",
+    "TRIVIAL-GRAY-STREAMS": "trivial-gray-streams",
+    "CLOSER-MOP": "closer-mop",
+    "C2MOP": "closer-mop",
+    "CLOSER-COMMON-LISP": "closer-mop",
+    "C2CL": "closer-mop",
+    "CLOSER-COMMON-LISP-USER": "closer-mop",
+    "C2CL-USER": "closer-mop",
+    "CFFI": "cffi",
     "CRAM-LOCATION-COSTMAP": "cram-location-costmap",
     "LOCATION-COSTMAP": "cram-location-costmap",
     "COSTMAP": "cram-location-costmap",
@@ -101,37 +143,39 @@ def libraries():
     return {path.name: path.relative_to(LIBRARIES) for path in LIBRARIES.glob("*/*.asd")}
 
 
-def _asd_files(folder, depth=4):
-    found = entries(folder)
-    for entry in found:
-        if entry.name.endswith(".asd") and is_file(entry):
-            yield Path(entry.path)
-    for entry in found:
-        if depth and is_folder(entry) and not entry.name.startswith((".", "__")) and entry.name not in SKIPPED:
-            yield from _asd_files(entry.path, depth - 1)
+def _asd_files(crawl):
+    """Yield the ``.asd`` files below a folder; those of packages' sub-folders last."""
+    for folders in (crawl.folders, crawl.insides):
+        for folder in folders:
+            if "roslisp_ignore" not in folder.entries:
+                yield from folder.files(".asd")
 
 
 def find_asd(name):
     """The ``.asd`` file that defines the system ``name`` (its file name, or its secondary name after the slash), or ``None``."""
-    wanted = name.partition("/")[0] + ".asd"
+    home = name.partition("/")[0]
+    wanted = home + ".asd"
+    if home in preferred and (found := _find_below(wanted, True)) is not None:
+        return found
     if wanted in libraries():
         return LIBRARIES / libraries()[wanted]
     for folder in central_registry():
         if os.path.isfile(folder / wanted):
             return folder / wanted
-    for folder in search_folders():
-        for path in _asd_files(folder):
-            if path.name == wanted:
-                return path
-    return None
+    found = _find_below(wanted)
+    return _find_below(wanted) if found is None and look_again() else found
+
+
+def _find_below(wanted, on_path_only=False):
+    return next((path for crawl in crawls(on_path_only) for path in _asd_files(crawl) if path.name == wanted), None)
 
 
 def find_package_folder(name):
-    """The folder of the ROS package ``name``: it is called so, or its ``package.xml`` says so; ``None`` if there is none."""
-    for folder in search_folders():
-        for candidate in [folder, *(Path(entry.path) for entry in entries(folder) if is_folder(entry))]:
-            if candidate.name == name and (os.path.exists(candidate / "package.xml") or any(candidate.glob("*.asd"))):
-                return candidate
+    """The folder of the ROS package ``name``: its manifest says so, or it is called so and has a ``.asd``; ``None`` if there is none."""
+    for folder in search_folders.crawl():
+        called_so = os.path.basename(folder.path) == name
+        if folder.manifest is not None and package_name(folder) == name or called_so and any(folder.files(".asd")):
+            return Path(folder.path)
     return None
 
 
@@ -141,7 +185,7 @@ def known_systems():
         *built_in,
         *(name for _, names in _finders for name in names()),
         *(name.removesuffix(".asd") for name in libraries()),
-        *(path.stem for folder in search_folders() for path in _asd_files(folder)),
+        *(path.stem for crawl in crawls() for path in _asd_files(crawl)),
     }
 
 
@@ -193,11 +237,11 @@ def find_system(name, required_by=None):
     system = systems.get(name)
     if system is None:
         by = f", required by #<SYSTEM {required_by!r}>".replace("'", '"') if required_by else ""
-        return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path))
+        return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path, required_by))
     return system
 
 
-def _why_missing(name, path):
+def _why_missing(name, path, required_by):
     near = near_names(name, known_systems())
     hint = f" Did you mean {' or '.join(near)}?" if near else ""
     if path is not None:
@@ -205,13 +249,16 @@ def _why_missing(name, path):
         return f"{path} defines {there}.{hint}"
     if name in NOT_TO_BE_HAD:
         return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
-    where = ", ".join(str(folder) for folder in [*central_registry(), *search_folders()])
+    of_messages = missing_messages.advice(name, missing_messages.wanted_by(required_by, files_of))
+    if of_messages is not None:
+        return of_messages + hint.replace(" ", "\n", 1)
+    where = ", ".join(str(folder) for folder in [*central_registry(), *search_folders.search_folders()])
     return f"There is no file {name.partition('/')[0]}.asd below {where}.{hint}"
 
 
 def check_version(system, least, required_by):
     """Check that ``system`` is of version ``least`` or later; those that are part of cramhy are of any version."""
-    if least is None or system.name in built_in or "/libraries/" in str(system.file).replace(os.sep, "/"):
+    if least is None or is_built_in(system.name) or "/libraries/" in str(system.file).replace(os.sep, "/"):
         return
     if system.version is None or _numbers(system.version) < _numbers(least):
         has = f"it is version {system.version}" if system.version else "it has no version"
@@ -230,7 +277,7 @@ def load_system(name, force=False, version=None):
 
     Returns the fingerprint of all that was loaded. A circle of dependencies is an error.
     """
-    with compilation_unit("file"):
+    with compilation_unit("file"), crawling_once():
         return _load_system(name, force, version=version)
 
 
@@ -245,12 +292,31 @@ def _load_system(name, force=False, required_by=None, version=None):
         system = find_system(name, required_by)
         check_version(system, version, required_by)
         chain = "".join(_load_system(other, required_by=name, version=least) for other, least in system.depends_on)
-        for component in files_of(system):
-            chain = _load_component(component.pathname, chain, force)
+        chain = _instead_of_ours(name, lambda: _load_components(system, chain, force))
         loaded[name] = chain
         return chain
     finally:
         _loading.pop()
+
+
+def _load_components(system, chain, force):
+    for component in files_of(system):
+        chain = _load_component(component.pathname, chain, force)
+    return chain
+
+
+def _instead_of_ours(name, load):
+    """The value of ``load()``, which loads the files of the system ``name``. If it is preferred, it redefines ours and need not say so."""
+    if name not in preferred or not (name in built_in or name in LIBRARY_PACKAGES.values()):
+        return load()
+    answers = [(FunctionInTheWay, lambda _: _choose("CONTINUE")), (RedefinitionWarning, lambda _: _choose("MUFFLE-WARNING"))]
+    return handler_bind(answers, load)
+
+
+def _choose(restart):
+    found = find_restart(sym(restart))
+    if found is not None:
+        invoke_restart(found)
 
 
 loaded: dict = per_image({})

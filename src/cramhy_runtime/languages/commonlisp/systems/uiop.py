@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cramhy_runtime.ground import packages
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, list_from, truth
+from cramhy_runtime.ground.data import Cons, FreshString, list_from, truth
 from ..evaluation.evaluator import PACKAGE
 from ..packages.face_definition import define_face
 from ..files.files import lisp_path
@@ -39,11 +39,12 @@ def symbol_call(package, name, *arguments):
 
 def getenv(name):
     """``uiop:getenv``: a variable of the environment, or nil."""
-    return os.environ.get(name)
+    value = os.environ.get(str(name))
+    return None if value is None else FreshString(value)
 
 
 def getenvp(name):
-    return os.environ.get(name) or None
+    return getenv(name) or None
 
 
 def file_exists_p(path):
@@ -61,15 +62,15 @@ def probe_file(path, **options):
 
 def read_file_string(path, **options):
     """``uiop:read-file-string``: the text of a file."""
-    return Path(path).read_text(encoding="utf-8")
+    return FreshString(Path(path).read_text(encoding="utf-8"))
 
 
 def read_file_lines(path, **options):
-    return list_from(read_file_string(path).splitlines())
+    return list_from([FreshString(line) for line in read_file_string(path).splitlines()])
 
 
 def read_file_line(path, **options):
-    return next(iter(read_file_string(path).splitlines()), None)
+    return next((FreshString(line) for line in read_file_string(path).splitlines()), None)
 
 
 def read_file_form(path, **options):
@@ -102,12 +103,12 @@ def split_string(string, *, max=None, separator=" \t"):
             current = []
         else:
             current.append(char)
-    return list_from(["".join(reversed(current)), *reversed(parts)])
+    return list_from([FreshString(part) for part in ("".join(reversed(current)), *reversed(parts))])
 
 
 def strcat(*strings):
     """``uiop:strcat``: the strings, one after the other; nil counts as empty."""
-    return "".join("" if item is None else str(getattr(item, "char", item)) for item in strings)
+    return FreshString("".join("" if item is None else str(getattr(item, "char", item)) for item in strings))
 
 
 def string_prefix_p(prefix, string):

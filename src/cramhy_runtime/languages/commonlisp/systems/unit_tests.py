@@ -225,7 +225,7 @@ def load_tests(path):
     path = Path(path).absolute()
     system = system_of_file(path)
     if system is None:
-        loader.load_file(path)
+        loader.load_file(path, as_source=True)
     else:
         systems.load_system(system.name)
     return defined_tests([path])

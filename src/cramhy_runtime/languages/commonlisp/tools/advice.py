@@ -17,6 +17,7 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.source_places import describe, describe_frame, excerpt, locate
 from ..printer.clos_printing import specializer_names
 from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
+from cramhy_runtime.ros.definition_files import why_no_lisp_package
 from cramhy_runtime.ground.packages import all_packages, near_names, sym, symbol_name
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
@@ -136,11 +137,11 @@ def _advice(condition):
     if isinstance(condition, NoApplicableMethodError):
         return _methods(condition.generic_function)
     if isinstance(condition, types.PackageDoesNotExist):
-        near = near_names(
-            str(symbol_name(condition.package) if isinstance(condition.package, Symbol) else condition.package),
-            [name for package in all_packages() for name in package.names],
-        )
-        return f"Did you mean {' or '.join(near)}?" if near else "Is the system that defines it loaded?"
+        missing = str(symbol_name(condition.package) if isinstance(condition.package, Symbol) else condition.package)
+        near = near_names(missing, [name for package in all_packages() for name in package.names])
+        if near:
+            return f"Did you mean {' or '.join(near)}?"
+        return why_no_lisp_package(missing) or "Is the system that defines it loaded?"
     return fluent_advice(condition)
 
 

@@ -60,6 +60,11 @@ def calls(condition, frame):
     return ["calls, the innermost last:", *left_out, *told[-_MOST:]] if told else ["No function of yours was running."]
 
 
+def running_calls(frame):
+    """The user's calls that run in ``frame`` and its callers: pairs of a Lisp name and a place, the innermost first."""
+    return _user_calls(_stack(frame))[::-1]
+
+
 def _user_calls(frames):
     return [
         (_name(frame.f_code), frame_position(frame, lasti))
@@ -89,7 +94,11 @@ def _frames(condition, frame):
             found.append((entry.tb_frame, entry.tb_lineno, entry.tb_lasti))
             entry = entry.tb_next
         return found
-    return [(frame, frame.f_lineno, lasti) for frame, lasti in reversed(circumstance.running(frame))]
+    return _stack(frame)
+
+
+def _stack(frame):
+    return [(found, found.f_lineno, lasti) for found, lasti in reversed(circumstance.running(frame))]
 
 
 def _name(code):

@@ -38,7 +38,7 @@ from ..objects.class_objects import direct_slots, effective_slots
 from ..objects.classes import class_name, class_of, metaclass_of, symbol_class
 from ..printer.clos_printing import specializer_names
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from ..objects.protocol import slot_names
+from ..objects.protocol import names_of_slots
 from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
@@ -203,7 +203,7 @@ def _kind_of_array(array):
 
 
 def _describe_anything(obj, stream):
-    out = Description(stream)
+    out = Description(output_stream(stream))
     if is_symbol(obj) and obj is not False:
         return describe_symbol(obj, out)
     out.header(one_line(obj), kind_of(obj))
@@ -260,7 +260,7 @@ def describe_slots(obj, out):
     """The slots of an instance, by allocation, the last slot's first."""
     groups = {}
     slots = {} if isinstance(obj, StructureObject) else effective_slots(type(obj))
-    for name in slot_names(obj):
+    for name in names_of_slots(obj):
         allocation = "CLASS" if name in slots and slots[name].cell is not None else "INSTANCE"
         groups.setdefault(allocation, []).append(name)
     if not groups:

@@ -18,7 +18,7 @@ from cramhy_runtime.ground.dynamic import binding, special
 from ..evaluation.evaluator import evaluate
 from ..evaluation.function_facts import lambda_list_of, shown_name
 from ..objects.classes import class_name
-from ..objects.protocol import slot_names
+from ..objects.protocol import names_of_slots
 from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import Package, ensure_package, is_symbol, sym, symbol_name, symbol_package
@@ -124,7 +124,7 @@ def _array_parts(obj):
 
 
 def _instance_parts(obj):
-    names = [] if isinstance(obj, (str, int, float, complex)) else slot_names(obj)
+    names = [] if isinstance(obj, (str, int, float, complex)) else names_of_slots(obj)
     kind = prin1_to_string(class_name(type(obj)))
     if names or isinstance(obj, (StructureObject, Condition)):
         what = "STRUCTURE-OBJECT" if isinstance(obj, StructureObject) else "CONDITION" if isinstance(obj, Condition) else "STANDARD-OBJECT"

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import Error, handler_case, ignore_errors, type_error
-from cramhy_runtime.ground.data import UNBOUND, Character, Cons, DoubleFloat, LispString, all_values
+from cramhy_runtime.ground.conditions import Error, handler_case, type_error
+from cramhy_runtime.ground.data import UNBOUND, WRITABLE_STRINGS, Character, Cons, DoubleFloat
 from cramhy_runtime.ground.dynamic import special
-from ...objects.classes import class_of
 from cramhy_runtime.ground.classes import class_name
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from ...printer.pprint_dispatch import PRINT_PPRINT_DISPATCH
 from ...printer.print_controls import PRINT_BASE, PRINT_CASE, PRINT_CIRCLE, PRINT_ESCAPE
 from ...printer.print_names import in_print_case, token
 from ...printer.printer import atom_text, print_unreadable, write
-from cramhy_runtime.ground.printing import define_printer
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.ground.printing import define_printer, unprintable
 from ...streams.streams import BroadcastStream
 from ...reader.readtables import READTABLE
 from ...tools.describing import describe_facts, describe_object
@@ -97,7 +95,7 @@ class _Bare(dict):
         return text
 
 
-_SAFE = frozenset([int, float, DoubleFloat, Fraction, str, LispString, Character])
+_SAFE = frozenset([int, float, DoubleFloat, Fraction, str, *WRITABLE_STRINGS, Character])
 
 
 def _safe(thing):
@@ -113,12 +111,7 @@ def _print_part(thing, stream, escape):
         if problem is None:
             write(thing, stream, escape)
         else:
-            stream.write(_unprintable(thing, problem))
-
-
-def _unprintable(thing, problem):
-    why, *_ = all_values(ignore_errors(lambda: princ_to_string(problem)))
-    return f"#<error printing a {class_name(class_of(thing)).name}{': ' + ' '.join(why.split()) if why else ''}>"
+            stream.write(unprintable(thing, problem))
 
 
 def describe_designator(designator, stream):

@@ -21,10 +21,10 @@ from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import (
     NO_VALUES,
     UNBOUND,
+    WRITABLE_STRINGS,
     Character,
     Cons,
     DoubleFloat,
-    LispString,
     MultipleValues,
     Symbol,
     lisp_list,
@@ -89,7 +89,7 @@ class Writer:
             return None
         if value is True or kind is int:
             return value
-        if kind is str or kind is LispString:
+        if kind is str or kind in WRITABLE_STRINGS:
             return str(value)
         if isinstance(value, Symbol):
             return self._symbol(value)
@@ -154,7 +154,7 @@ class Writer:
         cls = value.__class__
         if isinstance(value, list | TypedVector | bytes | bytearray) or (isinstance(value, LispArray) and len(value.dimensions) == 1):
             return {"new": self._numbered(value), "vector": [self.write(item, depth) for item in value]}
-        if cls is HashTable and value.weakness is None:
+        if cls is HashTable and value.weakness is None and value.test.__class__ is str:
             number = self._numbered(value)
             return {
                 "new": number,

@@ -1,0 +1,276 @@
+;;;; CFFI: cramhy calls no functions of C. A file that declares some loads, with its types, libraries and functions; a declared function
+;;;; that is called is an error that names it, and so is all that touches foreign memory.
+
+(defpackage #:cffi
+  (:use #:common-lisp)
+  (:nicknames #:cffi-sys)
+  (:export
+   #:*darwin-framework-directories* #:*default-foreign-encoding* #:*foreign-library-directories* #:callback #:close-foreign-library
+   #:convert-from-foreign #:convert-to-foreign #:defbitfield #:defcallback #:defcenum #:defcfun #:defcstruct #:defctype #:defcunion
+   #:defcvar #:define-c-struct-wrapper #:define-foreign-library #:define-foreign-type #:define-parse-method #:defcfun-helper-forms
+   #:expand-from-foreign #:expand-to-foreign #:foreign-alloc #:foreign-bitfield-symbols #:foreign-bitfield-value
+   #:foreign-enum-keyword #:foreign-enum-value #:foreign-free #:foreign-funcall #:foreign-funcall-pointer
+   #:foreign-library #:foreign-library-loaded-p #:foreign-not-implemented #:foreign-pointer #:foreign-slot-names
+   #:foreign-slot-offset #:foreign-slot-pointer #:foreign-slot-value #:foreign-string-alloc #:foreign-string-free
+   #:foreign-string-to-lisp #:foreign-symbol-pointer #:foreign-type-alignment #:foreign-type-size #:free-converted-object
+   #:free-translated-object #:get-callback #:get-var-pointer #:inc-pointer #:lisp-string-to-foreign #:list-foreign-libraries
+   #:load-foreign-library #:load-foreign-library-error #:make-pointer #:make-shareable-byte-vector #:mem-aptr #:mem-aref #:mem-ref
+   #:null-pointer #:null-pointer-p #:pointer-address #:pointer-eq #:pointerp #:translate-camelcase-name #:translate-from-foreign
+   #:translate-name-from-foreign #:translate-name-to-foreign #:translate-to-foreign #:use-foreign-library #:with-foreign-array
+   #:with-foreign-object #:with-foreign-objects #:with-foreign-pointer #:with-foreign-pointer-as-string #:with-foreign-slots
+   #:with-foreign-string #:with-foreign-strings #:with-pointer-to-vector-data))
+
+(in-package #:cffi)
+
+(defvar *foreign-library-directories* '())
+(defvar *darwin-framework-directories* '())
+(defvar *default-foreign-encoding* :utf-8)
+
+(define-condition foreign-not-implemented (error)
+  ((operation :initarg :operation :reader operation) (name :initarg :name :initform nil :reader name))
+  (:report (lambda (condition stream)
+             (format stream "~A cannot be called: cramhy calls no functions of C~@[ (here ~S)~].~%Use the Python module for that ~
+                             library: (py:import name), then (name:function ...)."
+                     (operation condition) (name condition)))))
+
+(define-condition load-foreign-library-error (simple-error) ())
+
+(defun refuse (operation &optional name)
+  "The error that OPERATION, a Lisp function for the C function NAME or one of CFFI, cannot be done."
+  (error 'foreign-not-implemented :operation operation :name name))
+
+;;; ------------------------------------------------------------------------------------- what is declared, and does nothing
+
+(defclass foreign-library ()
+  ((name :initarg :name :reader foreign-library-name)))
+
+(defvar *libraries* (make-hash-table :test 'eq))
+
+(defmacro define-foreign-library (name-and-options &body clauses)
+  (declare (ignore clauses))
+  (let ((name (if (consp name-and-options) (first name-and-options) name-and-options)))
+    `(progn (setf (gethash ',name *libraries*) (make-instance 'foreign-library :name ',name))
+            ',name)))
+
+(defmacro use-foreign-library (library)
+  "Nothing is loaded; the functions of the library say so when they are called."
+  (declare (ignore library))
+  nil)
+
+(defun load-foreign-library (library &key search-path)
+  "As USE-FOREIGN-LIBRARY."
+  (declare (ignore search-path))
+  (if (symbolp library) (gethash library *libraries*) (make-instance 'foreign-library :name library)))
+
+(defun close-foreign-library (library)
+  (declare (ignore library))
+  nil)
+
+(defun foreign-library-loaded-p (library)
+  (declare (ignore library))
+  nil)
+
+(defun list-foreign-libraries (&key loaded-only type)
+  (declare (ignore type))
+  (unless loaded-only
+    (loop for library being the hash-values of *libraries* collect library)))
+
+(defmacro defctype (name base-type &optional documentation)
+  (declare (ignore base-type documentation))
+  `',name)
+
+(defmacro defcstruct (name-and-options &body fields)
+  (declare (ignore fields))
+  `',(if (consp name-and-options) (first name-and-options) name-and-options))
+
+(defmacro defcunion (name-and-options &body fields)
+  `(defcstruct ,name-and-options ,@fields))
+
+(defmacro define-c-struct-wrapper (&rest parts)
+  (declare (ignore parts))
+  nil)
+
+(defmacro define-foreign-type (name superclasses slots &rest options)
+  `(defclass ,name ,superclasses ,slots
+     ,@(remove-if (lambda (option) (member (first option) '(:actual-type :simple-parser))) options)))
+
+(defmacro define-parse-method (name lambda-list &body body)
+  (declare (ignore lambda-list body))
+  `',name)
+
+(defgeneric translate-to-foreign (value type))
+(defgeneric translate-from-foreign (value type))
+(defgeneric free-translated-object (value type param))
+(defgeneric expand-to-foreign (value type))
+(defgeneric expand-from-foreign (value type))
+(defgeneric translate-name-to-foreign (lisp-name package &optional varp))
+(defgeneric translate-name-from-foreign (foreign-name package &optional varp))
+
+(defmethod translate-name-to-foreign (lisp-name package &optional varp)
+  (declare (ignore package))
+  (let ((name (substitute #\_ #\- (string-downcase (symbol-name lisp-name)))))
+    (if varp (string-trim '(#\*) name) name)))
+
+(defmethod translate-name-from-foreign (foreign-name package &optional varp)
+  (let ((name (substitute #\- #\_ (string-upcase foreign-name))))
+    (intern (if varp (concatenate 'string "*" name "*") name) package)))
+
+;;; ----------------------------------------------------------------------------------------------------- enums, bit fields
+
+(defvar *enums* (make-hash-table :test 'eq) "Name of an enum or bit field -> list of (keyword . value).")
+
+(defmacro defcenum (name-and-options &body entries)
+  (let ((name (if (consp name-and-options) (first name-and-options) name-and-options)) (next 0) (found '()))
+    (dolist (entry (remove-if #'stringp entries))
+      (let ((key (if (consp entry) (first entry) entry)))
+        (when (and (consp entry) (rest entry))
+          (setf next (eval (second entry))))
+        (push (cons key next) found)
+        (incf next)))
+    `(progn (setf (gethash ',name *enums*) ',(nreverse found)) ',name)))
+
+(defmacro defbitfield (name-and-options &body masks)
+  (let ((name (if (consp name-and-options) (first name-and-options) name-and-options)) (next 1) (found '()))
+    (dolist (mask (remove-if #'stringp masks))
+      (let ((key (if (consp mask) (first mask) mask)))
+        (when (and (consp mask) (rest mask))
+          (setf next (eval (second mask))))
+        (push (cons key next) found)
+        (setf next (ash 1 (integer-length next)))))
+    `(progn (setf (gethash ',name *enums*) ',(nreverse found)) ',name)))
+
+(defun entries-of (type)
+  (or (gethash type *enums*) (error "There is no foreign enum or bit field ~S." type)))
+
+(defun foreign-enum-value (type keyword &key (errorp t))
+  (or (cdr (assoc keyword (entries-of type)))
+      (when errorp (error "~S is not defined as a keyword for enum type ~S." keyword type))))
+
+(defun foreign-enum-keyword (type value &key (errorp t))
+  (or (car (rassoc value (entries-of type)))
+      (when errorp (error "~S is not defined as a value for enum type ~S." value type))))
+
+(defun foreign-bitfield-value (type symbols)
+  (reduce #'logior symbols :key (lambda (symbol) (foreign-enum-value type symbol)) :initial-value 0))
+
+(defun foreign-bitfield-symbols (type value)
+  (loop for (symbol . mask) in (entries-of type)
+        when (= mask (logand mask value)) collect symbol))
+
+;;; ---------------------------------------------------------------------------------------- functions, variables, callbacks
+
+(defun names-of (name-and-options)
+  "The Lisp name and the C name of a declaration: NAME, \"name\", (\"name\" NAME options...) or (NAME \"name\")."
+  (let* ((parts (if (consp name-and-options) name-and-options (list name-and-options)))
+         (c-name (find-if #'stringp parts))
+         (lisp-name (find-if (lambda (part) (and part (symbolp part) (not (keywordp part)))) parts)))
+    (values (or lisp-name (translate-name-from-foreign c-name *package*))
+            (or c-name (translate-name-to-foreign lisp-name *package*)))))
+
+(defmacro defcfun (name-and-options return-type &body arguments)
+  "Define a function for a function of C. When it is called, it is refused."
+  (declare (ignore return-type))
+  (multiple-value-bind (lisp-name c-name) (names-of name-and-options)
+    (let* ((parameters (loop for argument in arguments
+                             when (consp argument) collect (first argument)))
+           (documentation (when (stringp (first arguments)) (list (first arguments)))))
+      `(defun ,lisp-name (,@parameters ,@(when (member '&rest arguments) '(&rest others)))
+         ,@documentation
+         (declare (ignore ,@parameters ,@(when (member '&rest arguments) '(others))))
+         (refuse ',lisp-name ,c-name)))))
+
+(defmacro defcvar (name-and-options type &optional documentation)
+  (declare (ignore type documentation))
+  (multiple-value-bind (lisp-name c-name) (names-of name-and-options)
+    `(progn (define-symbol-macro ,lisp-name (refuse ',lisp-name ,c-name))
+            ',lisp-name)))
+
+(defmacro defcallback (name-and-options return-type arguments &body body)
+  (declare (ignore return-type arguments body))
+  `',(if (consp name-and-options) (first name-and-options) name-and-options))
+
+(defmacro foreign-funcall (name-and-options &rest arguments)
+  (declare (ignore arguments))
+  `(refuse 'foreign-funcall ,(if (consp name-and-options) (first name-and-options) name-and-options)))
+
+(defmacro foreign-funcall-pointer (pointer options &rest arguments)
+  (declare (ignore pointer options arguments))
+  '(refuse 'foreign-funcall-pointer))
+
+(defmacro callback (name)
+  `(refuse 'callback ',name))
+
+;;; ------------------------------------------------------------------------------------------------------------ memory
+
+(defun pointerp (object)
+  "Nothing is a foreign pointer."
+  (declare (ignore object))
+  nil)
+
+(macrolet ((refused (&rest names)
+             `(progn ,@(loop for name in names
+                             collect `(defun ,name (&rest arguments)
+                                        "Refused: there is no foreign memory."
+                                        (declare (ignore arguments))
+                                        (refuse ',name))))))
+  (refused convert-from-foreign convert-to-foreign free-converted-object foreign-alloc foreign-free foreign-slot-names
+           foreign-slot-offset foreign-slot-pointer foreign-slot-value foreign-string-alloc foreign-string-free
+           foreign-string-to-lisp foreign-symbol-pointer foreign-type-alignment foreign-type-size get-callback get-var-pointer
+           inc-pointer lisp-string-to-foreign make-pointer make-shareable-byte-vector mem-aptr mem-aref mem-ref null-pointer
+           null-pointer-p pointer-address pointer-eq))
+
+(defun refused-body (operator variables body)
+  "A form that refuses OPERATOR, and in which the compiler sees the BODY and its VARIABLES."
+  `(let ,variables
+     (declare (ignorable ,@variables))
+     (refuse ',operator)
+     ,@body))
+
+(defun first-names (spec)
+  "The variables that SPEC, (variable ...) or ((variable ...) ...), binds."
+  (if (consp (first spec)) (mapcar #'first-name (first spec)) (list (first spec))))
+
+(defun first-name (part)
+  (if (consp part) (first (last part)) part))
+
+(defmacro with-foreign-object ((variable type &optional count) &body body)
+  (declare (ignore type count))
+  (refused-body 'with-foreign-object (list variable) body))
+
+(defmacro with-foreign-objects (specs &body body)
+  (refused-body 'with-foreign-objects (mapcar #'first specs) body))
+
+(defmacro with-foreign-pointer ((variable size &optional size-variable) &body body)
+  (declare (ignore size))
+  (refused-body 'with-foreign-pointer (remove nil (list variable size-variable)) body))
+
+(defmacro with-foreign-pointer-as-string ((spec &rest options) &body body)
+  (declare (ignore options))
+  (refused-body 'with-foreign-pointer-as-string (first-names (if (consp spec) spec (list spec))) body))
+
+(defmacro with-foreign-slots ((slots pointer type) &body body)
+  (declare (ignore pointer type))
+  (refused-body 'with-foreign-slots (mapcar #'first-name slots) body))
+
+(defmacro with-foreign-string ((spec string &rest options) &body body)
+  (declare (ignore string options))
+  (refused-body 'with-foreign-string (if (consp spec) spec (list spec)) body))
+
+(defmacro with-foreign-strings (specs &body body)
+  (refused-body 'with-foreign-strings (mapcan (lambda (spec) (if (consp (first spec)) (copy-list (first spec)) (list (first spec)))) specs)
+                body))
+
+(defmacro with-foreign-array ((variable array type) &body body)
+  (declare (ignore array type))
+  (refused-body 'with-foreign-array (list variable) body))
+
+(defmacro with-pointer-to-vector-data ((variable vector) &body body)
+  (declare (ignore vector))
+  (refused-body 'with-pointer-to-vector-data (list variable) body))
+
+(macrolet ((refused (&rest names)
+             `(progn ,@(loop for name in names
+                             collect `(defun (setf ,name) (value &rest arguments)
+                                        (declare (ignore arguments value))
+                                        (refuse '(setf ,name)))))))
+  (refused mem-aref mem-ref foreign-slot-value))

@@ -1,0 +1,2 @@
+(defpackage #:cram-cup-counter-test
+  (:use #:common-lisp #:cram-cup-counter #:lisp-unit))

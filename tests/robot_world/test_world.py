@@ -1,0 +1,179 @@
+"""The world: what is let go falls, what is held goes along, and a copy goes its own way."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cramhy_runtime.robot_world import vision
+from cramhy_runtime.robot_world.descriptions import Frame, Shape, turned
+from cramhy_runtime.robot_world.placements import Placement, of_pose, placement
+from cramhy_runtime.robot_world.world import World, WorldError
+
+BOTTLE = (Shape("cylinder", (0.0357, 0.1814), Frame((0.0, 0.0, -0.01))),)
+BOX = (Shape("box", (0.1, 0.1, 0.2)),)
+TABLE, ISLAND = (-2.0, -0.9, 0.86), (-0.8, 2.0, 0.9)
+
+
+def test_bottles_drop_onto_table_and_island(world):
+    world.add_item("on-table", BOTTLE, placement(TABLE))
+    world.add_item("in-island", BOTTLE, placement(ISLAND))  # its bottom begins 6 cm inside, as in the tutorials
+    world.simulate(100)
+    assert world.item("on-table").placement.position == pytest.approx((-2.0, -0.9, 0.823), abs=2e-3)
+    assert world.item("in-island").placement.position == pytest.approx((-0.8, 2.0, 0.959), abs=2e-3)
+    assert [thing.name for thing in world.touching("on-table")] == ["kitchen"]
+    assert world.stable("on-table")
+
+
+def test_what_nothing_holds_up_falls_to_the_floor(world):
+    world.add_item("bottle", BOTTLE, placement((-2.0, 0.0, 1.0)))
+    assert not world.stable("bottle")
+    world.simulate(10)
+    lowest, _ = world.bounds("bottle")
+    assert lowest[2] == pytest.approx(0.0, abs=2e-3)
+    assert world.contacts("bottle")[0][1] is None
+
+
+def test_a_thing_without_mass_hangs_where_it_is(world):
+    world.add_item("sign", BOX, placement((-2.0, 0.0, 1.0)), mass=0)
+    world.simulate(10)
+    assert world.item("sign").placement.position == pytest.approx((-2.0, 0.0, 1.0))
+
+
+def test_what_is_held_goes_along_and_falls_when_it_is_let_go(world):
+    hand = "r_wrist_roll_link"
+    world.add_item("bottle", BOTTLE, world.link("pr2", hand).moved(0.2))
+    world.attach("pr2", "bottle", hand)
+    before = world.link("pr2", hand).inverse() @ world.item("bottle").placement
+    for change in (
+        lambda: world.put("pr2", placement((-0.5, 0.5, 0.0), turned(0, 0, 1.0))),
+        lambda: world.bend("pr2", {"torso_lift_joint": 0.3}),
+        lambda: world.bend("pr2", {"r_shoulder_pan_joint": -0.7, "r_elbow_flex_joint": -1.0}),
+        lambda: world.simulate(5),
+    ):
+        change()
+        assert (world.link("pr2", hand).inverse() @ world.item("bottle").placement).near(before, 1e-9, 1e-6)
+    assert world.holders("bottle") == [(world.machine("pr2"), hand)]
+    world.detach("pr2", "bottle")
+    height = world.item("bottle").placement.position[2]
+    world.simulate(10)
+    assert world.item("bottle").placement.position[2] < height - 0.3
+    assert world.holders("bottle") == []
+
+
+def test_the_firm_grip_decides_where_an_item_goes(world):
+    right, left = "r_wrist_roll_link", "l_wrist_roll_link"
+    world.add_item("tray", BOX, world.link("pr2", right).moved(0.2))
+    world.attach("pr2", "tray", right)
+    world.attach("pr2", "tray", left, loose=True)
+    before = world.link("pr2", right).inverse() @ world.item("tray").placement
+    world.bend("pr2", {"l_elbow_flex_joint": -1.5})
+    assert (world.link("pr2", right).inverse() @ world.item("tray").placement).near(before, 1e-9, 1e-6)
+    world.detach("pr2", "tray", right)
+    assert world.holders("tray") == [(world.machine("pr2"), left)]
+
+
+def test_robots_touch_furniture_but_neither_floor_nor_themselves(world):
+    world.put("pr2", placement((0.0, 0.5, 0.0)))
+    assert world.contacts("pr2") == []
+    world.put("pr2", placement((-0.8, 2.0, 0.0)))
+    assert {other.thing.name for _, other in world.contacts("pr2")} == {"kitchen"}
+
+
+def test_a_copy_goes_its_own_way(world):
+    world.add_item("bottle", BOTTLE, placement(TABLE))
+    world.attach("pr2", "bottle", "r_wrist_roll_link")
+    copied = world.copy()
+    copied.detach("pr2", "bottle")
+    copied.put("bottle", placement((0.0, 0.0, 1.0)))
+    copied.bend("pr2", {"torso_lift_joint": 0.3})
+    copied.remove("kitchen")
+    assert world.item("bottle").placement.position == pytest.approx(TABLE)
+    assert world.machine("pr2").joint("torso_lift_joint") == 0.0
+    assert world.holders("bottle")
+    assert "kitchen" in world.things
+
+
+def test_the_same_falls_are_the_same_to_the_bit(world):
+    world.add_item("bottle", BOTTLE, placement(TABLE, turned(0.3, 0.2, 0.1)))
+    other = world.copy()
+    world.simulate(5)
+    other.simulate(5)
+    assert (world.item("bottle").placement.position == other.item("bottle").placement.position).all()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda w: w.add_item("kitchen", BOX), "a thing named kitchen already"),
+        (lambda w: w.add_item("floor", BOX), "a thing named floor already"),
+        (lambda w: w.put("cup", placement()), "no thing named cup; there are kitchen, pr2"),
+        (lambda w: w.item("pr2"), "has joints"),
+        (lambda w: w.bend("pr2", {"tail_joint": 1.0}), "no joint tail_joint"),
+        (lambda w: w.link("pr2", "tail_link"), "no link tail_link"),
+        (lambda w: w.remove("cup"), "no thing named cup"),
+        (lambda w: w.attach("pr2", "kitchen", "r_wrist_roll_link"), "an item was expected"),
+    ],
+)
+def test_what_the_world_cannot_do_says_why(world, call, message):
+    with pytest.raises(WorldError, match=message):
+        call(world)
+
+
+# ------------------------------------------------------------------------------------------------------------------ the camera
+
+CAMERA = placement((0.0, 0.0, 1.0), (0.5, -0.5, 0.5, -0.5))  # looks along the x axis of the world
+
+
+def scenery(*others):
+    world = World()
+    world.add_item("box", BOX, placement((2.0, 0.0, 1.0)), mass=0)
+    for number, place in enumerate(others):
+        world.add_item(f"other {number}", BOX, placement(place), mass=0)
+    return world
+
+
+@pytest.mark.parametrize(
+    ("others", "part", "hiding"),
+    [
+        ([], 1.0, []),
+        ([(1.0, 0.0, 1.0)], 0.0, ["other 0"]),
+        ([(1.0, 0.05, 1.0)], 0.5, ["other 0"]),
+        ([(3.0, 0.0, 1.0)], 1.0, []),
+        ([(1.0, 0.5, 1.0)], 1.0, []),
+    ],
+)
+def test_what_stands_before_an_item_hides_it(others, part, hiding):
+    world = scenery(*others)
+    seen, hidden_by = vision.seen(world.scene, CAMERA, world.item("box"))
+    assert seen == pytest.approx(part, abs=0.08)
+    assert [thing.name for thing in hidden_by] == hiding
+
+
+@pytest.mark.parametrize("place", [(-2.0, 0.0, 1.0), (2.0, 2.0, 1.0), (2.0, 0.0, 2.5), (12.0, 0.0, 1.0)])
+def test_what_is_not_in_the_picture_is_not_seen(place):
+    world = scenery()
+    world.put("box", placement(place))
+    assert vision.seen(world.scene, CAMERA, world.item("box")) == (0.0, [])
+
+
+# ------------------------------------------------------------------------------------------------------------------ placements
+
+numbers = st.floats(-5, 5)
+turns = st.builds(turned, st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3))
+placements = st.builds(placement, st.tuples(numbers, numbers, numbers), turns)
+
+
+@settings(max_examples=50)
+@given(placements, placements)
+def test_placements_multiply_as_transforms_do(one, other):
+    assert (one @ one.inverse()).near(placement(), 1e-9, 1e-6)
+    assert ((one @ other).inverse()).near(other.inverse() @ one.inverse(), 1e-9, 1e-6)
+    assert of_pose(one.pose()).near(one, 1e-9, 1e-6)
+
+
+def test_a_rotation_without_length_is_refused():
+    with pytest.raises(ValueError, match="has none"):
+        placement((0, 0, 0), (0, 0, 0, 0))
+    assert isinstance(placement((0, 0, 0), (2, 0, 0, 0)), Placement)
+    assert np.linalg.norm(placement((0, 0, 0), (2, 0, 0, 1)).rotation) == pytest.approx(1.0)
