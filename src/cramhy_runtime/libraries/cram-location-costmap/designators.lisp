@@ -28,7 +28,7 @@
             (costmap-samples costmap))
         (no-cost-functions-registered () nil)
         (cram-math:invalid-probability-distribution ()
-          (ros-warn (location-costmap) "The costmap of ~A is 0 everywhere: no place fits all its cost functions." designator)
+          (ros-warn (location-costmap) "No place fits ~A. ~A" designator (%why-empty costmap))
           nil)))))
 
 (defun in-fixed-frame (pose)

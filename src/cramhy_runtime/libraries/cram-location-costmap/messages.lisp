@@ -65,7 +65,7 @@ within PADDING metres of such a cell counts, too."
 
 (defun marker (type id scale &rest more)
   "A visualization_msgs/Marker of a TYPE (a symbol of that message), red, SCALE metres large."
-  (apply #'modify-message-copy-with
+  (apply #'with-slots-set
          (make-message "visualization_msgs/Marker"
                        (frame_id header) (fixed-frame)
                        (stamp header) (ros-time)
@@ -78,7 +78,7 @@ within PADDING metres of such a cell counts, too."
                        (r color) 1.0 (a color) 1.0)
          more))
 
-(defun modify-message-copy-with (message &rest fields)
+(defun with-slots-set (message &rest fields)
   "MESSAGE with FIELDS (slots and values in turn) set."
   (loop for (slot value) on fields by #'cddr do (setf (slot-value message slot) value))
   message)
@@ -88,9 +88,6 @@ within PADDING metres of such a cell counts, too."
   (when (eq (node-status) :running)
     (publish (advertise topic type) marker))
   marker)
-
-(defun pose-msg (pose)
-  (to-msg pose))
 
 (defun publish-location-costmap (map &key (frame-id (fixed-frame)) (threshold 0.0005) (z *z-padding*))
   "Show a costmap on the topic visualization_marker_array: a coloured square for each cell whose value is at least THRESHOLD times

@@ -44,7 +44,7 @@
         :unknown
         (let* ((pose (in-fixed-frame pose))
                (place (cl-transforms:origin pose))
-               (points (mapcar #'place-of targets)))
+               (points (mapcar #'place-of (cut:force-ll targets))))
           (if (and (every (lambda (point)
                             (<= (- minimal-distance 1d-6) (distance-on-floor place point) (+ distance 1d-6)))
                           points)

@@ -28,7 +28,14 @@ class NoCostFunctions(Exception):
 
 
 class NothingPossible(Exception):
-    """The product of the cost functions is 0 everywhere, so that no place can be drawn."""
+    """The product of the cost functions is 0 everywhere, so that no place can be drawn.
+
+    ``names``: of the functions that were multiplied; the last one left nothing of what the others allow.
+    """
+
+    def __init__(self, names: list[Any]):
+        super().__init__(names)
+        self.names = names
 
 
 class CostmapGenerator:
@@ -143,12 +150,13 @@ class LocationCostmap(GridMetadata):
         if self.computed is None:
             if not self.generators:
                 raise NoCostFunctions
-            matrix = np.ones((self.rows, self.columns))
+            matrix, names = np.ones((self.rows, self.columns)), []
             for generator in self.ordered():
                 matrix = self.run(generator, matrix, self)
-            total = matrix.sum()
-            if not total > 0:
-                raise NothingPossible
+                names.append(generator.name)
+                total = matrix.sum()
+                if not total > 0:
+                    raise NothingPossible(names)
             self.computed = matrix / total
         return self.computed
 

@@ -22,12 +22,14 @@ MOST_CELLS = 16_000_000
 """Of a grid: a map of 200 m with cells of 5 cm. What asks for more has metres and centimetres exchanged."""
 _SLACK = 1e-6
 """Of a cell: a place that arithmetic moved below the edge of its cell by less than this is still in the cell."""
-ensure_package(PACKAGE)
 
 
 def metres(value: Any, parameter: str) -> float:
     """The real ``value`` given for ``parameter`` as a Python float; anything else is a type error."""
-    return float(value) if is_real(value) else wrong_type(value, "REAL", parameter, "The sizes of a grid are metres.", PACKAGE)
+    if is_real(value):
+        return float(value)
+    ensure_package(PACKAGE)  # that of the parameter's name in the text
+    return wrong_type(value, "REAL", parameter, "The sizes of a grid are metres.", PACKAGE)
 
 
 def array_index(coordinate: float, resolution: float, origin: float) -> int:

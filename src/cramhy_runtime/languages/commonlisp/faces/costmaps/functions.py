@@ -14,6 +14,7 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list, list_from, 
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.robot_world.costmaps import costmap, costs, generators, grids, spread
 from cramhy_runtime.robot_world.costmaps.arrays import np
 from cramhy_runtime.robot_world.costmaps.grids import PACKAGE
@@ -329,16 +330,21 @@ def generate_by_function(generator: Any, map: Any, metadata: Any) -> Any:
     return lisp_matrix(generator.generate(numpy_matrix(map), _instance(metadata, grids.GridMetadata, "METADATA")))
 
 
+def _generic(name: str) -> Any:
+    """A generic function of the Lisp half of the library: that of the present image, since each loads the library for itself."""
+    return sym(f"{PACKAGE}::{name}").function
+
+
 def score(name: Any) -> Any:
     """What the generic function ``costmap-generator-name->score`` gives for a name."""
-    return _real(one(SCORE.function(name)), "SCORE")
+    return _real(one(_generic("COSTMAP-GENERATOR-NAME->SCORE")(name)), "SCORE")
 
 
 def run(generator: Any, matrix: Any, metadata: Any) -> Any:
     """Let a generator multiply a matrix: CRAM's own for functions at once, others by the generic function ``generate``."""
     if generator.__class__ is costmap.FunctionCostmapGenerator:
         return generator.generate(matrix, metadata)
-    result = numpy_matrix(one(GENERATE.function(generator, lisp_matrix(matrix), metadata)))
+    result = numpy_matrix(one(_generic("GENERATE")(generator, lisp_matrix(matrix), metadata)))
     if result.shape != matrix.shape:
         return error("The generator ~s gave a matrix of another size: ~s instead of ~s.", generator.name, *map_texts(result, matrix))
     return result
@@ -357,7 +363,6 @@ def map_texts(*arrays: Any) -> list[str]:
     return [" x ".join(map(str, array.shape)) for array in arrays]
 
 
-SCORE, GENERATE = sym(f"{PACKAGE}::COSTMAP-GENERATOR-NAME->SCORE"), sym(f"{PACKAGE}::GENERATE")
 NO_FUNCTIONS = f"{PACKAGE}::NO-COST-FUNCTIONS-REGISTERED"
 
 
@@ -368,12 +373,26 @@ def cost_array(map: Any) -> Any:
         return map.values()
     except costmap.NoCostFunctions:
         return _signal(NO_FUNCTIONS)
-    except costmap.NothingPossible:
-        return _signal("CRAM-MATH::INVALID-PROBABILITY-DISTRIBUTION")
+    except costmap.NothingPossible as problem:
+        map.views["why empty"] = why = _why_empty(problem.names)
+        return _signal("CRAM-MATH::INVALID-PROBABILITY-DISTRIBUTION", why)
 
 
-def _signal(name: str) -> Any:
-    return error(make_instance(sym(name)))
+def _signal(name: str, hint: str | None = None) -> Any:
+    return error(make_instance(sym(name)), hint=hint)
+
+
+def _why_empty(names: list[Any]) -> str:
+    """A sentence that tells which cost function left nothing."""
+    last, *others = [prin1_to_string(name).lower() for name in reversed(names)]
+    if not others:
+        return f"The cost function {last} is 0 in every cell."
+    return f"The cost function {last} is 0 wherever {' and '.join(reversed(others))} {'is' if len(others) == 1 else 'are'} not."
+
+
+def why_empty(map: Any) -> Any:
+    """Which cost function left nothing of a costmap whose values were found to be 0 everywhere: a sentence."""
+    return _costmap(map).views.get("why empty")
 
 
 def get_cost_map(map: Any) -> Any:
@@ -455,19 +474,17 @@ def costmap_samples(map: Any, *, sampling_function: Any = None) -> Any:
     """The endless lazy list of poses drawn from the costmap; each drawn place comes with all its orientations."""
     cost_array(map)
 
+    show = _generic("ON-VISUALIZE-COSTMAP-SAMPLE")
+
     def poses():
         while True:
             place = gen_costmap_sample_point(map, sampling_function=sampling_function)
-            if VISUALIZE_SAMPLE.function is not None:
-                VISUALIZE_SAMPLE.function(place)
+            show(place)
             x, y, _ = place.components
             for orientation in python_list(orientations_at(map, x, y)):
                 yield Pose(place, orientation)
 
     return from_iterator(poses())
-
-
-VISUALIZE_SAMPLE = sym(f"{PACKAGE}::ON-VISUALIZE-COSTMAP-SAMPLE")
 
 
 def check_metadata(width: Any, height: Any, origin_x: Any, origin_y: Any, resolution: Any) -> Any:
