@@ -162,14 +162,8 @@ def test_values(lisp, form):
 
 
 ERRORS = {
-    "(get-cost-map (a-map))": (
-        "error",
-        "The costmap has no cost functions. Register one: (register-cost-function costmap function name).",
-    ),
-    "(get-cost-map (a-map (constant 0)))": (
-        "error",
-        "The probabilities are 0 everywhere, so that nothing can be drawn from them.",
-    ),
+    "(get-cost-map (a-map))": ("error", "The costmap has no cost functions. Register one: (register-cost-function costmap function name)."),
+    "(get-cost-map (a-map (constant 0)))": ("error", "The probabilities are 0 everywhere, so that nothing can be drawn from them."),
     '(get-cost-map (a-map (constant "a")))': (
         "simple-error",
         'The cost function 100 gave "a" at (0.0d0 0.0d0). A number from 0 to 1 is wanted.',

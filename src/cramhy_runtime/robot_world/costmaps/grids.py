@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from cramhy_runtime.ground.condition_types import TypeError_
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import ensure_package
-from cramhy_runtime.transforms.coercion import wrong_type
 
 from .arrays import np
 
@@ -28,8 +27,9 @@ def metres(value: Any, parameter: str) -> float:
     """The real ``value`` given for ``parameter`` as a Python float; anything else is a type error."""
     if is_real(value):
         return float(value)
-    ensure_package(PACKAGE)  # that of the parameter's name in the text
-    return wrong_type(value, "REAL", parameter, "The sizes of a grid are metres.", PACKAGE)
+    condition = TypeError_(value, "REAL")
+    condition.context = f"\nwhen binding {PACKAGE}::{parameter}"  # as text: the package of Lisp is not loaded for it
+    return error(condition, hint="The sizes of a grid are metres.")
 
 
 def array_index(coordinate: float, resolution: float, origin: float) -> int:
