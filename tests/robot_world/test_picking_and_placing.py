@@ -52,7 +52,7 @@ def poses(*heights):
         ((":type :reaching", f":left-poses {poses(1)}"), "(MOVE-TCP 1.0 NIL NIL)"),
         ((":type :lifting", f":right-poses {poses(1)}"), "(MOVE-TCP NIL 1.0 :ALLOW-HAND)"),
         ((":type :putting", f":left-poses {poses(1)}", f":right-poses {poses(2)}"), "(MOVE-TCP 1.0 2.0 :ALLOW-ALL)"),
-        ((":type :retracting", f":left-poses ,(pose 0 0 1)"), "(MOVE-TCP 1.0 NIL NIL)"),
+        ((":type :retracting", ":left-poses ,(pose 0 0 1)"), "(MOVE-TCP 1.0 NIL NIL)"),
     ],
 )
 def test_an_action_of_one_motion(robot, told, entries, commands):

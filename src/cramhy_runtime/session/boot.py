@@ -53,7 +53,9 @@ def boot():
         ros_load.define_faces()
         asdf.define_faces()
         uiop.define_faces()
-        define_face("CRAMHY", functions={"within-limit": unit_tests.within_limit, "time": time_setting.time})
+        define_face(
+            "CRAMHY", functions={"within-limit": unit_tests.within_limit, "time": time_setting.time, "define-costmaps": define_costmaps}
+        )
     importer.install()
     kernel.install_reporter(advice.LispReporter())
     evaluator.PACKAGE.value = COMMON_LISP_USER
@@ -77,6 +79,17 @@ def define_robot_world():
     from cramhy_runtime.languages.commonlisp.faces.robot_world import package
 
     package.define_faces()
+
+
+def define_costmaps():
+    """Name what Python computes for the library ``cram-location-costmap``. It takes numpy, so it is done when that is loaded."""
+    from cramhy_runtime.ground.conditions import error
+
+    try:
+        from cramhy_runtime.languages.commonlisp.faces.costmaps import package
+    except ImportError as problem:
+        return error("~a", str(problem))
+    return package.define()
 
 
 def define_tf():

@@ -11,7 +11,8 @@
            #:double-matrix #:make-double-matrix #:make-identity-matrix #:copy-double-matrix #:height #:width #:map-double-matrix
            #:double-matrix-sum #:double-matrix-difference #:scale-double-matrix #:double-matrix-product #:double-matrix-transpose
            #:double-matrix-determinant #:invert-double-matrix #:normalize-double-matrix
-           #:sample-from-distribution-matrix #:hsv->rgb #:rgb->hsv))
+           #:sample-from-distribution-matrix #:hsv->rgb #:rgb->hsv
+           #:invalid-probability-distribution))
 
 (in-package #:cram-math)
 
@@ -194,7 +195,8 @@
     (average (map 'list (lambda (number) (square (- number middle))) numbers))))
 
 (defun standard-deviation (numbers)
-  (sqrt (float (variance numbers) 1d0)))
+  (sqrt (float (variance numbers) 1d0)
+           #:invalid-probability-distribution))
 
 (defun covariance (samples)
   "The matrix of covariances of SAMPLES, a list of vectors of one length."

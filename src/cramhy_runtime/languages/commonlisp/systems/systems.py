@@ -155,6 +155,13 @@ LIBRARY_PACKAGES = {
     "KR-PP": "cram-knowrob-pick-place",
     "CRAM-SIMPLE-ACTIONLIB-CLIENT": "cram-simple-actionlib-client",
     "ACTIONLIB-CLIENT": "cram-simple-actionlib-client",
+    "CRAM-LOCATION-COSTMAP": "cram-location-costmap",
+    "LOCATION-COSTMAP": "cram-location-costmap",
+    "COSTMAP": "cram-location-costmap",
+    "CRAM-ROBOT-POSE-GUASSIAN-COSTMAP": "cram-robot-pose-gaussian-costmap",
+    "GAUSSIAN-COSTMAP": "cram-robot-pose-gaussian-costmap",
+    "CRAM-OCCUPANCY-GRID-COSTMAP": "cram-occupancy-grid-costmap",
+    "OCCUPANCY-GRID-COSTMAP": "cram-occupancy-grid-costmap",
 }
 """Their packages: the library is loaded when its package is first named."""
 

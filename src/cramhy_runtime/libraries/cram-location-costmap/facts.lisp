@@ -1,0 +1,115 @@
+;;;; Costmaps in Prolog: settings that an application gives as facts, and the predicates that rules about designators use.
+
+(in-package #:cram-location-costmap)
+
+(def-fact-group costmap-settings (costmap-size costmap-origin costmap-resolution costmap-padding costmap-manipulation-padding
+                                  costmap-in-reach-distance costmap-reach-minimal-distance visibility-costmap-size
+                                  orientation-samples orientation-sample-step)
+  (<- (costmap-size ?width ?height) (fail))
+  (<- (costmap-origin ?x ?y) (fail))
+  (<- (costmap-resolution ?metres) (fail))
+  (<- (costmap-padding ?metres) (fail))
+  (<- (costmap-manipulation-padding ?metres) (fail))
+  (<- (costmap-in-reach-distance ?metres) (fail))
+  (<- (costmap-reach-minimal-distance ?metres) (fail))
+  (<- (visibility-costmap-size ?metres) (fail))
+  (<- (orientation-samples ?count) (fail))
+  (<- (orientation-sample-step ?radians) (fail)))
+
+(def-fact-group location-costmap-designators (desig-costmap)
+  (<- (desig-costmap ?designator ?costmap) (fail)))
+
+(defun costmap-metadata ()
+  "The initargs of a costmap by the facts of the application: (:width w :height h :origin-x x :origin-y y :resolution r)."
+  (flet ((fact (name &rest variables)
+           (let ((solution (lazy-car (prolog (cons name variables)))))
+             (unless solution
+               (error "No fact tells the ~(~A~). An application says it in a fact group: ~
+                       (def-fact-group costmap-metadata (costmap-size costmap-origin costmap-resolution) ~
+                       (<- (costmap-size 12 12)) (<- (costmap-origin -6 -6)) (<- (costmap-resolution 0.05)))"
+                      name))
+             (mapcar (lambda (variable) (var-value variable solution)) variables))))
+    (destructuring-bind (width height) (fact 'costmap-size '?width '?height)
+      (destructuring-bind (origin-x origin-y) (fact 'costmap-origin '?x '?y)
+        (%check-metadata width height origin-x origin-y (first (fact 'costmap-resolution '?resolution)))))))
+
+(defun new-costmap ()
+  (apply #'make-instance 'location-costmap (costmap-metadata)))
+
+(defun made-by (form)
+  "What FORM, a function's name with its arguments, which are not evaluated, gives."
+  (apply (first form) (rest form)))
+
+(defun add-function (name form costmap)
+  (register-cost-function costmap (made-by form) name))
+
+(defun add-heightmap (map costmap)
+  (register-height-generator costmap (lambda (x y)
+                                       (when (in-grid-p map x y) (list (2d-value-map-lookup map x y))))))
+
+(defun in-grid-p (grid x y)
+  (and (<= 0 (- x (origin-x grid)) (width grid)) (<= 0 (- y (origin-y grid)) (height grid))))
+
+(defun add-height-generator (form costmap)
+  (register-height-generator costmap (made-by form)))
+
+(defun add-cached-height-generator (form costmap)
+  (register-height-generator costmap (%cached costmap (made-by form))))
+
+(defun add-orientation-generator (form costmap)
+  (register-orientation-generator costmap (made-by form)))
+
+(defun add-cached-orientation-generator (form costmap)
+  (register-orientation-generator costmap (%cached costmap (made-by form))))
+
+(defun fluent-value (name)
+  (cram-language:value (symbol-value name)))
+
+(def-fact-group location-costmap-predicates ()
+  (<- (costmap ?costmap)
+    (bound ?costmap)
+    (lisp-type ?costmap location-costmap))
+
+  (<- (costmap ?costmap)
+    (not (bound ?costmap))
+    (lisp-fun new-costmap ?costmap))
+
+  (<- (costmap-add-function ?name ?function ?costmap)
+    (lisp-fun add-function ?name ?function ?costmap ?_))
+
+  (<- (costmap-add-heightmap ?map ?costmap)
+    (lisp-fun add-heightmap ?map ?costmap ?_))
+
+  (<- (costmap-add-height-generator ?function ?costmap)
+    (lisp-fun add-height-generator ?function ?costmap ?_))
+
+  (<- (costmap-add-cached-height-generator ?function ?costmap)
+    (lisp-fun add-cached-height-generator ?function ?costmap ?_))
+
+  (<- (costmap-add-orientation-generator ?function ?costmap)
+    (lisp-fun add-orientation-generator ?function ?costmap ?_))
+
+  (<- (costmap-add-cached-orientation-generator ?function ?costmap)
+    (lisp-fun add-cached-orientation-generator ?function ?costmap ?_))
+
+  (<- (merged-desig-costmap ?designator ?costmap)
+    (bagof ?part (desig-costmap ?designator ?part) ?parts)
+    (lisp-fun merge-costmaps ?parts ?costmap))
+
+  (<- (costmap-samples ?costmap ?solutions)
+    (lisp-fun costmap-samples ?costmap ?solutions))
+
+  (<- (global-fluent-value ?name ?value)
+    (lisp-fun fluent-value ?name ?value))
+
+  (<- (occupancy-grid ?message ?grid)
+    (lisp-fun occupancy-grid-msg->occupancy-grid ?message ?grid))
+
+  (<- (occupancy-grid ?message ?grid (padding ?padding))
+    (lisp-fun occupancy-grid-msg->occupancy-grid ?message :padding ?padding ?grid))
+
+  (<- (inverted-occupancy-grid ?message ?grid)
+    (lisp-fun occupancy-grid-msg->occupancy-grid ?message :invert t ?grid))
+
+  (<- (inverted-occupancy-grid ?message ?grid (padding ?padding))
+    (lisp-fun occupancy-grid-msg->occupancy-grid ?message :padding ?padding :invert t ?grid)))
