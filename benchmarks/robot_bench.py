@@ -2,8 +2,8 @@
 
     python benchmarks/robot_bench.py
 
-Microseconds of the processor per unit. The original cannot be measured here: it runs at the speed of Bullet's steps and of a service for the
-arms. So steps stand beside those of bare MuJoCo, on the same model.
+Microseconds of the processor per unit. The original cannot be measured here: it runs at the speed of Bullet's steps and of a service
+for the arms. So steps stand beside those of bare MuJoCo, on the same model.
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ TRANSPORT = """
   (dolist (system '(:cram-mobile-pick-place-plans :cram-pr2-description :cram-knowrob-pick-place :cram-pr2-projection
                     :cram-bullet-reasoning-utilities))
     (asdf:load-system system))
-  (setf roslisp::*debug-levels* nil)
   (defun at (frame x y z &optional (qz 0) (qw 1))
     (cl-transforms-stamped:make-pose-stamped
      frame 0.0 (cl-transforms:make-3d-vector x y z) (cl-transforms:make-quaternion 0 0 qz qw)))

@@ -43,5 +43,5 @@ def check_room(count: int, each: int = POINTER) -> None:
         gigabytes = max(count * each >> 30, 1)
         error(
             types.StorageCondition(f"Heap exhausted: {count} elements would take {gigabytes} GB."),
-            hint=f"One object can take {max(most() >> 30, 1)} GB here, three quarters of the memory that there is. Is the number too great?",
+            hint=f"One object can take {max(most() >> 30, 1)} GB here, three quarters of the memory that there is. Is the number right?",
         )

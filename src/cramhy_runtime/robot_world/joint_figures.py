@@ -21,7 +21,7 @@ DATA = Path(__file__).parent / "data"
 
 @functools.lru_cache(maxsize=8)
 def description(source: str) -> Description:
-    """The description in a URDF text or file. A name that no folder holds is that of a file of ours. Errors: `DescriptionError`, OSError."""
+    """The description in a URDF text or file. A name in no folder is that of a file of ours. Errors: `DescriptionError`, OSError."""
     if source.lstrip().startswith("<"):
         return urdf.read_text(source, "robot_description")
     path = Path(source)

@@ -195,8 +195,11 @@
     (average (map 'list (lambda (number) (square (- number middle))) numbers))))
 
 (defun standard-deviation (numbers)
-  (sqrt (float (variance numbers) 1d0)
-           #:invalid-probability-distribution))
+  (sqrt (float (variance numbers) 1d0)))
+
+(define-condition invalid-probability-distribution (error) ()
+  (:report "The probabilities are 0 everywhere, so that nothing can be drawn from them.")
+  (:documentation "A distribution whose sum is 0."))
 
 (defun covariance (samples)
   "The matrix of covariances of SAMPLES, a list of vectors of one length."
