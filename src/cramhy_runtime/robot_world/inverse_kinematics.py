@@ -23,6 +23,7 @@ POSTURES = 12
 """From how many postures a solution is looked for."""
 _MOST_STEPS = 40
 _LARGEST_STEP = 0.7  # of a joint, radians or metres
+_REMEMBERED = 5_000  # answers
 _HOPELESS = (12, 0.3)  # after so many steps an error beyond this will not go away
 
 
@@ -43,6 +44,7 @@ class Reach:
         self._jacobian, self._error = np.zeros((6, len(self.joints))), np.zeros(6)
         self._inverse, self._turn = np.zeros(4), np.zeros(4)
         self._postures = self._drawn()
+        self._answers: dict[tuple[bytes, bytes], np.ndarray | None] = {}
         self._shoulder, self._length = self._measured(chain)
 
     def _measured(self, chain: list[Joint]) -> tuple[np.ndarray, float]:
@@ -75,6 +77,15 @@ class Reach:
             if found is not None:
                 return found
         return None
+
+    def recall(self, position: np.ndarray, rotation: np.ndarray) -> np.ndarray | None:
+        """As `solve`. The answer is remembered, for a plan asks twice: before it moves, and when it moves."""
+        question = (position.tobytes(), rotation.tobytes())
+        if question not in self._answers:
+            if len(self._answers) >= _REMEMBERED:
+                self._answers.clear()
+            self._answers[question] = self.solve(position, rotation)
+        return self._answers[question]
 
     def _descend(self, position: np.ndarray, rotation: np.ndarray, joints: np.ndarray) -> np.ndarray | None:
         model, data, tip, error, jacobian = self._model, self._data, self._tip, self._error, self._jacobian

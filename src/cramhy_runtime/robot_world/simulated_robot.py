@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 VISIBLE = 0.9
 """Which part of an item's picture must be seen."""
 TORSO_STEP = 0.01  # metres
+_COARSE = 6  # torso steps: between heights that are tried first
 
 
 @dataclass(frozen=True)
@@ -175,24 +176,32 @@ class SimulatedRobot:
     def move_tools(self, goals: Mapping[Hashable, Placement]) -> None:
         """Bring the tool points of arms to poses in the frame of the base.
 
-        The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can. Errors:
-        `OutOfReach`; then nothing has moved.
+        The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can: every sixth
+        step is tried first, then those above the first that will do. Errors: `OutOfReach`; then nothing has moved.
         """
-        torso = self.machine.description.joints[self.parts.torso]
-        heights = [self.machine.joint(self.parts.torso), *_steps(torso.upper, torso.lower)]
-        failed = None
-        for height in heights:
-            found: dict[str, float] = {}
-            for arm, goal in goals.items():
-                answer = self.reach(arm, goal, height)
-                if answer is None:
-                    failed = arm
-                    break
-                found |= answer
-            else:
-                self.world.bend(self.name, {self.parts.torso: height, **found})
-                return
-        raise OutOfReach(failed, len(heights))
+        limits = self.machine.description.joints[self.parts.torso]
+        now, heights = self.machine.joint(self.parts.torso), _steps(limits.upper, limits.lower)
+        tried = sorted({*range(0, len(heights), _COARSE), len(heights) - 1})
+        posture = self._posture(goals, now)
+        for number in () if posture else tried:
+            if posture := self._posture(goals, heights[number]):
+                above = (self._posture(goals, height) for height in heights[max(number - _COARSE + 1, 0) : number])
+                posture = next(filter(None, above), posture)
+                break
+        if posture is None:
+            arms = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
+            raise OutOfReach(next(arms), len(tried) + 1)
+        self.world.bend(self.name, posture)
+
+    def _posture(self, goals: Mapping[Hashable, Placement], torso: float) -> dict[str, float] | None:
+        """Positions of the joints of the arms, and of the torso at this height; ``None`` when one of the arms does not reach its goal."""
+        found = {self.parts.torso: torso}
+        for arm, goal in goals.items():
+            answer = self.reach(arm, goal, torso)
+            if answer is None:
+                return None
+            found |= answer
+        return found
 
     def reach(self, arm: Hashable, goal: Placement, torso: float) -> dict[str, float] | None:
         """Positions of an arm's joints that bring its tool point to a pose in the frame of the base; ``None`` when there are none."""
@@ -204,7 +213,7 @@ class SimulatedRobot:
         tip = goal @ placement((-parts.tool, 0.0, 0.0))
         position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
         wanted = Placement(position, rotation).inverse() @ tip
-        answer = solver.solve(wanted.position, wanted.rotation)
+        answer = solver.recall(wanted.position, wanted.rotation)
         return None if answer is None else dict(zip(solver.joints, map(float, answer), strict=True))
 
     # ----------------------------------------------------------------------------------------------------------------- grippers

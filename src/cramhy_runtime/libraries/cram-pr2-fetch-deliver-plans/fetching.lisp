@@ -25,6 +25,29 @@
     (pr2-proj-reasoning:check-picking-up-collisions action)
     (exe:perform (desig:current-desig action))))
 
+;;; Before the robot goes anywhere, the plan tries in the world whether the object can be seen and taken from there.
+
+(defun look-ahead-to (pose)
+  "Look at a pose, for a try."
+  (pr2-proj::look-at :pose pose))
+
+(defun try-picking-up (item object arm pick-up-action)
+  "Fail unless ITEM, which OBJECT means, is seen and can be taken from where the robot is."
+  (let ((object (desig:current-desig object)))
+    (look-ahead-to (pose-in-room object))
+    (unless (member item (pr2-proj::visible-items object))
+      (cpl:fail 'common-fail:perception-object-not-found :object object :description "The object is not seen from there."))
+    (pr2-proj-reasoning:check-picking-up-collisions
+     (picking-up pick-up-action (pr2-proj::seen-object object item) arm))))
+
+(defun settle-on-place-to-fetch-from (location object arm pick-up-action)
+  "The solution of LOCATION, from now on, from which OBJECT can be taken as far as is known."
+  (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
+    (or (null item)
+        (pr2-proj-reasoning:settle-on-place
+         location (lambda () (try-picking-up item object arm pick-up-action)))
+        (cpl:fail 'common-fail:object-unreachable :object object :description "The object cannot be taken from any of the places ahead."))))
+
 (cpl:def-cram-function fetch (?object-designator ?arm ?pick-up-robot-location pick-up-action)
   "Go to an object, take it, and park the arms. Where it is out of reach, the robot goes to another place, ten times; where the fingers miss
 it, the robot looks again, once. Returns the object as it is known then."
@@ -43,6 +66,7 @@ it, the robot looks again, once. Returns the object as it is known then."
           ((let ((elsewhere (next-solution ?pick-up-robot-location)))
              (when elsewhere (setf ?pick-up-robot-location elsewhere)))
            (give-up))
+        (settle-on-place-to-fetch-from ?pick-up-robot-location ?object-designator ?arm pick-up-action)
         (exe:perform (desig:an action (type navigating) (location ?pick-up-robot-location)))
         (with-other-solutions (1 (fd-plans fetch) common-fail:gripper-low-level-failure)
             ((progn (pp-plans:park-arms) t)

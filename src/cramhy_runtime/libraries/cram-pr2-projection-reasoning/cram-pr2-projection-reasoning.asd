@@ -5,4 +5,5 @@
   :serial t
   :components ((:file "package")
                (:file "checks")
+               (:file "places")
                (:file "projected-tasks")))

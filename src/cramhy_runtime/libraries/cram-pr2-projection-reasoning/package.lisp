@@ -4,7 +4,7 @@
   (:nicknames #:pr2-proj-reasoning)
   (:use #:common-lisp #:cram-prolog)
   (:export #:check-navigating-collisions #:check-picking-up-collisions #:check-placing-collisions
-           #:check-environment-manipulation-collisions
+           #:check-environment-manipulation-collisions #:settle-on-place
            #:*projection-reasoning-enabled* #:with-projected-task-tree #:pick-best-parameters-by-distance))
 
 (in-package #:cram-pr2-projection-reasoning)
