@@ -16,6 +16,8 @@ from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import list_from
 
+from .mesh_files import MeshError
+from .meshes import mesh_of
 from .placements import Placement, placement
 from .scene import FLOOR, Part, Scene
 from .skeleton import Skeleton, skeleton_of
@@ -62,15 +64,30 @@ class World:
         return self._add(Item(name, tuple(shapes), at or placement(), mass, colour, tuple(types)))
 
     def add_machine(
-        self, name: Hashable, description: Description | Skeleton, at: Placement | None = None, joints: Mapping[str, float] | None = None
+        self,
+        name: Hashable,
+        description: Description | Skeleton,
+        at: Placement | None = None,
+        joints: Mapping[str, float] | None = None,
+        *,
+        fixed: bool = False,
     ) -> Machine:
-        """Add a robot, or furniture, with the given positions of its joints, the others 0. Errors: `WorldError`, when the name is taken."""
+        """Add a robot, or furniture, with the given positions of its joints, the others 0. See `Machine` for ``fixed``.
+
+        Errors: `WorldError`, when the name is taken.
+        """
         skeleton = description if isinstance(description, Skeleton) else skeleton_of(description)
-        return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {})))
+        return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {}), fixed=fixed))
 
     def _add(self, thing: T) -> T:
         if thing.name in self.things or thing.name == FLOOR:
             error(WorldError("there is a thing named ~S already.", thing.name))
+        for shape in thing.all_shapes():
+            if shape.kind == "mesh":
+                try:
+                    mesh_of(shape)
+                except MeshError as problem:
+                    error(WorldError("the mesh of ~S cannot be read: ~A", thing.name, str(problem)))
         self.things[thing.name] = thing
         thing.world = self
         self._scene = None
