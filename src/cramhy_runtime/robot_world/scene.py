@@ -31,6 +31,7 @@ _AT_REST = 0.02  # metres and radians a second; cylinders that stand tremble bel
 _REST_STEPS = 50
 _DEEP = 5e-3  # metres
 _BELOW_ALL = -1000.0  # metres
+_MOST_LIFTS = 200
 _TOGETHER = 10  # steps that are computed in one call
 
 
@@ -186,15 +187,10 @@ class Scene:
     # ------------------------------------------------------------------------------------------------------------------ falls
 
     def settle(self, seconds: float) -> float:
-        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then.
-
-        An item that is inside of something that stands is lifted out of it first.
-        """
+        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then."""
         free, model, data = self._free, self.model, self.data
         if not free:
             return 0.0
-        for part in free:
-            self._lift(part)
         steps, done, resting, step = max(1, round(seconds / STEP)), 0, 0, mujoco.mj_step
         velocities = data.qvel
         while done < steps and resting < _REST_STEPS:
@@ -209,19 +205,48 @@ class Scene:
             part.thing.placement = Placement(now[:3], now[3:])
         return done * STEP
 
-    def _lift(self, part: Part) -> None:
-        """Raise a free item that is inside of something that stands, to where it is no more."""
+    def free_all(self) -> list[tuple[Item, Item | Machine | None]]:
+        """Lift the free items out of what stands and they are inside of; the items that cannot be freed, each with what it is in.
+
+        ``None`` is the floor.
+        """
+        stuck = [(part.thing, self._thing_of_geom[geom]) for part in self._free if (geom := self._lift(part)) is not None]
+        return [(item, None if number < 0 else self.things[number]) for item, number in stuck]
+
+    def _lift(self, part: Part) -> int | None:
+        """Raise a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of."""
         start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
-        for _ in range(200):
-            if not any(self._depth(geom) > _DEEP for geom in part.geoms):
-                return
+        first, lifted = self._blocker(part), False
+        blocker = first
+        before = self.data.qpos[start + 2]
+        for _ in range(_MOST_LIFTS):
+            if blocker is None:
+                return None
+            lifted = True
             self.data.qpos[start + 2] += _DEEP
             mujoco.mj_kinematics(self.model, self.data)
+            blocker = self._blocker(part)
+        if lifted:
+            self.data.qpos[start + 2] = before
+            mujoco.mj_kinematics(self.model, self.data)
+        return first
 
-    def _depth(self, geom: int) -> float:
-        """How deep a geom is inside of what stands."""
+    def _blocker(self, part: Part) -> int | None:
+        """A geom that stands and that an item is inside of."""
+        for geom in part.geoms:
+            depth, other = self._depth(geom)
+            if depth > _DEEP:
+                return other
+        return None
+
+    def _depth(self, geom: int) -> tuple[float, int]:
+        """(how deep a geom is inside of what stands, the geom that this is)."""
         lowest, highest = self.boxes()
         near = ((lowest <= highest[geom]) & (highest >= lowest[geom])).all(axis=1) & (self.model.geom_contype == _STANDING)
         near |= self._planes_near(lowest[geom], highest[geom], 0.0)
-        distances = [mujoco.mj_geomDistance(self.model, self.data, int(geom), int(other), 0.0, None) for other in np.flatnonzero(near)]
-        return -min(distances, default=0.0)
+        numbers = np.flatnonzero(near)
+        distances = [mujoco.mj_geomDistance(self.model, self.data, geom, int(other), 0.0, None) for other in numbers]
+        if not distances:
+            return 0.0, 0
+        deepest = int(np.argmin(distances))
+        return -distances[deepest], int(numbers[deepest])

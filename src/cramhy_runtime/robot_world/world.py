@@ -45,6 +45,8 @@ class World:
 
     def __init__(self) -> None:
         self.things: dict[Hashable, Thing] = {}
+        self.ignored: list[tuple[Hashable, Hashable]] = []  # pairs of names whose contacts do not count
+        self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
         self._scene: Scene | None = None
         self._placed = False
 
@@ -210,8 +212,20 @@ class World:
         return self.scene.bounds(self.thing(name), link)
 
     def simulate(self, seconds: float) -> float:
-        """Let free items fall for so long, or until all are at rest; the seconds that it took."""
-        took = self.scene.settle(seconds)
+        """Let free items fall for so long, or until all are at rest; the seconds that it took.
+
+        An item that is inside of something that stands is lifted out of it first. One that cannot be, as in a wall, stays where it is;
+        `stuck` tells of it.
+        """
+        self.stuck = self.scene.free_all()
+        if not self.stuck:
+            took = self.scene.settle(seconds)
+        else:
+            held = {item for machine in self.machines() for item in machine.holds}
+            scene = Scene(self.things.values(), frozenset(held | {item.name for item, _ in self.stuck}))
+            scene.place()
+            scene.free_all()
+            took = scene.settle(seconds)
         self._placed = False
         return took
 
@@ -224,6 +238,7 @@ class World:
     def copy(self) -> World:
         """A world with the same things at the same places, which goes its own way."""
         new = World()
+        new.ignored = list(self.ignored)
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
