@@ -20,7 +20,7 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
        (cpl:with-retry-counters ((,left ,tries))
          (cpl:with-failure-handling
              (((or ,@failures) (,failure)
-                (roslisp:ros-info (projection reasoning) "~a" ,failure)
+                (roslisp:ros-debug (projection reasoning) "~a" ,failure)
                 ,again-form
                 (cpl:do-retry ,left
                   (let ((next (handler-case (desig:next-solution ,variable) (desig:designator-error () nil))))
@@ -59,7 +59,7 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
   (when (cpl:with-failure-handling
             ((common-fail:manipulation-low-level-failure (failure)
                (unless required
-                 (roslisp:ros-info (projection reasoning) "~a~%Ignoring." failure)
+                 (roslisp:ros-debug (projection reasoning) "~a~%Ignoring." failure)
                  (return nil))))
           (pr2-proj::move-tcp left-pose right-pose)
           t)
@@ -68,7 +68,7 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
         (cpl:fail 'common-fail:manipulation-goal-in-collision
                   :description (format nil "The robot would touch ~{~a~^, ~}." touched))))))
 
-(defun move-arms-along (left-poses right-poses harmless required)
+(defun move-arms-along (left-poses right-poses harmless required &aux (pr2-proj::*frames-follow* nil))
   "Bring the tools along their poses. REQUIRED is :LAST, :ALL or nil: which of them have to be reached."
   (loop for count from (max (length left-poses) (length right-poses)) downto 1
         for left = left-poses then (rest left)
@@ -89,7 +89,8 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
   (destructuring-bind (object arm opening effort grasp left-reach right-reach left-grasp right-grasp left-lift right-lift) (rest reference)
     (declare (ignore effort grasp))
     (let ((harmless (list (desig:desig-prop-value object :name))))
-      (pr2-proj::gripper-action opening arm)
+      (let ((pr2-proj::*frames-follow* nil))
+        (pr2-proj::gripper-action opening arm))
       (move-arms-along left-reach right-reach harmless :last)
       (move-arms-along left-grasp right-grasp harmless :all)
       (move-arms-along left-lift right-lift (cons :kitchen harmless) nil))))
