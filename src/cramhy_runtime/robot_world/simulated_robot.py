@@ -29,8 +29,8 @@ VISIBLE = 0.9
 """Which part of an item's picture must be seen."""
 TORSO_STEP = 0.01  # metres
 _COARSE = 6  # torso steps: between heights that are tried first
-_POSTURES = 16  # how many are tried
-_POSTURES_AT_HEIGHT = 3
+_POSTURES = 80  # how many are tried
+_POSTURES_AT_HEIGHT = 12
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ class SimulatedRobot:
 
         The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can: every sixth
         step is tried first, then those above the first that will do. Where the arms, but for the hands, would touch something, other
-        postures are tried, some at each of these heights; if none is better, the first is taken. Errors: `OutOfReach`; then nothing has
+        heights and postures are tried; if none is better, the first is taken. Errors: `OutOfReach`; then nothing has
         moved.
         """
         first = None
@@ -190,30 +190,32 @@ class SimulatedRobot:
         return [limits.upper - TORSO_STEP * step for step in range(count + 1)]
 
     def _postures(self, goals: Mapping[Hashable, Placement]) -> Iterator[dict[str, float]]:
-        """Postures in which all arms are at their goals, in the order in which they are tried."""
-        found = False
-        for posture in self._postures_at(goals, self.machine.joint(self.parts.torso)):
-            found = True
-            yield posture
+        """Postures in which all arms are at their goals, in the order in which they are tried: at all heights before others at the same."""
         heights = self._heights()
-        for number in sorted({*range(0, len(heights), _COARSE), len(heights) - 1}):
-            here = self._postures_at(goals, heights[number])
-            posture = next(here, None)
-            if posture is not None:
-                if not found:
-                    above = (next(self._postures_at(goals, height), None) for height in heights[max(number - _COARSE + 1, 0) : number])
-                    yield next(filter(None, above), posture)
-                found = True
+        now, tried = self.machine.joint(self.parts.torso), sorted({*range(0, len(heights), _COARSE), len(heights) - 1})
+        first = self._posture(goals, now)
+        if first:
+            yield first
+        for number in tried:
+            posture = self._posture(goals, heights[number])
+            if posture and not first:
+                above = (self._posture(goals, height) for height in heights[max(number - _COARSE + 1, 0) : number])
+                first = next(filter(None, above), posture)
+                yield first
+            if posture:
                 yield posture
-                yield from here
+        if first:
+            for other in range(1, _POSTURES_AT_HEIGHT):
+                for height in (now, *(heights[number] for number in tried)):
+                    if posture := self._posture(goals, height, other):
+                        yield posture
 
-    def _postures_at(self, goals: Mapping[Hashable, Placement], torso: float) -> Iterator[dict[str, float]]:
-        """Postures of the arms, and of the torso at this height; none when one of the arms does not reach its goal."""
-        for number in range(_POSTURES_AT_HEIGHT):
-            answers = [self.reach(arm, goal, torso, number) for arm, goal in goals.items()]
-            if None in answers:
-                return
-            yield {self.parts.torso: torso, **{joint: value for answer in answers for joint, value in answer.items()}}
+    def _posture(self, goals: Mapping[Hashable, Placement], torso: float, number: int = 0) -> dict[str, float] | None:
+        """Positions of the joints of the arms, and of the torso at this height; ``None`` when one of the arms does not reach its goal."""
+        answers = [self.reach(arm, goal, torso, number) for arm, goal in goals.items()]
+        if None in answers:
+            return None
+        return {self.parts.torso: torso, **{joint: value for answer in answers for joint, value in answer.items()}}
 
     def _arms_touch(self) -> bool:
         """Whether anything but a hand touches something that is not held."""
