@@ -4,11 +4,14 @@ import json
 
 import pytest
 
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, find_package_or_error
+
 
 @pytest.fixture
-def pr2(lisp):
+def pr2(session, lisp):
     lisp("(asdf:load-system :cram-pr2-description)")
-    assert lisp("(use-package :cram-robot-interfaces)") == "T"
+    interfaces = find_package_or_error("CRAM-ROBOT-INTERFACES")
+    session.package = ensure_package("ROBOT-DESCRIPTION-TESTS", use=[COMMON_LISP, interfaces])  # where nobody else has an ARM
     return lisp
 
 
