@@ -41,7 +41,7 @@ class Reach:
         self.joints = self.skeleton.joints
         self._model, self._data, self._tip = self.skeleton.model, self.skeleton.data, self.skeleton.links[tip]
         self._jacobian, self._error = np.zeros((6, len(self.joints))), np.zeros(6)
-        self._inverse, self._turn = np.zeros(4), np.zeros(4)
+        self._inverse, self._turn, self._solution = np.zeros(4), np.zeros(4), np.zeros(6)
         self._postures = self._drawn()
         self._shoulder, self._length = self._measured(chain)
 
@@ -79,25 +79,30 @@ class Reach:
     def _descend(self, position: np.ndarray, rotation: np.ndarray, joints: np.ndarray) -> np.ndarray | None:
         model, data, tip, error, jacobian = self._model, self._data, self._tip, self._error, self._jacobian
         lower, upper = self.skeleton.lower, self.skeleton.upper
+        kinematics, centres, jacobian_of = mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_jacBody
+        places, turns, moves, turning, qpos = data.xpos[tip], data.xquat[tip], jacobian[:3], jacobian[3:], data.qpos
+        turn, solution, inverse, columns = error[3:], self._solution, self._inverse, jacobian.T
         for step in range(_MOST_STEPS):
-            data.qpos[:] = joints
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_comPos(model, data)
-            error[:3] = position - data.xpos[tip]
-            mujoco.mju_negQuat(self._inverse, data.xquat[tip])
-            mujoco.mju_mulQuat(self._turn, rotation, self._inverse)
-            mujoco.mju_quat2Vel(error[3:], self._turn, 1.0)
-            size = error @ error
+            qpos[:] = joints
+            kinematics(model, data)
+            np.subtract(position, places, error[:3])
+            mujoco.mju_negQuat(inverse, turns)
+            mujoco.mju_mulQuat(self._turn, rotation, inverse)
+            mujoco.mju_quat2Vel(turn, self._turn, 1.0)
+            size = float(error @ error)
             if size < PRECISION * PRECISION:
                 return joints
             if step == _HOPELESS[0] and size > _HOPELESS[1]:
                 return None
-            mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], tip)
-            product = jacobian @ jacobian.T
+            centres(model, data)
+            jacobian_of(model, data, moves, turning, tip)
+            product = jacobian @ columns
             product.flat[::7] += 1e-3 * size + 1e-6
-            change = jacobian.T @ np.linalg.solve(product, error)
-            largest = np.abs(change).max()
+            mujoco.mju_cholFactor(product, 0.0)
+            mujoco.mju_cholSolve(solution, product, error)
+            change = columns @ solution
+            largest = max(float(change.max()), -float(change.min()))
             if largest > _LARGEST_STEP:
                 change *= _LARGEST_STEP / largest
-            joints = np.clip(joints + change, lower, upper)
+            joints = np.minimum(np.maximum(joints + change, lower), upper)
         return None

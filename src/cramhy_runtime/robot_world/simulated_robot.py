@@ -10,11 +10,10 @@ Source: bullet-world.md 5.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2
 from typing import TYPE_CHECKING
 
-from .inverse_kinematics import Reach
 from .placements import Placement, placement
+from .reaching import pan_and_tilt, solver_of
 from .things import Item, Machine
 from .vision import seen
 
@@ -95,8 +94,6 @@ class NothingGripped(MotionError):
 class SimulatedRobot:
     """The robot ``name`` of ``world``, with its parts."""
 
-    _reaches: dict[tuple[int, str, str], Reach] = {}
-
     def __init__(self, world: World, name: Hashable, parts: RobotParts) -> None:
         self.world, self.name, self.parts = world, name, parts
 
@@ -133,18 +130,8 @@ class SimulatedRobot:
 
     def pan_and_tilt(self, place: np.ndarray) -> tuple[float, float]:
         """Positions of the two joints of the neck, with which the head looks at a place in the world."""
-        joints, target = self.machine.description.joints, placement(place)
-        above_pan = joints[self.parts.pan]
-        x, y, _ = ((self.machine.link(above_pan.parent) @ _frame(above_pan)).inverse() @ target).position
-        pan = atan2(y, x)
-        above_tilt = joints[self.parts.tilt]
-        x, _, z = ((self._turned_neck(pan) @ _frame(above_tilt)).inverse() @ target).position
-        return pan, atan2(-z, x)
-
-    def _turned_neck(self, pan: float) -> Placement:
-        ahead = self.machine.copy()
-        ahead.bend({self.parts.pan: pan})
-        return ahead.link(ahead.description.joints[self.parts.tilt].parent)
+        joints = self.machine.description.joints
+        return pan_and_tilt(self.machine, joints[self.parts.pan], joints[self.parts.tilt], place)
 
     def _go(self, joints: Mapping[str, float]) -> None:
         limits = self.machine.description.joints
@@ -197,10 +184,7 @@ class SimulatedRobot:
     def reach(self, arm: Hashable, goal: Placement, torso: float) -> dict[str, float] | None:
         """Positions of an arm's joints that bring its tool point to a pose in the frame of the base; ``None`` when there are none."""
         parts, machine = self.parts.arms[arm], self.machine
-        key = (id(machine.skeleton), parts.base, parts.tip)
-        solver = self._reaches.get(key)
-        if solver is None:
-            solver = self._reaches[key] = Reach(machine.description, parts.base, parts.tip)
+        solver = solver_of(machine.description, parts.base, parts.tip)
         tip = goal @ placement((-parts.tool, 0.0, 0.0))
         position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
         wanted = Placement(position, rotation).inverse() @ tip
@@ -230,10 +214,6 @@ class SimulatedRobot:
 
     def set_fingers(self, arm: Hashable, position: float) -> None:
         self.world.bend(self.name, dict.fromkeys(self.parts.arms[arm].fingers, position))
-
-
-def _frame(joint) -> Placement:
-    return placement(joint.frame.position, joint.frame.rotation)
 
 
 def _steps(highest: float, lowest: float) -> list[float]:

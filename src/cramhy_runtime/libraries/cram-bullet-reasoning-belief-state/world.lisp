@@ -28,7 +28,9 @@
   "Fill the current world with the kitchen and the robot, whose arms are parked."
   (let ((world btr:*current-bullet-world*)
         (robot (btr:get-robot-name)))
-    (btr:add-object world :urdf :kitchen '((0 0 0) (0 0 0 1)) :urdf (kitchen-urdf))
+    (btr:add-object world :static-plane :floor '((0 0 0) (0 0 0 1)) :normal '(0 0 1) :constant 0)
+    (btr:add-object world :urdf :kitchen '((0 0 0) (0 0 0 1))
+                    :urdf (kitchen-urdf) :collision-group :static-filter :collision-mask '(:default-filter :character-filter) :compound t)
     (if (null robot)
         (warn "ROBOT was not defined. Have you loaded a robot package?")
         (let ((machine (btr:add-object world :urdf robot '((0 0 0) (0 0 0 1)) :urdf (robot-urdf))))
