@@ -34,15 +34,15 @@ TORSO_STEP = 0.01  # metres
 class ArmParts:
     """The parts of an arm.
 
-    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: how
-    far the tool point is ahead of the tip, along its x, in metres. fingers: the joints that open the gripper. hand: the links that touch
+    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: where
+    the tool point is in the frame of the tip. fingers: the joints that open the gripper. hand: the links that touch
     what it grips. open: the position of the fingers when it is open; factor: their position for each metre of opening.
     """
 
     joints: tuple[str, ...]
     base: str
     tip: str
-    tool: float
+    tool: Placement
     fingers: tuple[str, ...]
     hand: tuple[str, ...]
     open: float
@@ -201,7 +201,7 @@ class SimulatedRobot:
         solver = self._reaches.get(key)
         if solver is None:
             solver = self._reaches[key] = Reach(machine.description, parts.base, parts.tip)
-        tip = goal @ placement((-parts.tool, 0.0, 0.0))
+        tip = goal @ parts.tool.inverse()
         position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
         wanted = Placement(position, rotation).inverse() @ tip
         answer = solver.solve(wanted.position, wanted.rotation)
