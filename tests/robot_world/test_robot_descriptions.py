@@ -27,7 +27,7 @@ UNKNOWN = (
     "robot robot-base-frame robot-odom-frame robot-torso-link-joint arm required-arms available-arms arm-joints arm-links arm-base-joints "
     "arm-base-links arm-tool-joints hand-links end-effector-link robot-tool-frame gripper-joint gripper-link robot-arms-parking-joint-states "
     "robot-arms-carrying-joint-states end-effector-parking-pose robot-pre-grasp-joint-states planning-group "
-    "standard-to-particular-gripper-transform camera-frame camera-minimal-height camera-maximal-height robot-pan-tilt-links "
+    "standard-to-particular-gripper-transform tcp-in-ee-pose gripper-meter-to-joint-multiplier camera-frame camera-minimal-height camera-maximal-height robot-pan-tilt-links "
     "robot-pan-tilt-joints robot-neck-parking-joint-states robot-neck-looking-joint-states trajectory-point joint-lower-limit joint-type"
 )
 

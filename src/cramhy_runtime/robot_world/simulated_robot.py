@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .placements import Placement, placement
+from .placements import Placement
 from .reaching import pan_and_tilt, solver_of
 from .things import Item, Machine
 from .vision import seen
@@ -33,15 +33,15 @@ TORSO_STEP = 0.01  # metres
 class ArmParts:
     """The parts of an arm.
 
-    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: how
-    far the tool point is ahead of the tip, along its x, in metres. fingers: the joints that open the gripper. hand: the links that touch
+    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: where
+    the tool point is in the frame of the tip. fingers: the joints that open the gripper. hand: the links that touch
     what it grips. open: the position of the fingers when it is open; factor: their position for each metre of opening.
     """
 
     joints: tuple[str, ...]
     base: str
     tip: str
-    tool: float
+    tool: Placement
     fingers: tuple[str, ...]
     hand: tuple[str, ...]
     open: float
@@ -185,7 +185,7 @@ class SimulatedRobot:
         """Positions of an arm's joints that bring its tool point to a pose in the frame of the base; ``None`` when there are none."""
         parts, machine = self.parts.arms[arm], self.machine
         solver = solver_of(machine.description, parts.base, parts.tip)
-        tip = goal @ placement((-parts.tool, 0.0, 0.0))
+        tip = goal @ parts.tool.inverse()
         position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
         wanted = Placement(position, rotation).inverse() @ tip
         answer = solver.solve(wanted.position, wanted.rotation)
