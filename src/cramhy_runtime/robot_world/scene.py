@@ -156,26 +156,27 @@ class Scene:
         """
         lowest, highest = self.boxes()
         mine = np.flatnonzero(self._part_of_geom >= 0) if of is None else self._geoms_of(of)
+        near = self._near(lowest, highest, mine, TOUCHING)
+        near &= self._thing_of_geom[mine, None] != self._thing_of_geom
+        near &= ~(self._fixed[mine, None] & self._fixed)
         found: dict[tuple[int, int], None] = {}
-        for geom in mine:
-            near = ((lowest <= highest[geom] + TOUCHING) & (highest >= lowest[geom] - TOUCHING)).all(axis=1)
-            near |= self._planes_near(lowest[geom], highest[geom], TOUCHING)
-            near &= self._thing_of_geom != self._thing_of_geom[geom]
-            if self._fixed[geom]:
-                near &= ~self._fixed
-            for other in np.flatnonzero(near):
-                pair = (self._part_of_geom[geom], self._part_of_geom[other])
-                if (pair not in found and (of is not None or pair[::-1] not in found)) and self._touch(geom, other):
-                    found[pair] = None
+        for row, other in zip(*map(np.ndarray.tolist, np.nonzero(near)), strict=True):
+            geom = mine[row]
+            pair = (self._part_of_geom[geom], self._part_of_geom[other])
+            if (pair not in found and (of is not None or pair[::-1] not in found)) and self._touch(geom, other):
+                found[pair] = None
         return [(self.parts[one], None if other < 0 else self.parts[other]) for one, other in found]
 
-    def _planes_near(self, lowest: np.ndarray, highest: np.ndarray, distance: float) -> np.ndarray:
-        """Which geoms are planes that a box reaches, up to a distance."""
-        near = np.zeros(len(self._planes), bool)
+    def _near(self, lowest: np.ndarray, highest: np.ndarray, mine: np.ndarray, distance: float) -> np.ndarray:
+        """Which geoms are so near to those of the numbers ``mine``, by the boxes around all: a row of truth values for each of ``mine``."""
+        low, high = lowest[mine] - distance, highest[mine] + distance
+        near = np.ones((len(mine), len(lowest)), bool)
+        for axis in range(3):
+            near &= (lowest[:, axis] <= high[:, axis, None]) & (highest[:, axis] >= low[:, axis, None])
         for plane in np.flatnonzero(self._planes):
             normal = self.data.geom_xmat[plane].reshape(3, 3)[:, 2]
-            corner = np.where(normal > 0, lowest, highest)
-            near[plane] = normal @ (corner - self.data.geom_xpos[plane]) <= distance
+            corners = np.where(normal > 0, lowest[mine], highest[mine])
+            near[:, plane] = (corners - self.data.geom_xpos[plane]) @ normal <= distance
         return near
 
     def _geoms_of(self, thing: Item | Machine) -> np.ndarray:
@@ -242,9 +243,8 @@ class Scene:
     def _depth(self, geom: int) -> tuple[float, int]:
         """(how deep a geom is inside of what stands, the geom that this is)."""
         lowest, highest = self.boxes()
-        near = ((lowest <= highest[geom]) & (highest >= lowest[geom])).all(axis=1) & (self.model.geom_contype == _STANDING)
-        near |= self._planes_near(lowest[geom], highest[geom], 0.0)
-        numbers = np.flatnonzero(near)
+        near = self._near(lowest, highest, np.array([geom]), 0.0)[0]
+        numbers = np.flatnonzero(near & ((self.model.geom_contype == _STANDING) | self._planes))
         distances = [mujoco.mj_geomDistance(self.model, self.data, geom, int(other), 0.0, None) for other in numbers]
         if not distances:
             return 0.0, 0

@@ -5,9 +5,13 @@
 (defvar *torso-step* 0.01
   "How far apart the heights of the torso are from which an arm tries to reach, in metres.")
 
+(defvar *frames-follow* t
+  "Whether frames move with the links; what only tries motions has no use for that.")
+
 (defun touched ()
   "After a motion: the frames are where the links are."
-  (btr-belief:set-tf-from-bullet)
+  (when *frames-follow*
+    (btr-belief:set-tf-from-bullet))
   nil)
 
 (defun drive (pose-stamped)
