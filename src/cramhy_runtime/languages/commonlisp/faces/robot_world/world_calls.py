@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.robot_world import models, urdf
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.placements import of_pose
