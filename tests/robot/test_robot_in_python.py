@@ -151,3 +151,8 @@ def test_without_the_extra_one_line_names_it():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode and "cramhy" in done.stderr and "robot" in done.stderr
     assert "The kitchen needs MuJoCo, which is not installed" in done.stderr.splitlines()[-1]
+
+
+def test_another_mode_than_the_kinematic_one_is_told():
+    with pytest.raises(ValueError, match="controllers and friction are not simulated yet"):
+        robot.world(mode="physical")

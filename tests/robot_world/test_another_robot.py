@@ -40,7 +40,9 @@ def test_its_description_is_short():
 
 
 def test_it_is_the_only_robot(ask):
-    assert ask("(mapcar #'btr:name (btr:objects btr:*current-bullet-world*))") == "(:FLOOR :KITCHEN CRAM-PORTER-DESCRIPTION:PORTER BOTTLE-1)"
+    assert (
+        ask("(mapcar #'btr:name (btr:objects btr:*current-bullet-world*))") == "(:FLOOR :KITCHEN CRAM-PORTER-DESCRIPTION:PORTER BOTTLE-1)"
+    )
     assert ask("(length (cut:force-ll (prolog:prolog '(cram-robot-interfaces:robot ?robot))))") == "1"
 
 

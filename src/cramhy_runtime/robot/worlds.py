@@ -107,12 +107,15 @@ class World:
 
 
 @for_python
-def world(description: str | None = None) -> World:
+def world(description: str | None = None, mode: str = "kinematic") -> World:
     """Begin with a new world: the kitchen, and the robot with its arms parked at the origin.
 
-    description: the system that describes the robot, such as ``"cram_porter_description"``; by default that of the PR2. Errors:
-    ImportError without the extra ``robot``; ValueError, when this image has another robot.
+    description: the system that describes the robot, such as ``"cram_porter_description"``; by default that of the PR2. mode:
+    ``"kinematic"``, in which motions happen at once and what is let go falls; there is no other one yet. Errors: ImportError without the
+    extra ``robot``; ValueError, when this image has another robot, and for another mode.
     """
+    if mode != "kinematic":
+        raise ValueError(f'The mode of a world is "kinematic", not {mode!r}: controllers and friction are not simulated yet.')
     load(description)
     lisp("CRAM-OCCASIONS-EVENTS", "clear_belief")()
     return World()
