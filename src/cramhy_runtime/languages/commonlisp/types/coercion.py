@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import SimpleTypeError, error
 from cramhy_runtime.ground.data import Cons, LispString, Symbol
-from cramhy_runtime.ground.functions import fdefinition, function_named
+from cramhy_runtime.ground.functions import fdefinition, function_named, functionp
 from ..numbers.arithmetic import is_real
 from ..numbers.complex_numbers import parts
 from ..numbers.irrational import complex_, to_double, to_single
@@ -46,7 +46,7 @@ def coerce(object, output_type_spec):
 
         return character(object)
     if name in ("FUNCTION", "COMPILED-FUNCTION", "GENERIC-FUNCTION"):
-        return _to_function(object)
+        return object if functionp(object) else _to_function(object)
     if name in _SEQUENCES and _is_sequence(object) and (isinstance(specifier, Cons) or name not in ("ARRAY", "SIMPLE-ARRAY", "SEQUENCE")):
         from ..collections.sequence_types import to_sequence_type
 
