@@ -153,11 +153,30 @@
   (setv #(_ specializers) (plain-parameters lambda-list) #(function uses-next) (method-function name lambda-list body))
   `(list ~(quoted-list qualifiers) ~specializers (quote ~lambda-list) ~function ~uses-next))
 
+(defn check-generic-lambda-list [lambda-list]
+  "Complain of what only methods may have, and of names that no variable can have (ANSI 3.4.2)."
+  (setv seen [] required True)
+  (for [item (elements lambda-list)]
+    (setv name (if (and (listp item) (not required) (is item.cdr None)) item.car item))
+    (cond
+      (is item (sym "&AUX"))
+        (program-error "&AUX is not allowed in a generic function lambda list: ~S" lambda-list)
+      (in item [(sym "&OPTIONAL") (sym "&REST") (sym "&KEY") (sym "&ALLOW-OTHER-KEYS")])
+        (setv required False)
+      (listp name)
+        (if (and (not required) (is item.cdr None))
+          (.append seen name)
+          (program-error "Invalid argument specifier ~S in a generic function lambda list ~S: only methods give defaults and classes."
+                         item lambda-list))
+      (or (not (is-symbol name)) (isinstance name Keyword) (in name [None True]))
+        (program-error "~S cannot be a parameter of a generic function: a parameter is a symbol that is not a constant." name)
+      (in name seen)
+        (program-error "The variable ~S occurs more than once in the lambda list." name)
+      True (.append seen name))))
+
 (defoperator defgeneric [name lambda-list #* options]
   (setv methods [] arguments [])
-  (for [item (elements lambda-list)]
-    (when (and (listp item) (listp item.cdr))
-      (error "Invalid argument specifier ~S in a generic function lambda list ~S: only methods give defaults." item lambda-list)))
+  (check-generic-lambda-list lambda-list)
   (for [option options]
     (match (symbol-name option.car)
       "METHOD" (.append methods (method-option name option))
@@ -231,11 +250,17 @@
 
 (defn structure-slot [slot]
   (setv #(name #* rest) (if (listp slot) slot [slot]))
+  (unless (is-symbol name)
+    (program-error "in DEFSTRUCT, ~S is not a legal slot description: a slot is written NAME or (NAME INITFORM :TYPE TYPE :READ-ONLY T)." slot))
   (setv initform (if rest [(get rest 0)] []) options (dict (options-of (cut rest 1 None))))
+  (for [option options]
+    (unless (in option ["TYPE" "READ-ONLY"])
+      (error "~S: unknown slot option :~A of the slot ~S; it may have :type and :read-only." (sym "DEFSTRUCT") option name)))
   `(%structure-slot (quote ~name)
      :initform ~(if initform `(lambda [] ~(get initform 0)) None)
      :type (quote ~(.get options "TYPE" True))
-     :read-only ~(if (.get options "READ-ONLY") True None)))
+     :read-only ~(if (.get options "READ-ONLY") True None)
+     :writable ~(if (= (.get options "READ-ONLY" True) None) True None)))
 
 (defn constructor-form [entry slots included]
   "A constructor of `defstruct`: (name) or name with keywords, or (name lambda-list) by position. `included` names the included type."
@@ -255,11 +280,18 @@
       (return (elements option.cdr))))
   [None])
 
+(defn check-structure-options [name keys]
+  "Complain of options of `defstruct` that stand there twice. keys: their names."
+  (for [key (sfor key keys :if (not-in key ["CONSTRUCTOR" "NAMED"]) key)]
+    (when (> (.count keys key) 1)
+      (error "~S ~S: there is more than one option :~A." (sym "DEFSTRUCT") name key))))
+
 (defoperator defstruct [head #* slots]
   (setv #(name #* options) (if (listp head) head [head]) slots (list slots))
   (unless (is-symbol name)
     (error "~S: ~S is not a symbol." (sym "DEFSTRUCT") name))
   (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
+  (check-structure-options name (lfor option options (symbol-name (if (listp option) option.car option))))
   (setv arguments [] constructors [] [included #* overrides] (included-structure options))
   (for [option options]
     (setv #(key #* values) (if (listp option) option [option]))

@@ -8,7 +8,7 @@ from sbcl_answers import answer, recorded
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.collections import array_making, arrays
-from cramhy_runtime.ground.arrays import LispArray, TypedVector, Vector, array_type, bit_vector
+from cramhy_runtime.ground.arrays import LispArray, SimpleArray, TypedVector, Vector, array_type, bit_vector
 from cramhy_runtime.ground.data import Character, DoubleFloat, FreshString, lisp_list, list_from, python_list
 from cramhy_runtime.ground.packages import sym
 
@@ -28,7 +28,8 @@ def test_the_plainest_object_is_chosen():
     assert array_making.make_array(2, element_type=sym("CHARACTER")).__class__ is FreshString
     assert array_making.make_array(2, element_type=sym("DOUBLE-FLOAT")).__class__ is TypedVector
     assert array_making.make_array(2, fill_pointer=0).__class__ is Vector
-    assert array_making.make_array(lisp_list(2, 2)).__class__ is LispArray
+    assert array_making.make_array(lisp_list(2, 2)).__class__ is SimpleArray
+    assert array_making.make_array(lisp_list(2, 2), adjustable=True).__class__ is LispArray
 
 
 def test_an_index_outside_is_an_error_with_the_text_of_sbcl():

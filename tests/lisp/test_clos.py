@@ -248,7 +248,7 @@ def test_hooks_run_all_methods_and_give_the_list_of_results():
 
 def test_a_method_that_does_not_fit_is_refused():
     fixed = generic.generic("CLOS-TESTS::FIXED", "(a)")
-    with pytest.raises(conditions.SimpleError, match="the method has more required arguments than the generic function"):
+    with pytest.raises(conditions.SimpleProgramError, match="the method has more required arguments than the generic function"):
         generic.add_method(fixed, (), [int, int], lambda a, b: a, lambda_list="(a b)")
 
 

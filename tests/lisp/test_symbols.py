@@ -19,6 +19,7 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.files.files import lisp_path
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name
+from cramhy_runtime.languages.commonlisp.objects.instances import InitargError
 from cramhy_runtime.ground.packages import COMMON_LISP, Package, delete_package, register, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import StringInputStream, StringOutputStream
@@ -95,7 +96,8 @@ def answer(session, text, folder):
             condition = condition_of(problem)
             with binding(PRINT_PRETTY, None):
                 line = words(f"!! {class_name(type(condition)).name} {report(condition)}")
-            if isinstance(condition, ProgramError) and class_name(type(condition)).package is not PACKAGE.value:
+            own = isinstance(condition, InitargError) or class_name(type(condition)).package is PACKAGE.value
+            if isinstance(condition, ProgramError) and not own:
                 line = PROGRAM_ERROR
         else:
             with binding(PRINT_PRETTY, None):

@@ -81,6 +81,12 @@ class LispArray:
         return self.dimensions
 
 
+class SimpleArray(LispArray):
+    """An array of any rank but one that is neither adjustable nor displaced: a class of its own, since methods are found by class."""
+
+    __slots__ = ()
+
+
 class Vector(LispArray):
     """A vector with a fill pointer (or ``None``), or one that is adjustable or displaced. Python sees the active elements."""
 

@@ -9,6 +9,7 @@ from .plain_answers import named, register_class
 from .ports import PORTS
 
 __all__ = [
+    "BigInteger",
     "class_name",
     "find_class",
     "find_class_or_error",
@@ -19,6 +20,10 @@ __all__ = [
     "touch_classes",
     "when_classes_change",
 ]
+
+
+class BigInteger(int):
+    """Stands for the class of an integer that is not a fixnum where methods are chosen. No object is an instance of it."""
 
 
 def class_name(cls: type) -> Any:

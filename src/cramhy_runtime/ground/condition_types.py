@@ -220,7 +220,7 @@ class UnboundVariable(CellError):
         return f"The variable {shown(self.name)} is unbound."
 
 
-class MissingSlot(CellError):
+class MissingSlot(CellError, TypeError_):
     """The object has no slot of that name."""
 
     lisp_name = "SB-PCL::MISSING-SLOT"
@@ -230,6 +230,7 @@ class MissingSlot(CellError):
     def __init__(self, name=None, instance=None, what=what, **slots):
         super().__init__(name, **slots)
         self.instance, self.what = instance, what
+        self.datum = instance
 
     def report(self) -> str:
         return formatted("~@<When attempting to ~A, the slot ~S is missing from the object ~S.~@:>", (self.what, self.name, self.instance))
@@ -357,8 +358,9 @@ class ReaderError(SimpleCondition, ParseError, StreamError):
         self.position, self.stream = position, stream
 
 
-class ReaderPackageError(ReaderError):
+class ReaderPackageError(ReaderError, PackageError):
     lisp_name = "SB-INT::SIMPLE-READER-PACKAGE-ERROR"
+    package: Any = None
 
 
 class FileError(SimpleCondition, Error):

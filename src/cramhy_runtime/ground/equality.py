@@ -134,7 +134,7 @@ def _array_elements(x):
 def _slots(x):
     # The slot values of a structure, or None for other objects: only structures are compared slot by slot.
     if not hasattr(x.__class__, "lisp_structure"):
-        return None
+        return [getattr(x, name) for name in x.__class__.equalp_slots] if hasattr(x.__class__, "equalp_slots") else None
     return [value for _, value in PORTS.classes.slots(x)]
 
 

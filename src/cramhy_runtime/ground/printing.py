@@ -12,10 +12,14 @@ from cramhy_runtime.kernel.typing_names import Any
 from .classes import class_name
 from .condition_types import SeriousCondition
 from .conditions import handler_case
+from .data import Symbol
+from .dynamic import special
 from .plain_answers import printer_for, printers, printers_found
 from .ports import PORTS
 
 __all__ = [
+    "CURRENT_LEVEL",
+    "LEVELS_COUNT",
     "attempt_to_print",
     "define_printer",
     "format_to_string",
@@ -29,6 +33,11 @@ __all__ = [
     "unprintable",
     "write",
 ]
+
+CURRENT_LEVEL = special(Symbol("*CURRENT-LEVEL-IN-PRINT*"), 0)
+"""How deep what is being printed lies in what was to be printed; counted while ``*print-level*`` or ``LEVELS_COUNT`` asks for it."""
+LEVELS_COUNT = special(Symbol("*LEVELS-COUNT*"), None)
+"""Whether levels are counted without ``*print-level*``, since a function that prints is told of them."""
 
 
 def prin1_to_string(thing: Any) -> str:

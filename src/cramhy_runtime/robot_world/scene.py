@@ -9,6 +9,7 @@ Law: a scene computes from where the things are now (`place`), and writes back o
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,7 @@ from .placements import Placement
 from .things import Item, Machine
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Iterator
+    from collections.abc import Hashable, Iterable, Iterator, Sequence
 
 FLOOR = "floor"
 TOUCHING = 1e-3
@@ -145,6 +146,32 @@ class Scene:
             return place.copy(), place.copy()
         lowest, highest = self.boxes()
         return lowest[geoms].min(axis=0), highest[geoms].max(axis=0)
+
+    # ------------------------------------------------------------------------------------------------------------------- rays
+
+    @contextmanager
+    def without(self, things: Sequence[Item | Machine], group: int) -> Iterator[np.ndarray]:
+        """While the block runs, rays pass through these things; the block gets the groups of geoms that rays meet."""
+        geoms = np.concatenate([self._geoms_of(thing) for thing in things])
+        before = self.model.geom_group[geoms].copy()
+        self.model.geom_group[geoms] = group
+        groups = np.ones(6, np.uint8)
+        groups[group] = 0
+        try:
+            yield groups
+        finally:
+            self.model.geom_group[geoms] = before
+
+    def free_ways(self, start: np.ndarray, ends: np.ndarray, groups: np.ndarray) -> np.ndarray:
+        """Whether nothing is between a place and each of others, an n x 3 array. groups: as `without` gives them."""
+        ways = ends - start
+        lengths = np.linalg.norm(ways, axis=1)
+        met, distances = np.full(len(ends), -1, np.int32), np.zeros(len(ends))
+        directions = (ways / lengths[:, None]).ravel()
+        mujoco.mj_multiRay(
+            self.model, self.data, start, directions, groups, True, -1, met, distances, None, len(ends), float(lengths.max()) + 0.1
+        )
+        return (met < 0) | (distances >= lengths)
 
     # --------------------------------------------------------------------------------------------------------------- contacts
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from .placements import Placement, placement
+from .placements import Placement
 from .reaching import pan_and_tilt, solver_of
 from .things import Item, Machine
 from .vision import seen
@@ -37,15 +37,15 @@ _POSTURES_AT_HEIGHT = 12
 class ArmParts:
     """The parts of an arm.
 
-    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: how
-    far the tool point is ahead of the tip, along its x, in metres. fingers: the joints that open the gripper. hand: the links that touch
+    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: where
+    the tool point is in the frame of the tip. fingers: the joints that open the gripper. hand: the links that touch
     what it grips. open: the position of the fingers when it is open; factor: their position for each metre of opening.
     """
 
     joints: tuple[str, ...]
     base: str
     tip: str
-    tool: float
+    tool: Placement
     fingers: tuple[str, ...]
     hand: tuple[str, ...]
     open: float
@@ -231,7 +231,7 @@ class SimulatedRobot:
         """
         parts, machine = self.parts.arms[arm], self.machine
         solver = solver_of(machine.description, parts.base, parts.tip)
-        tip = goal @ placement((-parts.tool, 0.0, 0.0))
+        tip = goal @ parts.tool.inverse()
         position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
         wanted = Placement(position, rotation).inverse() @ tip
         answer = solver.recall(wanted.position, wanted.rotation, number)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.ground.arrays import LispArray, SimpleArray
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import DoubleFloat
 
@@ -15,7 +15,7 @@ from .vectors import Vector3, normalize_vector, point
 
 
 def _matrix(rows):
-    return LispArray((len(rows), len(rows[0]) if rows else 0), [item for row in rows for item in row])
+    return SimpleArray((len(rows), len(rows[0]) if rows else 0), [item for row in rows for item in row])
 
 
 def _rows(matrix):

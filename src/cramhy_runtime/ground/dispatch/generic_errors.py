@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..condition_types import shown
-from ..conditions import Error, SimpleError, error
+from ..conditions import Error, SimpleProgramError, error
 from ..data import list_from
 
 
@@ -92,8 +92,9 @@ def incongruent(generic_function, method):
     elif ours.optional != theirs.optional:
         more = "fewer" if theirs.optional < ours.optional else "more"
         difference = f"the method has {more} optional arguments than the generic function."
-    else:
+    elif (ours.rest or ours.has_keys) != (theirs.rest or theirs.has_keys):
         difference = "the method and generic function differ in whether they accept~%&REST or &KEY arguments."
-    return error(
-        SimpleError(f"attempt to add the method~%  ~S~%to the generic function~%  ~S;~%but {difference}", method, generic_function)
-    )
+    else:
+        difference = "the method does not accept each of the &KEY arguments~%~S."
+    text = f"attempt to add the method~%  ~S~%to the generic function~%  ~S;~%but {difference}"
+    return error(SimpleProgramError(text, method, generic_function, list_from(ours.keys_unknown_to(theirs))))

@@ -26,7 +26,7 @@ from ..functions import invalid_function_name
 from .generic_errors import incongruent, no_applicable_method_error
 from ..keyword_calls import lispify
 from .method_combination import STANDARD, Combination, find_combination
-from .methods import EqlSpecializer, Method, Shape
+from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, is_sized
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
 from ..ports import PORTS
 from ..python_names import python_name
@@ -118,6 +118,7 @@ class GenericFunction(FunctionObject):
             for index in positions
         }
         self.eql_positions = tuple(index for index in positions if self.eql_keys[index])
+        self.sized = [index for index in positions if any(is_sized(method.specializers[index]) for method in self.methods)]
         self.minimum, self.maximum = self.shape.required, self.shape.maximum
         fixed = self.minimum == self.maximum
         if self.watcher is not None:
@@ -144,7 +145,10 @@ class GenericFunction(FunctionObject):
         if found is None:
             # Only classes for which eql methods exist need the second look-up.
             relevant = [index for index in self.eql_positions if self._eql_possible(index, arguments[index])]
-            found = self._by_value(relevant) if relevant else self.effective_function(arguments)
+            sized = [index for index in self.sized if arguments[index].__class__ is int]
+            found = (
+                self._by_values(relevant, sized) if sized else self._by_value(relevant) if relevant else self.effective_function(arguments)
+            )
             if found is None:
                 return lambda *arguments: no_applicable_method(self, arguments)
             self.cache[key] = found
@@ -181,12 +185,15 @@ class GenericFunction(FunctionObject):
         known_as_other = ("any other value",)
         return dispatch
 
-    def _by_values(self, positions):
+    def _by_values(self, positions, sized=()):
+        """The dispatch on the values at ``positions``, and on whether the integers at the positions ``sized`` are fixnums."""
         table: dict = {}
         known = [(index, self.eql_keys[index]) for index in positions]
 
         def dispatch(*arguments, **keywords):
             key = tuple([value if value in keys else None for value, keys in [(eql_key(arguments[index]), keys) for index, keys in known]])
+            if sized:
+                key += tuple([class_for_dispatch(arguments[index]) for index in sized])
             effective = table.get(key)
             if effective is None:
                 effective = self.effective_function(arguments)
@@ -203,7 +210,7 @@ class GenericFunction(FunctionObject):
     def applicable_methods(self, arguments):
         """The methods that apply to ``arguments``, most specific first."""
         required = arguments[: self.shape.required]
-        mros = [PORTS.classes.precedence(type(None) if argument is False else argument.__class__) for argument in required]
+        mros = [PORTS.classes.precedence(class_for_dispatch(argument)) for argument in required]
         keys = [eql_key(argument) if index in self.eql_positions else None for index, argument in enumerate(required)]
         order = self.precedence or range(len(required))
         found = [method for method in self.methods if method.applies(mros, keys)]
@@ -224,8 +231,7 @@ class GenericFunction(FunctionObject):
 
     def _checking_keys(self, effective, methods):
         shapes = [self.shape, *(method.shape for method in methods)]
-        if any(shape.allow_other_keys or (shape.rest and not shape.has_keys) for shape in shapes[1:]) or self.shape.allow_other_keys:
-            return effective
+        others_allowed = any(shape.allow_other_keys for shape in shapes)
         allowed = list(dict.fromkeys(key for shape in shapes for key in shape.keys))
         first = self.shape.required + self.shape.optional
 
@@ -235,7 +241,7 @@ class GenericFunction(FunctionObject):
                 if len(given) % 2:
                     return program_error("odd number of &KEY arguments")
                 for key in given[::2]:
-                    if key not in allowed and key is not ALLOW_OTHER_KEYS and not other_keys_allowed(given):
+                    if not others_allowed and key not in allowed and key is not ALLOW_OTHER_KEYS and not other_keys_allowed(given):
                         return program_error("invalid keyword argument: ~S (valid keys are ~{~S~^, ~}).", key, list_from(allowed))
             return effective(*arguments, **keywords)
 

@@ -7,6 +7,7 @@ lambda list says about calls (how many arguments, which keywords) is a `Shape`; 
 
 from __future__ import annotations
 
+from ..classes import BigInteger
 from ..data import Cons, Keyword, Symbol, python_list
 from ..equality import eql_key
 from ..packages import keyword, sym, symbol_name
@@ -68,7 +69,13 @@ class Shape:
             self.required == other.required
             and self.optional == other.optional
             and (self.rest or self.has_keys) == (other.rest or other.has_keys)
+            and not self.keys_unknown_to(other)
         )
+
+    def keys_unknown_to(self, other):
+        """The keywords of this generic function that a method of shape ``other`` does not take."""
+        takes_all = other.allow_other_keys or (other.rest and not other.has_keys)
+        return [] if takes_all else [key for key in self.keys if key not in other.keys]
 
 
 def shape_items(lambda_list):
@@ -120,3 +127,15 @@ class Method(MethodObject):
 
     def callable_for(self, classes):
         return self.function(classes) if self.per_class else self.function
+
+
+def class_for_dispatch(argument):
+    """The class that methods are chosen by: Python's own, but that integers beyond the fixnums have one of their own."""
+    if argument.__class__ is int:
+        return int if -(2**62) <= argument < 2**62 else BigInteger
+    return type(None) if argument is False else argument.__class__
+
+
+def is_sized(specializer):
+    """Whether instances of ``specializer`` are told by the size of an integer, not by its Python class."""
+    return getattr(specializer, "lisp_name", None) in ("FIXNUM", "BIGNUM")

@@ -346,8 +346,8 @@
     (%object ?world ?name ?object)
     (not (== ?name ?robot))
     (lisp-fun camera-poses ?robot ?world ?cameras)
-    (once (member ?camera ?cameras)
-          (lisp-pred object-visible-p ?world ?camera ?object)))
+    (once (and (member ?camera ?cameras)
+               (lisp-pred object-visible-p ?world ?camera ?object))))
 
   (<- (visible-from ?world ?camera-pose ?name)
     (%object ?world ?name ?object)

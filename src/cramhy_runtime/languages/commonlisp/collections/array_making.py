@@ -20,7 +20,7 @@ from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
 from .lists import items_of
 from .sequence_types import INDEX_TYPE, char_of, elements, text
-from cramhy_runtime.ground.arrays import CHARACTER, LispArray, TypedVector, Vector, take_storage
+from cramhy_runtime.ground.arrays import CHARACTER, LispArray, SimpleArray, TypedVector, Vector, take_storage
 
 LISP_NAMES = "make-array vector adjust-array"
 
@@ -87,7 +87,7 @@ def make_array(
         return _displaced(dimensions, size, element_type, adjustable, fill_pointer, displaced_to, displaced_index_offset)
     items = _contents(dimensions, size, element_type, initial_element, initial_contents)
     if len(dimensions) != 1:
-        return LispArray(dimensions, items, element_type, adjustable)
+        return (LispArray if adjustable else SimpleArray)(dimensions, items, element_type, adjustable)
     if element_type is CHARACTER:
         if fill_pointer is None and not adjustable:
             return text(items)
@@ -214,7 +214,7 @@ def adjust_array(
         return TypedVector(items, kind) if isinstance(array, TypedVector) else items
     if len(dimensions) == 1:
         return _became(array, Vector(items, pointer, kind, array.adjustable))
-    return _became(array, LispArray(dimensions, items, kind, array.adjustable))
+    return _became(array, (LispArray if array.adjustable else SimpleArray)(dimensions, items, kind, array.adjustable))
 
 
 def _keep_old(array, old_dimensions, dimensions, items):

@@ -21,6 +21,7 @@ from cramhy_runtime.ground.arrays import InvalidArray, InvalidArrayIndex, follow
 from cramhy_runtime.ground.arrays import (
     BIT,
     LispArray,
+    SimpleArray,
     SimpleBitVector,
     TypedVector,
     Vector,
@@ -403,7 +404,7 @@ def _bits_into(bits, first, result):
     if result is None or result is False:
         if isinstance(first, (TypedVector, Vector)):
             return TypedVector(bits, BIT)
-        return LispArray(first.dimensions, bits, BIT)
+        return SimpleArray(first.dimensions, bits, BIT)
     target = first if result is True else _bit_array(result, "\nwhen binding SB-VM::RESULT-BIT-ARRAY")
     if isinstance(target, TypedVector):
         target[:] = bits

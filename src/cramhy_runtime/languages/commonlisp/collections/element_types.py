@@ -47,6 +47,8 @@ def upgraded_element_type(specifier):
             return upgraded_element_type(expansion)
         if not PORTS.types.known(specifier):
             error("Undefined type: ~S", specifier)
+    elif specifier is not None and specifier is not True:
+        error("bad thing to be a type specifier: ~S", specifier)
     return True
 
 
@@ -57,7 +59,7 @@ def _integer_limits(name, parameters):
         return -(2 ** (parameters[0] - 1)), 2 ** (parameters[0] - 1) - 1
     if name == "MOD":
         return 0, parameters[0] - 1
-    if name in ("MEMBER", "EQL") and all(parameter.__class__ is int for parameter in parameters):
+    if name in ("MEMBER", "EQL") and parameters and all(parameter.__class__ is int for parameter in parameters):
         return min(parameters), max(parameters)
     if name == "INTEGER" and len(parameters) == 2:
         low, high = (_limit(parameter, step) for parameter, step in zip(parameters, (1, -1), strict=True))

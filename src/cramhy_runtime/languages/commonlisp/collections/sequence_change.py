@@ -20,19 +20,16 @@ substitute substitute-if substitute-if-not nsubstitute nsubstitute-if nsubstitut
 """
 
 
-def _chosen(match, sequence, from_end, start, end, count, substituting=False):
-    """(elements, set of the indices of those that match), at most ``count`` of them, from the end if asked.
-
-    Without ``count`` only the substituting functions ask the last element first, as in SBCL.
-    """
+def _chosen(match, sequence, from_end, start, end, count):
+    """(elements, set of the indices of those that match), at most ``count`` of them; from the end if asked, with or without ``count``."""
     most = limit(count)
     items, start, end = span(sequence, start, end)
     backwards = from_end is not None and from_end is not False
+    order = range(end - 1, start - 1, -1) if backwards else range(start, end)
     if most is None:
-        order = range(end - 1, start - 1, -1) if backwards and substituting else range(start, end)
         return items, {index for index in order if match(items[index])}
     chosen = set()
-    for index in range(end - 1, start - 1, -1) if backwards else range(start, end):
+    for index in order:
         if len(chosen) >= most:
             break
         if match(items[index]):
@@ -41,7 +38,7 @@ def _chosen(match, sequence, from_end, start, end, count, substituting=False):
 
 
 def _removed(match, sequence, from_end, start, end, count):
-    if count is None and end is None and start == 0:
+    if count is None and end is None and start == 0 and from_end is None:
         return same_kind(sequence, [item for item in elements(sequence) if not match(item)])
     items, chosen = _chosen(match, sequence, from_end, start, end, count)
     return same_kind(sequence, [item for index, item in enumerate(items) if index not in chosen])
@@ -159,12 +156,12 @@ def delete_duplicates(sequence, *, from_end=None, test=None, test_not=None, star
 
 
 def _substituted(new, match, sequence, from_end, start, end, count):
-    items, chosen = _chosen(match, sequence, from_end, start, end, count, substituting=True)
+    items, chosen = _chosen(match, sequence, from_end, start, end, count)
     return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(items)])
 
 
 def _nsubstituted(new, match, sequence, from_end, start, end, count):
-    items, chosen = _chosen(match, sequence, from_end, start, end, count, substituting=True)
+    items, chosen = _chosen(match, sequence, from_end, start, end, count)
     if sequence.__class__ is str:
         return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(items)])
     store_all(sequence, 0, [new if index in chosen else item for index, item in enumerate(items)])

@@ -17,7 +17,7 @@ from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from .element_types import check_element, upgraded_element_type
 from .lists import items_of
-from cramhy_runtime.ground.arrays import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type
+from cramhy_runtime.ground.arrays import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type, is_simple
 
 INDEX_TYPE = "(MOD 4611686018427387901)"
 
@@ -227,10 +227,10 @@ _GENERAL = {"VECTOR", "SIMPLE-VECTOR", "ARRAY", "SIMPLE-ARRAY"}
 class SequenceType:
     """A type specifier read as "how to make a sequence": ``element_type`` is ``None`` for lists; ``length`` may be fixed."""
 
-    __slots__ = ("specifier", "element_type", "length", "nonempty")
+    __slots__ = ("specifier", "element_type", "length", "nonempty", "simple")
 
-    def __init__(self, specifier, element_type, length=None, nonempty=False):
-        self.specifier, self.element_type = specifier, element_type
+    def __init__(self, specifier, element_type, length=None, nonempty=False, simple=False):
+        self.specifier, self.element_type, self.simple = specifier, element_type, simple
         self.length, self.nonempty = length, nonempty
 
     def check_length(self, length):
@@ -277,20 +277,23 @@ def _read_type(specifier, original):
         return None if name is specifier else _read_type(name, name)
     if name.package is sym("LIST").package:
         kind, star = name.name, sym("*")
+        simple = kind.startswith("SIMPLE-")
         given = [None if parameter is star else parameter for parameter in parameters] + [None, None]
-        if kind in _LISTS:
+        if kind in _LISTS and (kind == "CONS" or not isinstance(specifier, Cons)):
             return SequenceType(original, None, _length_of_list(specifier), kind == "CONS")
         if kind in _STRINGS:
-            return SequenceType(original, CHARACTER, given[0])
+            return SequenceType(original, CHARACTER, given[0], simple=simple)
         if kind in _BITS:
-            return SequenceType(original, BIT, given[0])
+            return SequenceType(original, BIT, given[0], simple=simple)
         if kind == "SIMPLE-VECTOR":
-            return SequenceType(original, True, given[0])
+            return SequenceType(original, True, given[0], simple=simple)
         if kind in _GENERAL:
             element_type = True if given[0] is None else upgraded_element_type(given[0])
             if given[1].__class__ is int and kind in ("ARRAY", "SIMPLE-ARRAY"):  # a rank
-                return SequenceType(original, element_type) if given[1] == 1 else None
-            return SequenceType(original, element_type, _one_dimension(given[1]))
+                return SequenceType(original, element_type, simple=simple) if given[1] == 1 else None
+            if kind in ("ARRAY", "SIMPLE-ARRAY") and not (isinstance(given[1], Cons) and given[1].cdr is None):
+                return None  # of any rank, or of another
+            return SequenceType(original, element_type, _one_dimension(given[1]), simple=simple)
         if kind in ("AND", "OR"):
             found = [_read_type(parameter, original) for parameter in parameters]
             if kind == "OR" and len({None if one is None else one.element_type is None for one in found}) > 1:
@@ -323,6 +326,8 @@ def to_sequence_type(sequence, specifier):
         if sequence is None or isinstance(sequence, Cons):
             wanted.check_length(len(items))
             return sequence
+    elif wanted.simple and not is_simple(sequence):
+        return wanted.make(items)
     elif wanted.element_type is CHARACTER:
         if is_string(sequence):
             wanted.check_length(len(items))

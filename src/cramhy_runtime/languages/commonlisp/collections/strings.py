@@ -244,28 +244,32 @@ def nstring_capitalize(string, *, start=0, end=None):
 # ------------------------------------------------------------------------------------------------------------------- trimming
 
 
-def _bag(characters):
+def _bag(characters, text):
+    """The characters to be trimmed from ``text`` as a string; they are looked at only when there is a text."""
     if isinstance(characters, (str, LispString)):
         return str(characters)
     bag = elements(characters, "\nwhen binding SB-IMPL::CHAR-BAG")
-    return "".join(one.char for one in bag if one.__class__ is Character)
+    return "".join(one.char if one.__class__ is Character else type_error(one, "CHARACTER") for one in bag) if text else ""
 
 
 def string_trim(characters, string):
     """``string-trim``: the string without the given characters at both ends."""
-    bag, text = _bag(characters), _text(string, "")
+    text = _text(string, "")
+    bag = _bag(characters, text)
     return FreshString(text.strip(bag) if bag else text)
 
 
 def string_left_trim(characters, string):
     """``string-left-trim``: the string without the given characters at its beginning."""
-    bag, text = _bag(characters), _text(string, "")
+    text = _text(string, "")
+    bag = _bag(characters, text)
     return FreshString(text.lstrip(bag) if bag else text)
 
 
 def string_right_trim(characters, string):
     """``string-right-trim``: the string without the given characters at its end."""
-    bag, text = _bag(characters), _text(string, "")
+    text = _text(string, "")
+    bag = _bag(characters, text)
     return FreshString(text.rstrip(bag) if bag else text)
 
 

@@ -11,7 +11,7 @@ from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, one
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 
 TYPE, OPTIMIZE, SAFETY = sym("TYPE"), sym("OPTIMIZE"), sym("SAFETY")
 OTHERS = {
@@ -21,7 +21,7 @@ MUFFLE-CONDITIONS""".split()
 }
 """Declarations whose name is no type."""
 
-UNCHECKED = {sym("T"), sym("*"), True, None}
+UNCHECKED = {sym("T"), sym("*"), True}
 CLASSES = {sym("INTEGER"): "int", sym("FIXNUM"): "int", sym("SINGLE-FLOAT"): "float"}
 """Types that one comparison of classes proves, and the kind of a value that has passed it."""
 DOUBLE = {sym("DOUBLE-FLOAT"), sym("LONG-FLOAT")}
@@ -53,8 +53,8 @@ def checkable(specifier):
     if specifier in UNCHECKED if not isinstance(specifier, Cons) else not isinstance(specifier.car, Symbol):
         return False
     if isinstance(specifier, Cons):
-        return specifier.car.name not in ("VALUES", "FUNCTION") and (specifier.car.name != "SATISFIES")
-    return isinstance(specifier, Symbol) and (specifier.compiler_data or {}).get("declaration") is None
+        return specifier.car.name not in ("VALUES", "FUNCTION")
+    return specifier is None or isinstance(specifier, Symbol) and (specifier.compiler_data or {}).get("declaration") is None
 
 
 def kind_of_type(specifier):
@@ -93,4 +93,6 @@ def _all_known(specifier):
     head = specifier.car
     if isinstance(head, Symbol) and head.name in ("AND", "OR", "NOT"):
         return all(map(_all_known, specifier.cdr or ()))
-    return not (isinstance(head, Symbol) and head.name == "SATISFIES") and PORTS.types.known(head)
+    if isinstance(head, Symbol) and head.name == "SATISFIES":
+        return isinstance(specifier.cdr, Cons) and is_symbol(specifier.cdr.car) and specifier.cdr.car.package is COMMON_LISP
+    return isinstance(head, Symbol) and head.name in ("EQL", "MEMBER", "MOD") or PORTS.types.known(head)

@@ -365,6 +365,13 @@ def _choose(directive, state):
             run(clauses[-1], state)
 
 
+def last_cdr(cell):
+    """What a list that is not circular ends with: ``None``, unless it is dotted."""
+    while isinstance(cell, Cons):
+        cell = cell.cdr
+    return cell
+
+
 def _iterate(directive, state):
     (limit,) = parameters(directive, state, None)
     control = None
@@ -380,7 +387,10 @@ def _iterate(directive, state):
     if directive.at:
         _loop(directive, state, once, limit)
     else:
-        args = list_arguments(directive, state.next(directive))
+        value = state.next(directive)
+        args = list_arguments(directive, value)
+        if limit is None and isinstance(value, Cons) and (end := last_cdr(value)) is not None:
+            type_error(end, "LIST")
         _loop(directive, State(state.stream, args, 0, None, state.rest, state.colon_up), once, limit)
 
 

@@ -12,7 +12,8 @@ import types as python_types
 from fractions import Fraction
 from pathlib import PurePath
 
-from cramhy_runtime.ground.arrays import BitVector, LispArray, SimpleBitVector, TypedVector, Vector
+from cramhy_runtime.ground.arrays import BitVector, LispArray, SimpleArray, SimpleBitVector, TypedVector, Vector
+from cramhy_runtime.ground.classes import BigInteger
 from cramhy_runtime.ground.conditions import Condition, Restart
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
 from cramhy_runtime.ground.packages import Package, sym
@@ -75,6 +76,7 @@ _MAP = {
     TypedVector: "VECTOR",
     Vector: "VECTOR",
     LispArray: "ARRAY",
+    SimpleArray: "SIMPLE-ARRAY",
     bytes: "VECTOR",
     bytearray: "VECTOR",
     Package: "PACKAGE",
@@ -101,6 +103,8 @@ def lisp_mro(cls):
 
 
 def _compute_mro(cls):
+    if cls is BigInteger:
+        return [CLASSES["BIGNUM"] if base is CLASSES["FIXNUM"] else base for base in lisp_mro(int)]
     if cls in CLASSES.values():
         return _system_mro(cls)
     result = []

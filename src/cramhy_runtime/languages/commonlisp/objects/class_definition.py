@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNBOUND, Symbol, list_from, one, python_list
+from cramhy_runtime.ground.data import UNBOUND, Keyword, Symbol, list_from, one, python_list
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from ..streams.streams import StringOutputStream
@@ -77,6 +77,10 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
     slots = python_list(slots)
     check_symbol(name, "defining ~S as a class", name)
     _check_slots(name, slots, "DEFCLASS")
+    initargs = [python_list(entry)[0] for entry in python_list(default_initargs)]
+    for initarg in initargs:
+        if initargs.count(initarg) > 1:
+            invalid_class_definition("Duplicate initarg ~S in the :DEFAULT-INITARGS of DEFCLASS ~S.", initarg, name)
     bases = [_superclass(name, base) for base in python_list(superclasses)]
     bases = [base for base in bases if base is not object]
     if not any(issubclass(base, StandardObject) for base in bases):
@@ -93,8 +97,10 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
 def _check_slots(name, slots, operator):
     names = [slot.name for slot in slots]
     for slot in slots:
-        if not is_symbol(slot.name):
+        if not is_symbol(slot.name) or isinstance(slot.name, Keyword) or slot.name in (None, True):
             invalid_class_definition("~S is not a slot name, in ~A ~S.", slot.name, operator, name)
+        if wrong := [initarg for initarg in slot.initargs if not is_symbol(initarg)]:
+            invalid_class_definition("~S is not an initarg, in the slot ~S of ~A ~S.", wrong[0], slot.name, operator, name)
         if names.count(slot.name) > 1:
             invalid_class_definition("Multiple slots named ~S in ~A ~S.", slot.name, operator, name)
     if not isinstance(name, Symbol):
@@ -199,8 +205,9 @@ def _install_class_slots(cls, slots):
     for slot in slots:
         if slot.cell is not None:
             setattr(cls, effective_slots(cls)[slot.name].attribute, slot.cell)
-            if slot.initfunction is not None and slot.cell.value is UNBOUND:
-                slot.cell.value = one(slot.initfunction())
+            initfunction = effective_slots(cls)[slot.name].initfunction  # perhaps that of a superclass
+            if initfunction is not None and slot.cell.value is UNBOUND:
+                slot.cell.value = one(initfunction())
     _hide_class_slots(cls)
 
 

@@ -10,7 +10,7 @@ A symbol's class is one object from the first definition on, also when it is def
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import shown, shown_with
-from cramhy_runtime.ground.conditions import Condition, Error, SimpleProgramError, TypeError_, error, type_error
+from cramhy_runtime.ground.conditions import CellError, Condition, SimpleProgramError, SimpleTypeError, TypeError_, error, type_error
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, no_method_for
 from cramhy_runtime.ground.packages import ensure_package, find_package, is_symbol, sym
@@ -21,15 +21,11 @@ from .class_objects import StandardClass, StandardObject, touch_classes
 LISP_NAMES = "find-class class-of class-name"
 
 
-class ClassNotFoundError(Error):
+class ClassNotFoundError(CellError):
     """No class has the name that was given."""
 
     lisp_name = "SB-PCL::CLASS-NOT-FOUND-ERROR"
     initargs = {"NAME": "name"}
-
-    def __init__(self, name=None, **slots):
-        super().__init__(**slots)
-        self.name = name
 
     def report(self):
         return f"There is no class named {qualified(self.name)}."
@@ -278,6 +274,10 @@ def set_class_name(new, cls):
         return no_method_for("CLASS-NAME", cls)
     if not is_symbol(new):
         return type_error(new, sym("SYMBOL"))
+    if isinstance(cls, BuiltInClass):
+        return error(
+            SimpleTypeError("The name of the built-in class ~S cannot be changed.", cls, datum=cls, expected_type=sym("STANDARD-CLASS"))
+        )
     cls.lisp_symbol = new
     return new
 

@@ -12,7 +12,7 @@ from . import protocol_functions
 import copy
 from fractions import Fraction
 
-from cramhy_runtime.ground.condition_types import Condition, Error, shown
+from cramhy_runtime.ground.condition_types import Condition, ProgramError, shown
 from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
 from cramhy_runtime.ground.data import UNBOUND, Character, Cons, DoubleFloat, Keyword, LispString, Symbol, list_from, one, python_list
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
@@ -24,7 +24,7 @@ from .classes import StructureClass, class_name, class_of, find_class_or_error, 
 from cramhy_runtime.ground.dispatch.generic_functions import ALLOW_OTHER_KEYS, no_method_for, other_keys_allowed, when_methods_change
 
 
-class InitargError(Error):
+class InitargError(ProgramError):
     """An initialization argument that no slot and no method takes."""
 
     lisp_name = "SB-PCL::INITARG-ERROR"
@@ -275,16 +275,22 @@ def default_shared_initialize(instance, slot_names, *initargs):
 def default_reinitialize_instance(instance, *initargs):
     if instance.__class__ in _NO_INSTANCES:
         return no_method_for("REINITIALIZE-INSTANCE", instance, *initargs)
-    plan = plan_for(type(instance))
-    if plan.valid is not None:
-        keys = {
-            key for method in applicable_user_methods(protocol_functions.reinitialize_instance, type(instance)) for key in method.shape.keys
-        }
-        wrong = [key for key in initargs[::2] if key not in plan.valid and key not in keys]
-        if wrong and not other_keys_allowed(initargs):
-            error(InitargError(type(instance), list(reversed(wrong))))
+    _check_initargs(type(instance), applicable_user_methods(protocol_functions.reinitialize_instance, type(instance)), initargs)
     protocol_functions.shared_initialize(instance, None, *initargs)
     return instance
+
+
+def _check_initargs(cls, methods, initargs):
+    """Signal an error for initargs that neither a slot of ``cls`` nor one of the ``methods`` takes."""
+    plan = plan_for(cls)
+    if len(initargs) % 2:
+        program_error("odd number of &KEY arguments")
+    if plan.valid is None or any(method.shape.allow_other_keys for method in methods):
+        return
+    keys = {key for method in methods for key in method.shape.keys}
+    wrong = [key for key in initargs[::2] if key not in plan.valid and key not in keys]
+    if wrong and not other_keys_allowed(initargs):
+        error(InitargError(cls, list(reversed(wrong))))
 
 
 def default_allocate_instance(cls, *initargs):
@@ -302,6 +308,9 @@ def default_change_class(instance, new_class, *initargs):
     if instance.__class__ in _NO_INSTANCES:
         return no_method_for("CHANGE-CLASS", instance, cls, *initargs)
     old = type(instance)
+    if initargs:
+        changing = protocol_functions.update_instance_for_different_class.methods
+        _check_initargs(cls, [method for method in changing if not getattr(method.function, "lisp_default", False)], initargs)
     previous = copy.copy(instance)
     values = {
         slot.name: vars(instance).get(slot.attribute, UNBOUND) if slot.cell is None else slot.cell.value

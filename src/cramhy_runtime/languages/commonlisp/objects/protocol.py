@@ -8,7 +8,7 @@ and CHANGE-CLASS are here too, because methods on them are allowed. PRINT-OBJECT
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import shown
-from cramhy_runtime.ground.conditions import SimpleError, error, type_error
+from cramhy_runtime.ground.conditions import SimpleError, error, type_error, wrong_argument_count
 from cramhy_runtime.ground.data import UNSUPPLIED, Cons, MultipleValues, Symbol, lisp_list, list_from, python_list
 from cramhy_runtime.ground.functions import functionp
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
@@ -18,7 +18,7 @@ from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_definition import define_class
 from .class_objects import direct_slots, effective_slots
-from .classes import class_name
+from .classes import class_name, find_class_or_error
 from cramhy_runtime.ground.dispatch.generic_functions import (
     GenericFunction,
     Method,
@@ -46,8 +46,17 @@ class-finalized-p ensure-class eql-specializer-object"""
 
 
 make_instance = generic("MAKE-INSTANCE", "(class &rest initargs &key &allow-other-keys)")
-for _specializer in (CLASSES["SYMBOL"], type):
-    generics.add_method(make_instance, (), [_specializer], instances.make_instance, uses_next=False, user=False)
+
+
+def _make_named(name, *initargs, **keywords):
+    """``(make-instance 'turtle)`` is ``(make-instance (find-class 'turtle))``, for which users may have methods."""
+    if make_instance.user_methods:
+        return make_instance(find_class_or_error(name), *initargs, **keywords)
+    return instances.make_instance(name, *initargs, **keywords)
+
+
+for _specializer, _function in ((CLASSES["SYMBOL"], _make_named), (type, instances.make_instance)):
+    generics.add_method(make_instance, (), [_specializer], _function, uses_next=False, user=False)
 allocate_instance = protocol_function(
     "ALLOCATE-INSTANCE", "(class &rest initargs &key &allow-other-keys)", instances.default_allocate_instance
 )
@@ -181,6 +190,15 @@ def find_method(generic_function, qualifiers, specializers, errorp=True):
     if not isinstance(generic_function, GenericFunction):
         return no_method_for("FIND-METHOD", generic_function, qualifiers, specializers)
     wanted = [specializer_of(specializer) for specializer in python_list(specializers)]
+    if generic_function.methods and len(wanted) != generic_function.shape.required:
+        return error(
+            SimpleError(
+                "~S has ~D required argument~:P, so a method of it has as many specializers, and not ~S.",
+                generic_function,
+                generic_function.shape.required,
+                specializers,
+            )
+        )
     method = find_method_or_none(generic_function, python_list(qualifiers), wanted)
     if method is None and errorp is not None:
         which = f"the qualifiers {shown(qualifiers)}" if qualifiers is not None else "no qualifiers"
@@ -192,7 +210,10 @@ def compute_applicable_methods(generic_function, function_arguments):
     """``cl:compute-applicable-methods``"""
     if not isinstance(generic_function, GenericFunction):
         return no_method_for("COMPUTE-APPLICABLE-METHODS", generic_function, function_arguments)
-    return list_from(generic_function.applicable_methods(tuple(python_list(function_arguments))))
+    arguments = tuple(python_list(function_arguments))
+    if len(arguments) < generic_function.shape.required:
+        return wrong_argument_count(len(arguments))
+    return list_from(generic_function.applicable_methods(arguments))
 
 
 def add_method(generic_function, method):

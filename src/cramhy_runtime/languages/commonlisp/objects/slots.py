@@ -16,7 +16,7 @@ from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
 from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.ground.packages import sym
-from .class_objects import InstanceSlot, effective_slots, find_slot
+from .class_objects import ClassSlot, InstanceSlot, effective_slots, find_slot
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import class_of
 
@@ -103,7 +103,7 @@ def slot_boundp(object, slot_name):
 def _bound(obj, attribute):
     update_if_obsolete(obj)
     own = getattr(obj, "__dict__", None)
-    if own is not None and attribute in own:
+    if own is not None and attribute in own and not isinstance(getattr(type(obj), attribute, None), ClassSlot):
         return own[attribute] is not UNBOUND
     for cls in type(obj).__mro__:
         if attribute in vars(cls):

@@ -21,6 +21,7 @@ from ..syntax.function_shapes import shape_of
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, redefined, sym, symbol_name
 from ..packages.package_errors import check_symbol
+from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
 from .builtin_classes import set_structure_object
 from .classes import StructureClass, register_class, registered_class
 from cramhy_runtime.ground.dispatch.generic_functions import add_method
@@ -52,6 +53,7 @@ class StructureSlot:
     """A slot of a structure type: its name, initform (a thunk or ``None``), type specifier, and whether it can be set."""
 
     cell = None
+    said_writable = False
 
     def __init__(self, name, initform=None, type_=True, read_only=False):
         self.name, self.initform, self.type, self.read_only = name, initform, type_, read_only
@@ -78,9 +80,14 @@ def _predicate(specifier):
     return PORTS.types.predicate(specifier) if PORTS.types.known(specifier) else lambda value: PORTS.types.predicate(specifier)(value)
 
 
-def structure_slot(name, *, initform=None, type=True, read_only=None):
-    """The description of a slot for `define_structure`: a Symbol, a thunk or nil, a type specifier, t or nil."""
-    return StructureSlot(name, initform, type, read_only is not None)
+def structure_slot(name, *, initform=None, type=True, read_only=None, writable=None):
+    """The description of a slot for `define_structure`: a Symbol, a thunk or nil, a type specifier, t or nil.
+
+    writable: whether the definition said ``:read-only nil``, which an included slot that is read-only does not allow.
+    """
+    slot = StructureSlot(name, initform, type, read_only is not None)
+    slot.said_writable = writable is not None
+    return slot
 
 
 def _representation(kind):
@@ -102,6 +109,8 @@ class Structure:
 
     def __init__(self, name, slots, include, type_, named, offset):
         self.name, self.slots, self.include = name, slots, include
+        if type_ is None and offset:
+            program_error(":OFFSET can't be specified unless :TYPE is specified.")
         self.representation, self.element_type = _representation(type_)
         self.named, self.offset = named, offset
         if include is not None and (include.representation, include.element_type) != (self.representation, self.element_type):
@@ -291,10 +300,15 @@ def define_structure(
 
 def _all_slots(name, parent, own, overrides):
     slots = [slot.copy() for slot in parent.slots] if parent else []
-    for override in overrides:
+    for number, override in enumerate(overrides):
+        if override.keyword in {other.keyword for other in overrides[:number]}:
+            program_error("duplicate slot name ~S", override.name)
         inherited = next((slot for slot in slots if slot.keyword is override.keyword), None)
         if inherited is None:
             program_error("slot name ~S not present in included structure ~S", override.name, parent.name)
+        if inherited.read_only and override.said_writable:
+            text = "The slot ~A is :READ-ONLY in superclass, and so must be :READ-ONLY in subclass."
+            error(SimpleError(text, symbol_name(override.name)))
         inherited.initform = override.initform
         inherited.read_only = inherited.read_only or override.read_only
         if override.type is not True:
@@ -348,11 +362,7 @@ def _function(symbol, function):
 
 
 def _define_accessor(structure, slot, symbol, parent):
-    if (
-        parent is not None
-        and slot.keyword in {other.keyword for other in parent.slots}
-        and not isinstance(symbol.function, UndefinedFunction)
-    ):
+    if parent is not None and _serves_both(structure, slot, symbol):
         return  # the included type's accessor of the same name serves both (ANSI DEFSTRUCT, :include)
     if structure.cls is not None:
         reader, writer = _class_accessors(structure, slot)
@@ -364,9 +374,24 @@ def _define_accessor(structure, slot, symbol, parent):
     symbol.function_changed()
 
 
+def _serves_both(structure, slot, symbol):
+    """Whether the function of ``symbol`` is the accessor of ``slot`` that an included type has."""
+    if structure.cls is None:
+        return slot.keyword in {other.keyword for other in structure.include.slots} and not isinstance(symbol.function, UndefinedFunction)
+    cls = getattr(symbol.function, "slot_of", None)
+    return cls in structure.cls.__mro__[1:] and symbol.function.attribute == slot.attribute
+
+
 def _class_accessors(structure, slot):
-    member = getattr(structure.cls, slot.attribute)
+    member, cls = getattr(structure.cls, slot.attribute), structure.cls
     get, put, predicate, name = member.__get__, member.__set__, slot.predicate, structure.name
+    if member.__objclass__ is not cls:  # the slot's own descriptor takes instances of the included type, too
+
+        def get(object):
+            return member.__get__(object) if isinstance(object, cls) else type_error(object, name)
+
+        def put(object, new):
+            return member.__set__(object, new) if isinstance(object, cls) else type_error(object, name)
 
     def accessor(object):
         try:
@@ -413,12 +438,16 @@ def _sequence_accessors(structure, slot):
         return new
 
     def vector_accessor(object):
+        if structure.element_type is True and object.__class__ is not list:
+            return type_error(object, sym("SIMPLE-VECTOR"))
         try:
             return object[index] if object.__class__ is list else aref(object, index)
         except (TypeError, IndexError):
             return type_error(object, kind)
 
     def vector_setter(new, object):
+        if structure.element_type is True and object.__class__ is not list:
+            return type_error(object, sym("SIMPLE-VECTOR"))
         if object.__class__ is not list:
             return set_aref(new, object, index)
         try:
@@ -537,9 +566,12 @@ def _define_printing(structure, print_function, print_object_function):
     if structure.cls is None or (print_function is None and print_object_function is None):
         return
 
+    if print_function is not None:
+        LEVELS_COUNT.value = True
+
     def print_it(object, stream):
         if print_function is not None:
-            return _callable(print_function)(object, stream, 0)
+            return _callable(print_function)(object, stream, CURRENT_LEVEL.value)
         return _callable(print_object_function)(object, stream)
 
     add_method(protocol_functions.print_object, (), [structure.cls, True], print_it, uses_next=False)

@@ -51,7 +51,8 @@ class NameConflict(PackageError):
     def report(self):
         with binding(PACKAGE, KEYWORD):
             symbols = list_from([Cons(prin1_to_string(symbol)) for symbol in self.symbols])
-            datum = prin1_to_string(self.datum)
+            symbol = prin1_to_string(self.datum)
+        datum = symbol if is_symbol(self.datum) else prin1_to_string(self.datum)
         return formatted(
             "~@<~S ~A causes name-conflicts in ~S between the following symbols: ~2I~@:_~{~{~A~}~^, ~}~:@>",
             (self.function, datum, self.package, symbols),

@@ -8,8 +8,8 @@ from __future__ import annotations
 from .components import COMPONENTS
 import math
 
-from cramhy_runtime.ground.arrays import CHARACTER, Vector, is_bit_vector
-from cramhy_runtime.ground.data import Character
+from cramhy_runtime.ground.arrays import CHARACTER, LispArray, Vector, is_bit_vector
+from cramhy_runtime.ground.data import Character, Cons, list_from
 from .pretty import NO_OBJECT, call_logical_block, newline_if_pretty
 from .print_controls import PRINT_ARRAY, PRINT_READABLY, deeper, length_limit, too_deep
 
@@ -29,6 +29,28 @@ def _characters(array):
     return None
 
 
+def _needs_type(array):
+    """Whether ``array`` is to be read again, and ``#(...)`` or ``#2A(...)`` would not tell its dimensions or its element type."""
+    if PRINT_READABLY.value is None or is_bit_vector(array):
+        return False
+    empty = isinstance(array, LispArray) and not isinstance(array, Vector) and 0 in array.dimensions[:-1]
+    return empty or getattr(array, "element_type", True) is not True
+
+
+def _with_type(array):
+    """(dimensions element-type . contents): what SBCL writes, and reads, behind ``#A``."""
+    elements = _elements(array) if _is_vector(array) else array.active()
+    dimensions = [len(elements)] if _is_vector(array) else list(array.dimensions)
+    return Cons(list_from(dimensions), Cons(getattr(array, "element_type", True), _nested(elements, dimensions, 0)))
+
+
+def _nested(elements, dimensions, index):
+    if not dimensions:
+        return elements[index]
+    step = math.prod(dimensions[1:])
+    return list_from([_nested(elements, dimensions[1:], index + position * step) for position in range(dimensions[0])])
+
+
 def print_array(array, stream):
     """Print ``array`` on one line, or tersely when ``*print-array*`` is nil."""
     text = _characters(array)
@@ -37,6 +59,10 @@ def print_array(array, stream):
         return
     if PRINT_ARRAY.value is None and PRINT_READABLY.value is None:
         COMPONENTS.print_unreadable(array, stream, type_=True, identity=True)
+        return
+    if _needs_type(array):
+        stream.write("#A")
+        COMPONENTS.output_object(_with_type(array), stream)
         return
     if is_bit_vector(array):
         stream.write("#*" + "".join(map(str, _elements(array))))
@@ -81,7 +107,7 @@ def _print_dimension(elements, dimensions, index, stream, output_object):
 
 def pprint_array(stream, array, *_):
     """Print ``array`` with line breaks where they are needed."""
-    if _characters(array) is not None or (PRINT_ARRAY.value is None and PRINT_READABLY.value is None):
+    if _characters(array) is not None or _needs_type(array) or (PRINT_ARRAY.value is None and PRINT_READABLY.value is None):
         print_array(array, stream)
     elif _is_vector(array):
         call_logical_block(stream, NO_OBJECT, lambda out, block: _fill_elements(out, block, _elements(array)), "#(", ")")

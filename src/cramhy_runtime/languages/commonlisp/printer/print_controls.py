@@ -12,8 +12,10 @@ from fractions import Fraction
 
 from cramhy_runtime import kernel
 
+from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Character, Symbol
 from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, keyword
 
 
@@ -35,7 +37,7 @@ PRINT_GENSYM = special("*PRINT-GENSYM*", True)
 PRINT_ARRAY = special("*PRINT-ARRAY*", True)
 PACKAGE = special("*PACKAGE*", COMMON_LISP_USER)
 
-LEVEL = special(Symbol("*CURRENT-LEVEL-IN-PRINT*"), 0)
+LEVEL = CURRENT_LEVEL
 CIRCULARITY = special(Symbol("*CIRCULARITY*"), None)
 
 
@@ -76,6 +78,8 @@ _NOTHING = _Nothing()
 def too_deep(stream):
     """Whether ``*print-level*`` forbids going deeper; then ``#`` has been printed in place of the object."""
     limit = PRINT_LEVEL.value
+    if limit is not None and not isinstance(limit, int):
+        type_error(limit, "(OR UNSIGNED-BYTE NULL)")
     if limit is not None and PRINT_READABLY.value is None and LEVEL.value >= limit:
         stream.write("#")
         return True
@@ -84,13 +88,15 @@ def too_deep(stream):
 
 def deeper():
     """``with deeper():`` prints components, one level down."""
-    return _NOTHING if PRINT_LEVEL.value is None else bound(LEVEL, LEVEL.value + 1)
+    return _NOTHING if PRINT_LEVEL.value is None and LEVELS_COUNT.value is None else bound(LEVEL, LEVEL.value + 1)
 
 
 def length_limit():
     """``*print-length*``, or infinity."""
     limit = PRINT_LENGTH.value
-    return float("inf") if limit is None or PRINT_READABLY.value is not None else limit
+    if limit is None or PRINT_READABLY.value is not None:
+        return float("inf")
+    return limit if isinstance(limit, int) else type_error(limit, "(OR UNSIGNED-BYTE NULL)")
 
 
 # ---------------------------------------------------------------------------------------------------------- circularity

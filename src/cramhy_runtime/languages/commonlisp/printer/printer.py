@@ -285,7 +285,7 @@ def class_symbol(cls):
 
 def type_name(obj):
     """What stands for the type of ``obj`` in ``#<...>``: a symbol, or a list for arrays."""
-    if isinstance(obj, (list, str, int, LispString, LispArray)):
+    if isinstance(obj, (list, str, int, Character, LispString, LispArray)):
         return PORTS.types.of(obj)
     return class_symbol(type(obj))
 

@@ -16,14 +16,14 @@ from cramhy_runtime.ground.conditions import CaseFailure, Condition, Restart, Si
 from cramhy_runtime.ground.data import Cons, LispString, Symbol
 from cramhy_runtime.ground.hash_tables import HashTable, hash_table_test
 from ..numbers.complex_numbers import parts
-from cramhy_runtime.ground.packages import Package, all_packages, is_symbol, sym, symbol_name
+from cramhy_runtime.ground.packages import Package, all_packages, is_symbol, keyword, sym, symbol_name
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
 from ..streams.streams import SynonymStream
 from . import print_controls as controls
 from .pretty import NO_OBJECT, call_logical_block
 from .print_arrays import print_array
 from .print_controls import PRINT_ESCAPE, PRINT_PRETTY, bound, deeper, length_limit, too_deep
-from .print_names import in_print_case, integer_text, string_text, symbol_text, token
+from .print_names import in_print_case, integer_text, string_text, symbol_text
 from .printer import class_symbol, define_printer, escaping, output_object, print_unreadable
 
 
@@ -192,7 +192,7 @@ def _local_name(function):
         return f"(FLET {name}{inside})"
     parameters = " ".join(symbol_name(item) for item in PORTS.definitions.lambda_list(function) or ())
     parameters = parameters.replace("&REST LKEYS &KEY &ALLOW-OTHER-KEYS", "&KEY ...")  # the code looks for its keywords itself
-    return f"(LAMBDA ({parameters}){inside})"
+    return f"(LAMBDA {f'({parameters})' if parameters or PRINT_PRETTY.value is not None else 'NIL'}{inside})"
 
 
 def _python_name(function):
@@ -244,11 +244,13 @@ def _print_hash_table(table, stream):
 
     def contents():
         stream.write(":TEST ")
-        output_object(hash_table_test(table), stream)
+        with bound(PRINT_ESCAPE, True):
+            output_object(hash_table_test(table), stream)
         if table.test.__class__ is not str:
             stream.write(" :HASH-FUNCTION ")
             output_object(table.test.number, stream)
-        stream.write(f" :COUNT {len(table)}")
+        stream.write(" :COUNT ")
+        output_object(len(table), stream)
 
     print_unreadable(table, stream, type_=True, identity=True, body=contents)
 
@@ -265,9 +267,13 @@ def _print_comma(comma, stream):
     if PRINT_PRETTY.value is None:
         stream.write("#S(")
         output_object(COMMA, stream)
-        stream.write(" :EXPR ")
+        stream.write(" ")
+        stream.write(symbol_text(keyword("EXPR")))
+        stream.write(" ")
         output_object(comma.form, stream)
-        stream.write(" :KIND ")
+        stream.write(" ")
+        stream.write(symbol_text(keyword("KIND")))
+        stream.write(" ")
         output_object(COMMA_KINDS.index(comma.kind), stream)
         stream.write(")")
         return
@@ -279,8 +285,8 @@ def _print_comma(comma, stream):
 
 def print_package(package, stream):
     if package.name is None:
-        return print_unreadable(package, stream, f"{token('PACKAGE')} (deleted)", identity=True)
-    return print_unreadable(package, stream, f"{token('PACKAGE')} {string_text(package.name)}")
+        return print_unreadable(package, stream, "(deleted)", type_=True, identity=True)
+    return print_unreadable(package, stream, string_text(package.name), type_=True)
 
 
 def _register():

@@ -1,7 +1,7 @@
 """What ``#`` begins: ``#'f``, ``#\\a``, ``#(1 2)``, ``#+feature``, ``#1=`` and the rest of ANSI 2.4.8.
 
 Each function gets the stream, the sub-character and the number written between ``#`` and it, or ``None``. Structures, arrays
-and path names are made by the rooms that own them.
+and path names are made by the rooms that own them. Labels (``#1=``) are in ``shared_structure.py``.
 """
 
 from __future__ import annotations
@@ -9,13 +9,14 @@ from __future__ import annotations
 import os
 import re
 import sys
+from fractions import Fraction
 
 from ..collections.characters import name_char
 from cramhy_runtime.ground.arrays import bit_vector
 from cramhy_runtime.ground.python_exceptions import condition_for
 from cramhy_runtime.ground.conditions import Condition, Error, style_warn
 from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
-from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.ports import PORTS
 from ..numbers.arithmetic import is_real
 from ..objects.structures import structure_named
@@ -24,6 +25,7 @@ from . import tokens
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
 from .reader_errors import fail, place
 from .readtables import READTABLE, call
+from .shared_structure import sharp_equal, sharp_sharp
 from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
 
 READ_EVAL = special("*READ-EVAL*", True)
@@ -133,8 +135,8 @@ def _constituents(reader):
     table, taken = READTABLE.value, []
     while (char := reader.peek_char()) and not table.terminates(char):
         reader.read_char()
-        if char in table.single_escapes and reader.peek_char():
-            char = reader.read_char()
+        if char in table.single_escapes:
+            char = reader.read_char() or reader.ended("after escape")
         taken.append(char)
     return "".join(taken)
 
@@ -251,6 +253,13 @@ def _radix_reader(fixed):
             return fail(reader, start, "illegal radix for #R: ~D.", base, hint="A radix is between 2 and 36.")
         if not token and not reader.peek_char():
             return reader.ended()
+        if token.startswith("#"):  # #x#b101: what is read counts, as long as it is rational
+            reader.offset = token_start
+            with binding(tokens.READ_BASE, base):
+                inner = reader.required()
+            if isinstance(inner, (int, Fraction)):
+                return inner
+            return fail(reader, start, "#~A (base ~D.) value is not a rational: ~S.", sub.char, base, inner)
         try:
             number = tokens.rational(token, base) if "\\" not in reader.text[token_start : reader.offset] else None
             if number is None and token.endswith("."):
@@ -379,87 +388,6 @@ def feature(expression, reader, start):
     return fail(reader, start, "invalid feature expression: ~S", expression, hint="A feature is a symbol, such as :sbcl.")
 
 
-# ------------------------------------------------------------------------------------------------------- shared structure
-
-
-class _Label:
-    """Stands for the object of ``#n=`` while that is being read."""
-
-    __slots__ = ("used",)
-
-    def __init__(self):
-        self.used = False
-
-
-def sharp_equal(stream, sub, argument):
-    """``#1=object``: label an object for ``#1#``."""
-    reader = as_reader(stream)
-    start = _start(reader)
-    if _suppressed():
-        return NO_VALUES
-    if argument is None:
-        return fail(reader, start, "Missing label for #=", hint="It is written #1=object.")
-    if argument in reader.labels:
-        return fail(reader, start, "Multiply defined label: #~D=", argument)
-    label = reader.labels[argument] = _Label()
-    found = reader.required()
-    if found is label:
-        return fail(reader, start, "Must label something more than just #~D#", argument)
-    reader.labels[argument] = found
-    if label.used:
-        _replace_label(found, label)
-    return found
-
-
-def sharp_sharp(stream, sub, argument):
-    """``#1#``: the object labelled ``#1=``."""
-    reader = as_reader(stream)
-    start = _start(reader)
-    if _suppressed():
-        return None
-    if argument is None:
-        return fail(reader, start, "Missing label for ##", hint="It is written #1#.")
-    if argument not in reader.labels:
-        return fail(reader, start, "Reference to undefined label #~D#", argument, hint=f"Before it, #{argument}= must label an object.")
-    found = reader.labels[argument]
-    if isinstance(found, _Label):
-        found.used = True
-    return found
-
-
-def _replace_label(root, label):
-    pending, seen = [root], set()
-    while pending:
-        item = pending.pop()
-        if id(item) in seen:
-            continue
-        seen.add(id(item))
-        if isinstance(item, Cons):
-            attributes = ("car", "cdr")
-        elif isinstance(item, Comma):
-            attributes = ("form",)
-        elif isinstance(item, list):
-            for index, element in enumerate(item):
-                if element is label:
-                    item[index] = root
-                else:
-                    pending.append(element)
-            continue
-        elif hasattr(item, "storage"):
-            pending.append(item.storage)
-            continue
-        elif hasattr(type(item), "lisp_structure"):
-            attributes = [slot.attribute for slot in type(item).lisp_structure.slots]
-        else:
-            continue
-        for attribute in attributes:
-            value = getattr(item, attribute)
-            if value is label:
-                setattr(item, attribute, root)
-            else:
-                pending.append(value)
-
-
 # ------------------------------------------------------------------------------------------- arrays, structures, path names
 
 
@@ -470,6 +398,8 @@ def sharp_a(stream, sub, argument):
     contents = reader.required()
     if _suppressed():
         return None
+    if argument is None and isinstance(contents, Cons) and isinstance(contents.cdr, Cons):  # SBCL's #A(dimensions type . contents)
+        return _array(reader, start, contents.car, contents.cdr.cdr, contents.cdr.car)
     if argument is None:
         return fail(
             reader,
@@ -487,13 +417,27 @@ def sharp_a(stream, sub, argument):
             return fail(reader, start, "#~DA axis ~D is not a sequence:~%  ~S", argument, axis, level)
         dimensions.append(len(items))
         level = items[0] if items else None
-    return _call(reader, start, sym("MAKE-ARRAY"), list_from(dimensions), keyword("INITIAL-CONTENTS"), contents)
+    return _array(reader, start, list_from(dimensions), contents)
+
+
+def _array(reader, start, dimensions, contents, element_type=True):
+    if _has_comma(contents, sum(1 for _ in dimensions or ())):
+        return fail(reader, start, "A comma in an array that is not a vector.", hint="Make such an array by a call of make-array.")
+    options = keyword("ELEMENT-TYPE"), element_type, keyword("INITIAL-CONTENTS"), contents
+    return _call(reader, start, sym("MAKE-ARRAY"), dimensions, *options)
+
+
+def _has_comma(contents, rank):
+    """Whether an element of the array is a form of a backquote; ``contents`` are nested as deeply as ``rank`` says."""
+    if rank == 0:
+        return contents.__class__ is Comma
+    return any(_has_comma(item, rank - 1) for item in _sequence_items(contents) or ())
 
 
 def _sequence_items(obj):
     if obj is None or isinstance(obj, Cons):
         return _proper(obj)
-    return list(obj) if isinstance(obj, (list, str)) else None
+    return [Character(item) for item in obj] if isinstance(obj, str) else obj if isinstance(obj, list) else None
 
 
 def sharp_s(stream, sub, argument):
@@ -501,6 +445,8 @@ def sharp_s(stream, sub, argument):
     reader = as_reader(stream)
     start = _start(reader)
     _ignore_argument(sub, argument)
+    if not reader.peek_char() and not _suppressed():
+        return reader.ended()
     if reader.peek_char() != "(":
         return None if _suppressed() else fail(reader, start, "non-list following #S", hint="It is written #s(type :slot value).")
     reader.read_char()

@@ -7,6 +7,7 @@ This module is the entrance. Behind it are
 * ``text_reader``        the engine: the class `Reader`, places, lists and prefixes
 * ``standard_syntax``    strings, comments, the standard readtable, `incomplete`
 * ``dispatch_macros``    what ``#`` begins
+* ``shared_structure``   labels: ``#1=`` and ``#1#``
 * ``tokens``             numbers and names
 * ``readtables``         what each character does
 * ``reader_functions``   `read` and its relatives on strings and streams

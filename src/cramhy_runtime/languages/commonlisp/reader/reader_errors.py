@@ -73,11 +73,11 @@ def place(condition, reader, offset, hint=None):
     return condition
 
 
-def fail(reader, offset, text, *arguments, hint=None, kind=SimpleReaderError):
-    """Signal a reader error at ``offset``."""
+def fail(reader, offset, text, *arguments, hint=None, kind=SimpleReaderError, **slots):
+    """Signal a reader error at ``offset``; slots: of the condition."""
     if reader.quiet:
         raise QuietFailure(text)
-    return conditions.error(place(kind(text, *arguments, stream=reader.stream), reader, offset, hint))
+    return conditions.error(place(kind(text, *arguments, stream=reader.stream, **slots), reader, offset, hint))
 
 
 def end_of_file(reader, opened, context=None):
@@ -166,7 +166,7 @@ def no_package(reader, offset, package_name, name):
             (sym("UNINTERN"), lambda: Symbol(name), "Read the symbol as uninterned."),
             (sym("SYMBOL"), lambda symbol: symbol, "Specify a symbol to return", ask_value),
         ],
-        lambda: fail(reader, offset, "Package ~A does not exist.", package_name, hint=hint, kind=ReaderPackageError),
+        lambda: fail(reader, offset, "Package ~A does not exist.", package_name, hint=hint, kind=ReaderPackageError, package=package_name),
     )
 
 
@@ -183,7 +183,7 @@ def no_external(reader, offset, package, name, found):
             hint += f" Did you mean {_either([f'{_prefix(package)}:{other.lower()}' for other in near])}?"
     return restart_case(
         [(sym("CONTINUE"), lambda: package.intern(name), "Use symbol anyway.")],
-        lambda: fail(reader, offset, text, name, package.name, hint=hint, kind=ReaderPackageError),
+        lambda: fail(reader, offset, text, name, package.name, hint=hint, kind=ReaderPackageError, package=package),
     )
 
 

@@ -155,7 +155,7 @@ def copy_readtable(from_readtable=True, to_readtable=None):
     source = _current(from_readtable)
     if to_readtable is None:
         return source.copy()
-    _table(to_readtable).assume(source.copy())
+    _writable(to_readtable).assume(source.copy())
     return to_readtable
 
 
@@ -167,17 +167,31 @@ def readtable_case(readtable):
     return readtable.case if isinstance(readtable, Readtable) else type_error(readtable, "READTABLE")
 
 
+def _writable(readtable):
+    """The readtable to be changed; the standard one, which ``nil`` stands for, is not."""
+    table = _current(readtable)
+    if table is STANDARD:
+        error(SimpleError("The standard readtable cannot be modified. Change a copy of it: (setf *readtable* (copy-readtable nil))."))
+    return table
+
+
+def _given(readtable):
+    return type_error(readtable, "READTABLE") if readtable is None else readtable
+
+
 def set_readtable_case(case, readtable):
     """``(setf readtable-case)``."""
     if not isinstance(case, Keyword) or case.name not in ("UPCASE", "DOWNCASE", "PRESERVE", "INVERT"):
         return type_error(case, "(MEMBER :UPCASE :DOWNCASE :PRESERVE :INVERT)")
-    _table(readtable).case = case
+    if readtable is True or not isinstance(readtable, Readtable):
+        return type_error(readtable, "READTABLE")
+    _writable(readtable).case = case
     return case
 
 
 def set_macro_character(character, function, non_terminating_p=None, readtable=True):
     """``cl:set-macro-character``: reading ``character`` calls ``function`` with the stream and the character."""
-    _current(readtable).set_macro(_char(character), function, non_terminating_p is not None)
+    _writable(readtable).set_macro(_char(character), function, non_terminating_p is not None)
     return True
 
 
@@ -190,7 +204,7 @@ def get_macro_character(character, readtable=True):
 
 def make_dispatch_macro_character(character, non_terminating_p=None, readtable=True):
     """``cl:make-dispatch-macro-character``: ``character`` then a sub-character calls the function set for the two."""
-    _current(readtable).set_macro(_char(character), DispatchTable(), non_terminating_p is not None)
+    _writable(_given(readtable)).set_macro(_char(character), DispatchTable(), non_terminating_p is not None)
     return True
 
 
@@ -206,7 +220,7 @@ def set_dispatch_macro_character(character, sub_character, function, readtable=T
     sub = _char(sub_character)
     if sub.isdigit():
         return error(SimpleError("SUB-CHAR must not be a decimal digit: ~S", sub_character))
-    functions = _dispatch_table(character, readtable).functions
+    functions = _dispatch_table(character, _writable(readtable)).functions
     if function is None:
         functions.pop(sub.upper(), None)
     else:
@@ -220,7 +234,7 @@ def get_dispatch_macro_character(character, sub_character, readtable=True):
 
 def set_syntax_from_char(to_character, from_character, to_readtable=True, from_readtable=None):
     """``cl:set-syntax-from-char``: the first character gets the syntax type that the second has."""
-    table, source = _current(to_readtable), _table(from_readtable)
+    table, source = _writable(_given(to_readtable)), _table(from_readtable)
     to, origin = _char(to_character), _char(from_character)
     table.forget(to)
     function = source.macros.get(origin)

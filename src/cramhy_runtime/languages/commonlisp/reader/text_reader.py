@@ -433,10 +433,10 @@ class Reader(InputStream):
         table = READTABLE.value
         convert = _case_function(table)
         start = index = self.offset
-        parts, plain, escaped = [""], [], False
+        parts, plain, escaped = [[]], [], False  # a part is a list of (text, whether it was written without escapes)
 
         def name_so_far():
-            parts[-1] += convert(tokens.normalized("".join(plain)))
+            parts[-1].append((tokens.normalized("".join(plain)), True))
             plain.clear()
 
         while index < len(self.text) or self.grow():
@@ -445,7 +445,7 @@ class Reader(InputStream):
                 escaped = True
                 index += 1
                 name_so_far()
-                parts[-1] += self._escaped(index, start, "token", "after single-escape character")
+                parts[-1].append((self._escaped(index, start, "token", "after single-escape character"), False))
             elif char in table.multiple_escapes:
                 escaped = True
                 name_so_far()
@@ -455,19 +455,19 @@ class Reader(InputStream):
                     if char in table.single_escapes:
                         index += 1
                         char = self._escaped(index, bar, "|")
-                    parts[-1] += char
+                    parts[-1].append((char, False))
                     index += 1
             elif table.terminates(char):
                 break
             elif char == ":":
                 name_so_far()
-                parts.append("")
+                parts.append([])
             else:
                 plain.append(char)
             index += 1
         self.offset = index
         name_so_far()
-        return parts, escaped, self.text[start:index]
+        return [tokens.in_case(part, convert) for part in parts], escaped, self.text[start:index]
 
     def _escaped(self, index, start, opener, context=None):
         """The character at ``index``; the end of the text is an error in what began at ``start``."""

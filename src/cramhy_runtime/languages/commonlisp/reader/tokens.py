@@ -157,6 +157,17 @@ def invert(text):
     return text
 
 
+def in_case(parts, convert):
+    """The name whose ``parts`` are (text, whether it was written without escapes); ``convert`` makes one text of the latter."""
+    plain, end = convert("".join([text for text, converted in parts if converted])), 0
+    name = ""
+    for text, converted in parts:
+        if converted:
+            text, end = plain[end : end + len(text)], end + len(text)
+        name += text
+    return name
+
+
 CASES = {"UPCASE": upcase, "DOWNCASE": downcase, "PRESERVE": str, "INVERT": invert}
 
 

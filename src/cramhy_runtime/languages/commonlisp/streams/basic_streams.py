@@ -131,10 +131,12 @@ class StringOutputStream(OutputStream, StringStream):
                 self.behind = self.behind[len(text) :]
             return
         target = self.target
-        if target.fill_pointer is not None:
-            del target.chars[target.fill_pointer :]
-            target.fill_pointer += len(text)
-        target.chars.extend(text)
+        if target.fill_pointer is None:
+            target.chars.extend(text)
+        else:
+            end = target.fill_pointer + len(text)
+            target.chars[target.fill_pointer : end] = text
+            target.fill_pointer = end
 
     def text(self):
         """What was written since the last `take`."""

@@ -28,7 +28,7 @@ CONS = sym("CONS")
 class Comma:
     """``,form``, ``,@form`` or ``,.form`` inside a template; ``kind`` is the prefix as text."""
 
-    __slots__ = ("kind", "form")
+    __slots__ = equalp_slots = ("kind", "form")
 
     def __init__(self, kind, form):
         self.kind = kind

@@ -210,8 +210,10 @@ def _class(symbol, root):
         cls = PORTS.classes.find(other, False)
         return isinstance(cls, type) and issubclass(cls, root) or root is object and PORTS.types.known(other)
 
-    here = set(_visible(fits))
-    near = near_names(symbol.name, here)
+    def near_and_fits(other):  # whether a name is near is soon known; for what is no class, all classes are looked at
+        return near_names(symbol.name, [other.name]) and fits(other)
+
+    near = near_names(symbol.name, set(_visible(near_and_fits)))
     if near:
         return f"Did you mean {' or '.join(near)}?"
     others = {}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import SimpleTypeError, error
 from cramhy_runtime.ground.data import Cons, LispString, Symbol
-from cramhy_runtime.ground.functions import fdefinition, function_named
+from cramhy_runtime.ground.functions import fdefinition, function_named, functionp
 from ..numbers.arithmetic import is_real
 from ..numbers.complex_numbers import parts
 from ..numbers.irrational import complex_, to_double, to_single
@@ -35,7 +35,8 @@ def coerce(object, output_type_spec):
     if name in _DOUBLES and is_real(object):
         return _checked(to_double(object), object, specifier)
     if name in _SINGLES and is_real(object):
-        return object if name == "FLOAT" and isinstance(object, float) else _checked(to_single(object), object, specifier)
+        result = object if name == "FLOAT" and isinstance(object, float) else to_single(object)
+        return _checked(result, object, specifier)
     if name == "COMPLEX":
         return _to_complex(object, specifier)
     if type_predicate(specifier)(object):
@@ -44,8 +45,8 @@ def coerce(object, output_type_spec):
         from ..collections.characters import character
 
         return character(object)
-    if name in ("FUNCTION", "COMPILED-FUNCTION"):
-        return _to_function(object)
+    if name in ("FUNCTION", "COMPILED-FUNCTION", "GENERIC-FUNCTION"):
+        return object if functionp(object) else _to_function(object)
     if name in _SEQUENCES and _is_sequence(object) and (isinstance(specifier, Cons) or name not in ("ARRAY", "SIMPLE-ARRAY", "SEQUENCE")):
         from ..collections.sequence_types import to_sequence_type
 

@@ -18,7 +18,7 @@ from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.classes import class_name, symbol_class
 from .type_sets import ALL_NAMES, EVERYTHING, NOTHING, WHOLE_LINE, Box, Classes, Names, TypeSet, all_of, between, element_key, only, reals
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
-from .types import bounds, expand_type, is_star, same_specifier
+from .types import bounds, expand_type, is_known_type, is_star, same_specifier
 
 LISP_NAMES = "subtypep"
 
@@ -71,8 +71,17 @@ _VECTORS = {
     "SIMPLE-BIT-VECTOR": (True, [sym("BIT")]),
 }
 """Kinds of vectors: whether they are simple, and their element types."""
+_FUNCTIONS = TypeSet(instances=(Classes(frozenset([CLASSES["FUNCTION"]]), frozenset()),))
 _CONSES, _COMPLEXES, _CHARACTERS = all_of("conses"), all_of("complexes"), all_of("characters")
 _BASE_RANGE, _STANDARD_RANGES = (0, 128), ((10, 11), (32, 127))
+_PREDICATES = {
+    **{f"{name}P": name for name in "ARRAY CONS FLOAT FUNCTION INTEGER KEYWORD LIST NUMBER PACKAGE RATIONAL REAL STREAM".split()},
+    **{f"{name}P": name for name in "CHARACTER COMPLEX PATHNAME STRING SYMBOL VECTOR".split()},
+    **{f"{name}-P": name for name in "BIT-VECTOR HASH-TABLE SIMPLE-BIT-VECTOR SIMPLE-STRING SIMPLE-VECTOR RANDOM-STATE".split()},
+    **{name: name for name in ("ATOM", "NULL")},
+    "READTABLEP": "READTABLE",
+}
+"""What the predicates of the standard say: (satisfies symbolp) is the type SYMBOL."""
 _PLAIN = {
     "ATOM": _CONSES.complement(),
     "CONS": _CONSES,
@@ -128,7 +137,15 @@ def _is_subtype(first, second):
     always = EVERYTHING
     for difference in differences:
         always = always.meet(difference)
-    return False if always.empty() is False else None
+    return False if always.empty() is False or _has_no_functions(first, second, unknown) else None
+
+
+def _has_no_functions(first, second, unknown):
+    """Whether ``first`` is a type of functions with arguments, which has members, and ``second`` has no functions."""
+    if not isinstance(first, Cons) or first.car is not sym("FUNCTION"):
+        return False
+    choices = product((False, True), repeat=len(unknown))
+    return all(_FUNCTIONS.meet(_Reading(unknown, choice).of(second)).empty() for choice in choices)
 
 
 def _difference(first, second, reading):
@@ -199,7 +216,9 @@ class _Reading:
         if name in _VECTORS and name != "VECTOR":
             return _arrays(*_VECTORS[name], (_size(arguments),))
         reader = getattr(self, f"_{name.lower().replace('-', '_')}_type", None)
-        return bad_specifier(specifier) if reader is None else reader(arguments, specifier)
+        if reader is None:
+            return bad_specifier(specifier) if is_known_type(head) else self._anything(specifier)
+        return reader(arguments, specifier)
 
     def _and_type(self, arguments, _):
         result = EVERYTHING
@@ -218,8 +237,10 @@ class _Reading:
 
     _eql_type = _member_type
 
-    def _satisfies_type(self, _, specifier):
-        return self._anything(specifier)
+    def _satisfies_type(self, arguments, specifier):
+        name = arguments[0]
+        known = _PREDICATES.get(name.name) if isinstance(name, Symbol) and name.package is _CL else None
+        return self._anything(specifier) if known is None else self.of(sym(known))
 
     def _mod_type(self, arguments, _):
         return _integers(0, arguments[0] - 1)
@@ -264,8 +285,7 @@ class _Reading:
         return _arrays(False, None if _unlimited(arguments) else _elements(arguments[0]), (_size(arguments[1:]),))
 
     def _function_type(self, arguments, specifier):
-        functions = TypeSet(instances=(Classes(frozenset([CLASSES["FUNCTION"]]), frozenset()),))
-        return self._anything(specifier, functions) if arguments else functions
+        return self._anything(specifier, _FUNCTIONS) if arguments else _FUNCTIONS
 
     def _values_type(self, _, specifier):
         return error(SimpleError("VALUES type illegal in this context:~%  ~S", specifier))

@@ -28,6 +28,7 @@ from ..objects.classes import class_name, class_of, symbol_class
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import Package, is_symbol, sym
+from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
 
@@ -446,7 +447,7 @@ def _part_type(number):
         kind = class_name(class_of(real))
     else:
         kind = sym("INTEGER" if real.__class__ is imaginary.__class__ is int else "RATIONAL")
-    return lisp_list(kind, *sorted((real, imaginary)))
+    return PORTS.types.simplified(lisp_list(kind, *sorted((real, imaginary))))
 
 
 def upgraded_complex_part_type(typespec, environment=None):

@@ -13,7 +13,7 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list, list_from, one, python_list, truth
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import intern, keyword, sym
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.robot_world.costmaps import costmap, costs, generators, grids, spread
 from cramhy_runtime.robot_world.costmaps.arrays import np
@@ -332,7 +332,7 @@ def generate_by_function(generator: Any, map: Any, metadata: Any) -> Any:
 
 def _generic(name: str) -> Any:
     """A generic function of the Lisp half of the library: that of the present image, since each loads the library for itself."""
-    return sym(f"{PACKAGE}::{name}").function
+    return intern(name, PACKAGE).function
 
 
 def score(name: Any) -> Any:
@@ -379,7 +379,8 @@ def cost_array(map: Any) -> Any:
 
 
 def _signal(name: str, hint: str | None = None) -> Any:
-    return error(make_instance(sym(name)), hint=hint)
+    package, _, symbol = name.rpartition("::")
+    return error(make_instance(intern(symbol, package)), hint=hint)
 
 
 def _why_empty(names: list[Any]) -> str:

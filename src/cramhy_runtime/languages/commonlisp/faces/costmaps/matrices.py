@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.ground.arrays import LispArray, SimpleArray
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, python_list
 from cramhy_runtime.ground.numbers import is_real
@@ -17,7 +17,7 @@ DOUBLE = sym("DOUBLE-FLOAT")
 
 def lisp_matrix(array: Any) -> LispArray:
     """The Lisp matrix of double-floats with the elements of ``array``."""
-    return LispArray(array.shape, [DoubleFloat(value) for value in array.ravel().tolist()], DOUBLE)
+    return SimpleArray(array.shape, [DoubleFloat(value) for value in array.ravel().tolist()], DOUBLE)
 
 
 def numpy_matrix(matrix: Any) -> Any:

@@ -13,7 +13,7 @@ from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.world import World
 
 from ...packages.face_definition import define_face
-from . import link_calls, motion_calls, shape_calls, world_calls
+from . import costmap_calls, link_calls, motion_calls, shape_calls, world_calls
 
 CLASSES = {
     "WORLD": World,
@@ -33,7 +33,7 @@ def define_faces() -> None:
     package = define_face(
         "ROBOT-WORLD",
         use=("COMMON-LISP",),
-        functions={calls: calls.LISP_NAMES for calls in (world_calls, shape_calls, link_calls, motion_calls)},
+        functions={calls: calls.LISP_NAMES for calls in (world_calls, shape_calls, link_calls, motion_calls, costmap_calls)},
         export=" ".join(CLASSES),
     )
     for name, cls in CLASSES.items():

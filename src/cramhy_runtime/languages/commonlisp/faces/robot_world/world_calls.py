@@ -6,11 +6,12 @@ What a world cannot do is a simple-error with the reason.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.robot_world import models, urdf
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.placements import of_pose
@@ -217,6 +218,12 @@ def read_description(text: str, file: str = "") -> Description:
         return error("~a", str(problem))
 
 
-def description_text(name: Symbol) -> str:
-    """The URDF text that comes with cramhy: of :PR2 or :KITCHEN."""
-    return FreshString(models.urdf_text(symbol_name(name).lower()))
+def description_text(name: Symbol | str) -> str:
+    """The URDF text that comes with cramhy, of :PR2 or :KITCHEN, or a file's, by its path; one in no folder may be a file of ours."""
+    if is_symbol(name):
+        return FreshString(models.urdf_text(symbol_name(name).lower()))
+    path = Path(str(name))
+    try:
+        return FreshString((path if path.is_file() else models.DATA / path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as problem:
+        return error("the description ~a cannot be read: ~a", str(name), str(problem))

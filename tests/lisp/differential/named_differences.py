@@ -1,0 +1,189 @@
+"""The differences between SBCL's answers and ours that ``docs/differences.md`` names.
+
+A `Named` has words of that page, which a test looks for there, and a predicate of the question and both answers. An answer is compared
+as it was written down, but for addresses.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+ADDRESS = re.compile(r"\{[0-9A-F]{6,}\}")
+
+
+def comparable(answer: str) -> str:
+    """``answer`` without what differs by nature: the addresses of objects."""
+    return ADDRESS.sub("{}", answer)
+
+
+class Named(NamedTuple):
+    """A named difference: its words in ``docs/differences.md``, and whether an answer differs for this reason."""
+
+    words: str
+    explains: Callable[[str, str, str], bool]
+
+
+def _types(answer: str) -> set[str]:
+    """The standard types of the condition that an answer tells of; none if it tells of values."""
+    return set(answer.splitlines()[-1].split()[1:]) if answer.splitlines()[-1].startswith("!!") else set()
+
+
+def _same_but(theirs: str, ours: str, *replacements: tuple[str, str]) -> bool:
+    """Whether both answers are values that are the same when each (pattern, replacement) has been applied to both."""
+    for pattern, replacement in replacements:
+        theirs, ours = (re.sub(pattern, replacement, text) for text in (theirs, ours))
+    return theirs == ours and not _types(theirs)
+
+
+def _more_specific(question: str, theirs: str, ours: str) -> bool:
+    return _types(theirs) == {"ERROR"} and bool(_types(ours))
+
+
+def _refused_text(question: str, theirs: str, ours: str) -> bool:
+    return "READER-ERROR" in _types(ours) and bool(_types(theirs))
+
+
+def _found_by_compiling(question: str, theirs: str, ours: str) -> bool:
+    says_more = _types(ours) > {"ERROR"} or "(format" in question
+    return _types(theirs) == {"PROGRAM-ERROR", "ERROR"} and bool(_types(ours)) and says_more
+
+
+def _certain(question: str, theirs: str, ours: str) -> bool:
+    uncertain = r"NIL( ;)? NIL"
+    return "subtypep" in question and bool(re.search(uncertain, theirs)) and not re.search(uncertain, ours) and not _types(ours)
+
+
+def _without_value(question: str, theirs: str, ours: str) -> bool:
+    again = [name for name in re.findall(r"\(defclass (\S+)", question) if question.count(f"(defclass {name} ") > 1]
+    return bool(again) and not _types(theirs) and not _types(ours) and (":UNBOUND" in ours or "| ((" in theirs)
+
+
+def _base_characters(question: str, theirs: str, ours: str) -> bool:
+    if re.search(r"base-(char|string)|standard-char", question):
+        return not _types(theirs) and not _types(ours)
+    return _same_but(theirs, ours, (r"\(SIMPLE-BASE-STRING (\d+)\)", r"(SIMPLE-ARRAY CHARACTER (\1))"), ("BASE-(CHAR|STRING)", "CHARACTER"))
+
+
+CHARACTERS = (r"#\\+([\w-]+|.)", "#")
+NUMBER = re.compile(r"-?\d+\.\d+(?:[esdf][+-]?\d+)?")
+
+
+def _precision(question: str, theirs: str, ours: str) -> bool:
+    """The same but for floats, which are nearly equal."""
+    if NUMBER.sub("*", theirs) != NUMBER.sub("*", ours):
+        return False
+    pairs = zip(NUMBER.findall(theirs), NUMBER.findall(ours), strict=True)
+    pairs = [[float(re.sub("[sdf]", "e", text)) for text in pair] for pair in pairs]
+    return all(abs(one - other) <= 1e-6 * abs(one) for one, other in pairs)
+
+
+def _no_object_has(question: str, theirs: str, ours: str) -> bool:
+    declared = re.search(
+        r"\((the|declare \((type)?) ?(\(and |nil|\(\)|\(or *\)|\(member *\)|\(not t\)|\(eql\)|\(integer \((-?\d+)\) \4\))", question
+    )
+    return bool(declared) and "TYPE-ERROR" in _types(ours) and (not _types(theirs) or "CONTROL-ERROR" in _types(theirs))
+
+
+def _defined_again(question: str, theirs: str, ours: str) -> bool:
+    names = re.findall(r"\(defstruct \(?([^\s()]+)", question)
+    return len(names) > len(set(names)) and _types(theirs) == {"ERROR"} and not _types(ours)
+
+
+def _bounds_pass(question: str, theirs: str, ours: str) -> bool:
+    crossed = any(int(start) > int(end) for start, end in re.findall(r":start (\d+) :end (\d+)", question))
+    return crossed and bool(re.search(r"\((position|find)", question)) and "TYPE-ERROR" in _types(ours) and not _types(theirs)
+
+
+NAMED = [
+    Named("Where SBCL signals a plain `error`", _more_specific),
+    Named("Text that cannot be read is a `reader-error`", _refused_text),
+    Named("an error that SBCL's compiler finds is a `program-error`", _found_by_compiling),
+    Named("`subtypep` is certain of more than SBCL's", _certain),
+    Named(
+        "The slot that an `&aux` variable without a form leaves empty",
+        lambda question, theirs, ours: "&aux" in question and ("#<unbound>" in theirs or "TYPE-ERROR" in theirs),
+    ),
+    Named(
+        "A character prints as itself when `*print-readably*` is true",
+        lambda question, theirs, ours: "readably" in question and _same_but(theirs, ours, CHARACTERS),
+    ),
+    Named(
+        "hash tables are not printed readably",
+        lambda question, theirs, ours: "MAKE-HASH-TABLE" in theirs and ours.startswith("!! PRINT-NOT"),
+    ),
+    Named("overflows where doubles do", lambda question, theirs, ours: "FLOATING-POINT-OVERFLOW" in _types(theirs) and not _types(ours)),
+    Named("Single-floats are kept at double precision", _precision),
+    Named("literals of the same characters may be `eq`", lambda question, theirs, ours: bool(re.search(r'#\d=\\?"', ours))),
+    Named("All strings are of characters, none of base characters", _base_characters),
+    Named(
+        "whose name reads as a float",
+        lambda question, theirs, ours: _same_but(theirs, ours, (r"\|([+-]?\d*\.?\d+([ESFDL][+-]?\d+)?)\|", r"\1")),
+    ),
+    Named(
+        "checked when they are used",
+        lambda question, theirs, ours: "*print-" in question and "TYPE-ERROR" in _types(theirs) and not _types(ours),
+    ),
+    Named("counts a slot without a value as a new one", _without_value),
+    Named(
+        "A shared slot that inherits its initform",
+        lambda question, theirs, ours: (
+            ":allocation :class" in question and "(incf *counter*)" in question and _same_but(theirs, ours, (r"\d+", "0"))
+        ),
+    ),
+    Named(
+        "changes a read-only slot of a structure",
+        lambda question, theirs, ours: (
+            ":read-only" in question and "(setf (slot-value" in question and "UNDEFINED-FUNCTION" in _types(theirs)
+        ),
+    ),
+    Named("A structure that is defined again with other slots", _defined_again),
+    Named("A declared type that no object has", _no_object_has),
+    Named("evaluates itself for ever", lambda question, theirs, ours: "STORAGE-CONDITION" in _types(theirs) and bool(_types(ours))),
+    Named(
+        "never gives SBCL's own classes",
+        lambda question, theirs, ours: (
+            "class-of" in question and ("SB-KERNEL:" in theirs or "SIMPLE-CHARACTER-STRING" in theirs or "COMPLEX-" in theirs)
+        ),
+    ),
+    Named(
+        "are structures in SBCL", lambda question, theirs, ours: "structure-object" in question and not _types(theirs) and not _types(ours)
+    ),
+    Named(
+        "`defmethod` without a lambda list",
+        lambda question, theirs, ours: bool(re.search(r"\(defmethod \S+( [^\s()]+)*\)", question)) and "PROGRAM-ERROR" in _types(ours),
+    ),
+    Named(
+        "`call-next-method` outside of a method",
+        lambda question, theirs, ours: (
+            "next-method" in question and "UNDEFINED-FUNCTION" in _types(theirs) and "PROGRAM-ERROR" in _types(ours)
+        ),
+    ),
+    Named(
+        "names are written for the case of the current readtable",
+        lambda question, theirs, ours: (
+            "readtable-case" in question and "readably" in question and theirs.replace("|", "") == ours.replace("|", "")
+        ),
+    ),
+    Named(
+        "A form that is a dotted list",
+        lambda question, theirs, ours: " . " in question and "TYPE-ERROR" in _types(theirs) and _types(ours) == {"PROGRAM-ERROR", "ERROR"},
+    ),
+    Named(
+        "Arrays of the element type nil",
+        lambda question, theirs, ours: (
+            not _types(theirs) and bool(re.search(r"(array|vector|element-type) '?(nil|\(\)|\(member\)|\(or\))", question))
+        ),
+    ),
+    Named("A start behind the end is always an error", _bounds_pass),
+    Named(
+        "shows the parameters that its Python code has",
+        lambda question, theirs, ours: _same_but(theirs, ours, (r"(?<=\(LAMBDA )\([^()]*\)", "()"), ("NIL(?= {})", "()")),
+    ),
+]
+
+
+def named(question: str, theirs: str, ours: str) -> Named | None:
+    """The difference that explains why the answers differ, or ``None``."""
+    return next((difference for difference in NAMED if difference.explains(question, theirs, ours)), None)
