@@ -58,7 +58,7 @@ class World:
 
     def names(self) -> list[str]:
         """The names of all objects that are neither robot nor furniture, in the order in which they came."""
-        return [text(item.name) for item in self.core.items()]
+        return [text(item.name) for item in self.core.items() if item.types]  # the floor is an item without a type
 
     @for_python
     def pose(self, name: Name | None = None) -> PoseStamped:
