@@ -16,6 +16,7 @@ from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import list_from
 
+from . import shown
 from .placements import Placement, placement
 from .scene import FLOOR, Part, Scene
 from .skeleton import Skeleton, skeleton_of
@@ -74,6 +75,7 @@ class World:
         self.things[thing.name] = thing
         thing.world = self
         self._scene = None
+        shown.changed(self)
         return thing
 
     def remove(self, name: Hashable) -> None:
@@ -84,6 +86,7 @@ class World:
         for machine in self.machines():
             machine.holds.pop(name, None)
         self._scene = None
+        shown.changed(self)
 
     def thing(self, name: Hashable) -> Thing:
         """The thing of that name. Errors: `WorldError`, when there is none."""
@@ -123,6 +126,7 @@ class World:
             thing.stand(at)
             self._carry(thing)
         self._placed = False
+        shown.changed(self)
 
     def bend(self, name: Hashable, joints: Mapping[str, float]) -> None:
         """Set joints of a machine, whatever their limits. Errors: `WorldError`, for joints that it has not."""
@@ -133,6 +137,7 @@ class World:
         machine.bend(joints)
         self._carry(machine)
         self._placed = False
+        shown.changed(self)
 
     def link(self, name: Hashable, link: str) -> Placement:
         """Where a link of a machine is. Errors: `WorldError`, for a link that it has not."""
@@ -153,6 +158,7 @@ class World:
         machine, held = self.machine(name), self.item(item)
         machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose))
         self._scene = None
+        shown.changed(self)
 
     def detach(self, name: Hashable, item: Hashable, link: str | None = None) -> None:
         """Let an item go, by default all links. It stays where it is until the world is simulated."""
@@ -161,6 +167,7 @@ class World:
         if grips:
             machine.holds[item] = grips
         self._scene = None
+        shown.changed(self)
 
     def holders(self, item: Hashable) -> list[tuple[Machine, str]]:
         """The machines and links that hold an item."""
@@ -196,6 +203,7 @@ class World:
         """Let free items fall for so long, or until all are at rest; the seconds that it took."""
         took = self.scene.settle(seconds)
         self._placed = False
+        shown.changed(self)
         return took
 
     def stable(self, name: Hashable, metres: float = 0.005, radians: float = 0.15) -> bool:

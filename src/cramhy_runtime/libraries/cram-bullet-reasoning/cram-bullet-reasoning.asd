@@ -7,4 +7,5 @@
                (:file "objects")
                (:file "robots")
                (:file "vision")
+               (:file "pictures")
                (:file "predicates")))

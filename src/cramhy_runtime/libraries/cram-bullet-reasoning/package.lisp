@@ -19,6 +19,8 @@
    #:get-robot-object #:get-robot-name #:get-environment-object #:robot-colliding-objects-without-attached
    ;; seeing
    #:*visibility-threshold* #:object-visible-p #:calculate-object-visibility #:occluding-objects
+   ;; pictures
+   #:save-picture #:with-movie
    ;; predicates
    #:bullet-world #:clear-bullet-world #:assert #:retract #:%object #:object-pose #:object-pose-on #:item-type #:object-type #:object-bottom-pose
    #:contact #:object-not-in-collision #:stable #:stable-items #:above #:below #:supported-by #:visible #:visible-from

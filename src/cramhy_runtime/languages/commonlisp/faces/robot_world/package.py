@@ -6,13 +6,15 @@ It is made when a program first names it, which the libraries ``cl-bullet``, ``c
 from __future__ import annotations
 
 from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.packages import on_demand
+from cramhy_runtime.ground.dynamic import global_value
+from cramhy_runtime.ground.packages import find_package, on_demand
+from cramhy_runtime.robot_world import shown
 from cramhy_runtime.robot_world.descriptions import Description, Joint, Link
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.world import World
 
 from ...packages.face_definition import define_face
-from . import motion_calls, world_calls
+from . import motion_calls, picture_calls, world_calls
 
 CLASSES = {"WORLD": World, "THING": Thing, "ITEM": Item, "MACHINE": Machine, "DESCRIPTION": Description, "LINK": Link, "JOINT": Joint}
 
@@ -23,8 +25,17 @@ def define_faces() -> None:
     package = define_face(
         "ROBOT-WORLD",
         use=("COMMON-LISP",),
-        functions={world_calls: world_calls.LISP_NAMES, motion_calls: motion_calls.LISP_NAMES},
+        functions={world_calls: world_calls.LISP_NAMES, motion_calls: motion_calls.LISP_NAMES, picture_calls: picture_calls.LISP_NAMES},
         export=" ".join(CLASSES),
     )
     for name, cls in CLASSES.items():
         register_class(package.intern(name), cls)
+    shown.offer(_current)
+
+
+def _current() -> World | None:
+    """The value of ``btr:*current-bullet-world*`` that all tasks see, not one that a task has bound to look ahead."""
+    package = find_package("CRAM-BULLET-REASONING")
+    symbol = package and package.lookup("*CURRENT-BULLET-WORLD*")[0]
+    value = global_value(symbol) if symbol else None
+    return value if isinstance(value, World) else None
