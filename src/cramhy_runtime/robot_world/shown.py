@@ -1,4 +1,4 @@
-"""The world that is shown: to a page, in recordings and movies. And who wants to know when a world changes.
+"""The world that is shown, in a movie for one. And who wants to know when a world changes.
 
 Worlds are copied to look ahead, and the copies come and go; the one that is shown is the one that a program calls its current one. Lisp's
 ``btr:*current-bullet-world*`` is one such place (`offer`), and `show` is for programs in Python. This module is loaded without MuJoCo,
@@ -14,13 +14,11 @@ from cramhy_runtime.kernel.images import Cell, per_image
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .costmaps.costmap import LocationCostmap
     from .world import World
 
 _chosen: Cell = Cell(None, fresh=True)
 _offers: list[Callable[[], World | None]] = per_image([])
 _watchers: list[Callable[[World], None]] = per_image([])
-_costmap: Cell = Cell(None, fresh=True)
 
 
 def current() -> World | None:
@@ -55,13 +53,3 @@ def changed(world: World) -> None:
     """A world has changed."""
     for watcher in tuple(_watchers):
         watcher(world)
-
-
-def costmap() -> LocationCostmap | None:
-    """The costmap that was computed last, or ``None``."""
-    return _costmap.value
-
-
-def computed(costmap: LocationCostmap) -> None:
-    """A costmap was computed."""
-    _costmap.value = costmap

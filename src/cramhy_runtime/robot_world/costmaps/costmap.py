@@ -18,7 +18,6 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import DoubleFloat, one
 from cramhy_runtime.ground.numbers import is_real
 
-from .. import shown
 from .arrays import np
 from .costs import Cost
 from .grids import PACKAGE, GridMetadata
@@ -159,7 +158,6 @@ class LocationCostmap(GridMetadata):
                 if not total > 0:
                     raise NothingPossible(names)
             self.computed = matrix / total
-            shown.computed(self)
         return self.computed
 
     def value(self, x: float, y: float) -> float:
